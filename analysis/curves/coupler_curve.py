@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
-from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
@@ -18,6 +19,34 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 PIECES = 180  # of each range of the driver, when points are sought on the curve
 ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
 _FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
+
+
+class CouplerMotion(NamedTuple):
+    """P = x + i y and the direction of its link, with two derivatives by the driver angle, shape (...)."""
+
+    p: ComplexArray
+    rate: ComplexArray
+    bend: ComplexArray
+    theta: FloatArray
+    omega: FloatArray
+    alpha: FloatArray
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def coupler_motion(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> CouplerMotion:
+    """How P and its link move with the driver; arguments and what is not finite as for `coupler_curve`."""
+    kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
+    loops, frames = close(kind, operands_of(linkage, assembly), angle)
+    _, rates = move(loops, frames, STEADY, dead_below=0.0)
+    frame, moving = frames[kind.carries], rates[kind.carries]
+    at = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
+    x, y = frame.point(at)
+    (vx, vy), (ax, ay), _ = moving.of(frame.arm(at))
+    p = linkage.o2[..., 0] + x + 1j * (linkage.o2[..., 1] + y)
+    theta = np.arctan2(frame.sine, frame.cosine)
+    return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, *moving.turn[:2])
 
 
 def coupler_curve(
@@ -39,22 +68,9 @@ def coupler_curve(
 
     Notes
     -----
-    The equations of the loop, differentiated once and twice; see `grashof.analysis.loops`.
+    The equations of the loop, differentiated once and twice; see `grashof.analysis.mechanism.dyad`.
     """
-    state = solve_position(linkage, theta2, assembly)
-    omega3, alpha3 = coupler_rates(linkage, state)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        crank = linkage.r2 * np.exp(1j * state.theta2)
-        u, v = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
-        arm = (u + 1j * v) * np.exp(1j * state.theta3)
-        rate = 1j * (crank + omega3 * arm)
-        bend = -crank + (1j * alpha3 - omega3**2) * arm
-    return state.p[..., 0] + 1j * state.p[..., 1], rate, bend
-
-
-def coupler_rates(linkage: Linkage, state: Position) -> tuple[FloatArray, FloatArray]:
-    """First and second derivative of theta3 by the driver angle; see `coupler_curve`."""
-    return kind_of(linkage).coupler_rates(linkage, state.theta2, state.theta3, state.theta4)
+    return coupler_motion(linkage, theta2, assembly)[:3]
 
 
 def squared_distance(

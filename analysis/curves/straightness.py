@@ -8,11 +8,11 @@ import numpy as np
 
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.line_and_circle import BestLine
-from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
+from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, Linkage
@@ -295,12 +295,8 @@ class _Path:
             with np.errstate(invalid="ignore"):
                 return _rows(p - self.origin, np.abs(rate * self.motion.rate(share)))
         # d theta2 = pace sin mu dt, and d theta3 by d theta2 is divided by sin mu.
-        linkage, state = self.linkage, solve_position(self.linkage, theta2)
-        turn2 = self.pace * np.abs(np.sin(state.theta4 - state.theta3))
-        turn3 = self.pace * kind_of(linkage).carried(linkage, theta2, state.theta3, state.theta4)
-        turn3 = linkage.assembly * turn3
-        crank, arm = (state.a - linkage.o2) @ _COMPLEX, (state.p - state.a) @ _COMPLEX
-        return _rows(state.p @ _COMPLEX - self.origin, np.abs(turn2 * crank + turn3 * arm))
+        moved = virtual_motion(self.linkage, theta2)[0].p
+        return _rows(moved.position @ _COMPLEX - self.origin, np.abs(self.pace) * moved.speed)
 
 
 def _pace(linkage: Linkage, motion: EvenMotion) -> float:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.cylinder.travel import Travel
-from grashof.analysis.loops.kinds import kind_of, way_to
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.mechanism.position import Position
+from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -107,26 +107,19 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
     >>> found.length.round(6).tolist(), np.degrees(found.angle).round(3).tolist()
     ([2.236068, 2.797933], [63.435, 30.361])
     """
-    kind, angles = kind_of(linkage), {2: at.theta2, 3: at.theta3, 4: at.theta4}
-    turns = dict(zip(angles, kind.turning(linkage, *angles.values()), strict=True))
-    foot, bars = way_to(linkage, cylinder.link)
-    pivot, way = _complex(foot), np.zeros(at.theta2.shape, dtype=complex)
-    for link, bar in bars:
-        carrying = bar * np.exp(1j * angles[link])
-        pivot, way = pivot + carrying, way + turns[link] * carrying
-    u = kind.direction4(linkage, at.theta4) if cylinder.link == 4 else angles[cylinder.link]
-    arm = complex(*cylinder.point) * np.exp(1j * u)
-    pivot, way = pivot + arm, 1j * (way + turns[cylinder.link] * arm)
+    sign = np.prod(np.copysign(1.0, at.margins), axis=0)
+    moving = virtual_motion(linkage, at.theta2, np.copysign(1.0, at.margins[0]))[0]
+    q = moving.point(cylinder.link, cylinder.point)
+    pivot, way = _complex(q.position), sign * _complex(q.velocity)
     out = pivot - complex(*cylinder.base)
     length, speed = np.abs(out), np.abs(way)
-    lengths = linkage.lengths
-    scale = lengths.max(axis=-1) ** 2 * (lengths.sum(axis=-1) + np.abs(arm))
+    scale = linkage.lengths.sum(axis=-1) + np.hypot(*cylinder.point)
     with np.errstate(invalid="ignore", divide="ignore"):
         change = np.real(np.conj(out) * way) / length
         lever = np.where((length > 0) & (speed > _NOTHING * scale), change / speed, 0.0)
-        rate = np.where(length > 0, change / turns[2], 0.0)
+        rate = np.where(length > 0, change / (sign * moving.omega2), 0.0)
     lever = np.where(np.isnan(speed), np.nan, lever)
-    return CylinderState(np.stack([pivot.real, pivot.imag], axis=-1), length, rate, lever)
+    return CylinderState(q.position, length, rate, lever)
 
 
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:

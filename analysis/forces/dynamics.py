@@ -10,9 +10,7 @@ import numpy as np
 from grashof.analysis.forces.closing import closing, direction
 from grashof.analysis.forces.joints import (
     Joint,
-    frame_angle,
     joint_motion,
-    origin,
     slide_normal,
     slide_of,
 )
@@ -125,7 +123,7 @@ def inverse_dynamics(
     a = np.asarray(state.linkage.r2)[..., None] * direction(state.theta2)
     torque = demands[2].moment - cross(a, f32) - moments[0] + moments[1]
     ground, on_slider = outside[1], slide_of(state.linkage) is Joint.O4
-    base = origin(state, 4).position - state.linkage.o2
+    base = state.origin(4).position - state.linkage.o2
     guided = moments[3] if not on_slider else slide_moment
     return Dynamics(
         torque=torque[()],
@@ -168,7 +166,7 @@ def virtual_work_torque(
     torque = np.zeros(state.shape)
     for link in (2, 3, 4):
         body = masses.of(link)
-        rate, moving = per_turn.angular(link)[1], origin(per_turn, link).velocity
+        rate, moving = per_turn.angular(link)[1], per_turn.origin(link).velocity
         moved, push = per_turn.point(link, body.centre), state.point(link, body.centre).acceleration
         inertia = np.asarray(body.mass) * ((push - gravity) * moved.velocity).sum(axis=-1)
         torque = torque + inertia + body.inertia * state.angular(link)[2] * rate
@@ -180,7 +178,7 @@ def virtual_work_torque(
 
 def _demand(state: Kinematics, masses: Masses, link: int, outside: Wrench, gravity: FloatArray) -> Wrench:
     """Force, and moment about the link's origin, that joints and drive must still exert."""
-    body, theta, alpha = masses.of(link), frame_angle(state, link), state.angular(link)[2]
+    body, theta, alpha = masses.of(link), state.frame_angle(link), state.angular(link)[2]
     inertia = np.asarray(body.mass)[..., None] * (state.point(link, body.centre).acceleration - gravity)
     turning = body.inertia * alpha + cross(turned(body.centre, theta), inertia)
     return Wrench(inertia - outside.force, turning - outside.moment)

@@ -12,11 +12,11 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.energy import mechanical_energy
-from grashof.analysis.forces.joints import Joint, joint_motion, margin
+from grashof.analysis.forces.joints import Joint, joint_motion
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
-from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, solve_kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, Turning, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
 from grashof.problems import AssemblyError, DeadPositionWarning, ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -198,7 +198,7 @@ class _Rubbing:
 
         def values(theta2: FloatArray, omega2: FloatArray) -> FloatArray:
             unit = solve_kinematics(self.linkage, theta2)
-            left = self.linkage.assembly * margin(unit) - _DEAD_END
+            left = self.linkage.assembly * unit.margins[0] - _DEAD_END
             found = [np.where(np.isfinite(left), left, -1.0)]
             if senses is not None:
                 found.append(sense * omega2)
@@ -297,24 +297,21 @@ def _equation_of_motion(
 def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinematics:
     """The same position with the driver at another speed and acceleration; without jerks."""
     none = np.zeros(omega2.shape)
-    alpha3, alpha4 = (
-        omega2**2 * bend + alpha2 * rate
-        for bend, rate in ((unit.alpha3, unit.omega3), (unit.alpha4, unit.omega4))
+
+    def driven(rate: FloatArray, bend: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return omega2 * rate, omega2**2 * bend + alpha2 * rate
+
+    turning = tuple(Turning(each.theta, *driven(each.omega, each.alpha), none) for each in unit.turning)
+    slides = tuple(
+        None if each is None else SlideMotion(each.travel, *driven(each.velocity, each.acceleration), none)
+        for each in unit.slides
     )
-    slide = unit.slide
-    if slide is not None:
-        bend = omega2**2 * slide.acceleration + alpha2 * slide.velocity
-        slide = SlideMotion(slide.travel, omega2 * slide.velocity, bend, none)
-    return Kinematics(
-        unit.linkage, unit.theta2, unit.theta3, unit.theta4,
-        omega2 * unit.omega2, omega2 * unit.omega3, omega2 * unit.omega4,
-        alpha2, alpha3, alpha4, none, none, none, slide,
-    )  # fmt: skip
+    return Kinematics(unit.linkage, turning, slides, unit.margins)
 
 
 def _check_start(linkage: Linkage, masses: Masses, theta2: float) -> None:
     start = solve_kinematics(linkage, theta2)  # names an angle at which the linkage cannot close
-    if not abs(margin(start)) > _DEAD_END:
+    if not abs(start.margins[0]) > _DEAD_END:
         raise AssemblyError(
             f"the linkage stands in a dead position at driver angle {np.degrees(theta2):.6g} deg"
         )

@@ -6,8 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from grashof.analysis.loops.kinds import kind_of
-from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
+from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 
@@ -73,45 +72,13 @@ def slide_normal(state: Kinematics) -> FloatArray:
     return np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)
 
 
-def margin(state: Kinematics) -> FloatArray:
-    """Sine of the transmission angle with the sign of the assembly, shape (...); 0 in dead positions.
-
-    Notes
-    -----
-    sin(theta4 - theta3), which is cos(theta3 - slide_angle) of a slider-crank; of an inverted one the
-    travel of the rod over the distance A-O4.
-    """
-    if slide_of(state.linkage) is not Joint.B:
-        return np.asarray(np.sin(state.theta4 - state.theta3))
-    way = origin(state, 4).position - state.a.position
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(joint_motion(state, Joint.B)[0] / np.hypot(way[..., 0], way[..., 1]))
-
-
 def output_rate(state: Kinematics) -> FloatArray:
     """Angular velocity of link 4, rad/s; of a slider its velocity along the slide, length/s."""
     slide = slide_of(state.linkage)
     return joint_motion(state, slide)[1] if slide is Joint.O4 else state.omega4
 
 
-def origin(state: Kinematics, link: int) -> PointMotion:
-    """How the origin of a link's frame moves: O2, A, and O4 or the slider's B; of the ground O2."""
-    name = state.linkage.mechanism.links[link - 1].points[0]
-    if name not in state.linkage.mechanism.ground:
-        moving: PointMotion = getattr(state, name)
-        return moving
-    still = np.zeros(2)
-    return PointMotion(getattr(state.linkage, name), still, still, still)
-
-
 def moving_origins(linkage: Linkage) -> tuple[int, ...]:
     """The links whose frames begin in a point that moves."""
-    return tuple(
-        link.number for link in linkage.mechanism.links[1:] if link.points[0] not in linkage.mechanism.ground
-    )
-
-
-def frame_angle(state: Kinematics, link: int) -> FloatArray:
-    """Direction of the u-axis of a link's frame, shape (...), rad: that of a slider is along its slide."""
-    theta = state.angular(link)[0]
-    return kind_of(state.linkage).direction4(state.linkage, theta) if link == 4 else theta
+    kind = linkage.mechanism
+    return tuple(link.number for link in kind.links[1:] if link.points[0] not in kind.ground)

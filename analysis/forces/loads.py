@@ -12,10 +12,8 @@ import numpy.typing as npt
 from grashof.analysis.forces.joints import (
     JOINED,
     Joint,
-    frame_angle,
     joint_motion,
     joint_name,
-    origin,
     slide_of,
 )
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
@@ -273,7 +271,7 @@ def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
     """All forces, moments and springs that act on the links, 1 to 4, at their places."""
     nothing, still = np.zeros(()), np.zeros(2)
     for force in loads.forces:
-        theta, value = frame_angle(state, force.link), _value(force.force, state)
+        theta, value = state.frame_angle(force.link), _value(force.force, state)
         if force.turning:
             value = turned(value, theta)
         yield PlacedLoad(force.link, force.at, value, nothing)
@@ -296,7 +294,7 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
         if load.force.any():
             place = _carried(state, load.link, load.at).position
             wrench.force = wrench.force + load.force
-            wrench.moment = wrench.moment + cross(place - origin(state, load.link).position, load.force)
+            wrench.moment = wrench.moment + cross(place - state.origin(load.link).position, load.force)
         wrench.moment = wrench.moment + load.moment
     return found
 

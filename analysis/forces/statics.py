@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, origin, output_rate
+from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.forces.virtual_motion import virtual_motion
 from grashof.analysis.mechanism.kinematics import Kinematics
+from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 
@@ -163,7 +163,7 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
         power = power + outside[link].moment * virtual.angular(link)[1]
     for link in moving_origins(state.linkage):
         if outside[link].force.any():
-            power = power + (outside[link].force * origin(virtual, link).velocity).sum(axis=-1)
+            power = power + (outside[link].force * virtual.origin(link).velocity).sum(axis=-1)
     moments = known_joint_moments(state, loads)
     for joint in Joint:
         if moments[joint].any():

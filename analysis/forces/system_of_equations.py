@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, origin, slide_direction, slide_normal, slide_of
+from grashof.analysis.forces.joints import Joint, slide_direction, slide_normal, slide_of
 from grashof.analysis.forces.loads import Loads, cross, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
@@ -99,7 +99,7 @@ def system_of_equations(
     outside = wrenches(state, loads)
     a, b = state.a.position, state.b.position
     slide, along = slide_of(linkage), slide_direction(state)
-    on_ground = b if slide is Joint.O4 else origin(state, 4).position
+    on_ground = b if slide is Joint.O4 else state.origin(4).position
     joints = {2: (linkage.o2, a), 3: (a, b), 4: (b, on_ground)}
     turning, rubbing = joint_moments.copy(), np.zeros((*state.shape, 9))
     if slide is not None:  # its friction is a force, known, on link 4 along the slide
@@ -118,7 +118,7 @@ def system_of_equations(
             matrix[..., row + 2, column] = -sign * arm[..., 1]
             matrix[..., row + 2, column + 1] = sign * arm[..., 0]
         mass, force = np.asarray(body.mass)[..., None], outside[link].force
-        known = outside[link].moment - cross(centre.position - origin(state, link).position, force)
+        known = outside[link].moment - cross(centre.position - state.origin(link).position, force)
         right_side[..., row : row + 2] = mass * (centre.acceleration - gravity) - force
         right_side[..., row + 2] = body.inertia * alpha - known - couples[link]
     matrix[..., 2, 8] = 1

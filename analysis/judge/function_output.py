@@ -53,7 +53,7 @@ def output_error(
     of the driver.
     """
     state = solve_position(linkage, begun.theta2 + begun.direction * turned)
-    found: FloatArray = moved_output(linkage, task, state, begun.direction) - sense * task.output(turned)
+    found: FloatArray = moved_output(task, state, begun.direction) - sense * task.output(turned)
     return found
 
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import FunctionTask, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -42,11 +41,11 @@ class Beginning:
 
 
 def moved_output(
-    linkage: Linkage, task: FunctionTask, state: Position, direction: int, *, unwrapped: bool = True
+    task: FunctionTask, state: Position, direction: int, *, unwrapped: bool = True
 ) -> FloatArray:
     """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
     if task.travels:
-        return slide_travel(linkage, state)
+        return state.travel
     moved: FloatArray = way_of(task, direction) * (np.unwrap(state.theta4) if unwrapped else state.theta4)
     return moved
 
@@ -142,7 +141,7 @@ class _Search:
         task = self.task
         turned = task.inputs if self.squares else np.linspace(*task.span, samples)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
-        moved = moved_output(self.linkage, task, state, direction, unwrapped=not self.squares)
+        moved = moved_output(task, state, direction, unwrapped=not self.squares)
         wanted = task.outputs if self.squares else task.output(turned)
         best = np.full(len(starts), np.inf)
         for sense in self.senses:
@@ -214,10 +213,10 @@ class _Search:
         way = way_of(self.task, direction)
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.inputs)
-            rate = kind_of(self.linkage).output_rate(self.linkage, state.theta2, state.theta3, state.theta4)
+            rate = _output_rate(self.linkage, self.task, state.theta2)
             if not np.isfinite(rate).all():  # a dead position
                 break
-            output = moved_output(self.linkage, self.task, state, direction, unwrapped=False)
+            output = moved_output(self.task, state, direction, unwrapped=False)
             off = min(
                 (_from_first(self.task, output - sense * self.task.outputs) for sense in self.senses),
                 key=lambda each: float(np.nan_to_num(share @ (each - share @ each) ** 2, nan=np.inf)),
@@ -231,6 +230,13 @@ class _Search:
                 break
             at = moved
         return at
+
+
+def _output_rate(linkage: Linkage, task: FunctionTask, theta2: FloatArray) -> FloatArray:
+    """Derivative of the output by the driver angle; not finite in dead positions."""
+    loops, frames = close(linkage.mechanism, operands_of(linkage), theta2)
+    first = move(loops, frames, STEADY, dead_below=0.0)[0][0].first
+    return first.travel if task.travels else first.turn4
 
 
 def _crest(samples: FloatArray) -> FloatArray:

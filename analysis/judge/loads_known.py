@@ -10,7 +10,6 @@ from grashof.analysis.forces.stated import TRAVEL_ROUNDING
 from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
@@ -43,7 +42,7 @@ def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterat
         return
 
     def travels(angles: FloatArray) -> FloatArray:
-        travel = slide_travel(linkage, solve_position(linkage, angles))
+        travel = solve_position(linkage, angles).travel
         return np.stack([travel, -travel])
 
     high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from grashof.analysis.curves.coupler_curve import coupler_rates
+from grashof.analysis.curves.coupler_curve import coupler_motion
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage, Task
@@ -42,20 +42,15 @@ def squares(
     angle = np.nan_to_num(task.angles[order] - linkage.body_angle)
     by_point = (task.weights * task.has_position)[order]
     by_angle = (task.weights * task.has_angle)[order] * task.angle_length**2
-    arm = complex(*linkage.coupler_point)
 
     def model(theta2: FloatArray) -> Model:
-        state = solve_position(linkage, theta2, assembly)
-        omega3, alpha3 = coupler_rates(linkage, state)
+        p, rate, bend, theta, omega, alpha = coupler_motion(linkage, theta2, assembly)
         with np.errstate(invalid="ignore", over="ignore"):
-            crank, turned = linkage.r2 * np.exp(1j * theta2), arm * np.exp(1j * state.theta3)
-            gap = state.p @ np.array([1, 1j]) - point
-            off = wrapped(state.theta3 - angle)
-            rate, bend = 1j * (crank + omega3 * turned), -crank + (1j * alpha3 - omega3**2) * turned
+            gap, off = p - point, wrapped(theta - angle)
             value = by_point * (gap.real**2 + gap.imag**2) + by_angle * off**2
-            slope = 2 * (by_point * (rate.conj() * gap).real + by_angle * omega3 * off)
-            positive = 2 * (by_point * (rate.real**2 + rate.imag**2) + by_angle * omega3**2)
-            curved = 2 * (by_point * (bend.conj() * gap).real + by_angle * alpha3 * off)
+            slope = 2 * (by_point * (rate.conj() * gap).real + by_angle * omega * off)
+            positive = 2 * (by_point * (rate.real**2 + rate.imag**2) + by_angle * omega**2)
+            curved = 2 * (by_point * (bend.conj() * gap).real + by_angle * alpha * off)
             return np.nan_to_num(value, nan=np.inf), slope, positive + curved, positive
 
     return model

@@ -9,7 +9,6 @@ import numpy as np
 
 from grashof.analysis.mechanism.mobility import rotatability
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
@@ -213,7 +212,7 @@ def planted_function(
         if np.isnan(state.theta4).any() or np.diff(inputs).min() < span / pairs / 10:
             continue
         travels = mechanism == SliderCrank.mechanism.word
-        moved = slide_travel(linkage, state) if travels else np.unwrap(state.theta4)
+        moved = state.travel if travels else np.unwrap(state.theta4)
         outputs = moved[np.searchsorted(dense, inputs)]
         if not travels and np.ptp(outputs) > TURN:
             continue

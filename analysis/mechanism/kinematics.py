@@ -5,23 +5,20 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import kind_of, way_to
-from grashof.analysis.loops.loop import Sides
+from grashof.analysis.mechanism.closing import Frame, arm_rates, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges
-from grashof.analysis.mechanism.position import sides
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind, Mechanism
 
-# Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
-# angle or of a length changes the velocities by more than a tenth.
-_DEAD = 1e-7
+_NOWHERE = np.zeros(()), np.zeros(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,44 +64,67 @@ class SlideMotion:
     jerk: FloatArray
 
 
+class Turning(NamedTuple):
+    """Angle of a link and its derivatives, each of shape (...), rad over s^0 to s^3."""
+
+    theta: FloatArray
+    omega: FloatArray
+    alpha: FloatArray
+    jerk: FloatArray
+
+
+class _Of:
+    """One of the angles of a link as an attribute: theta2, omega3, ..."""
+
+    def __init__(self, link: int, order: int) -> None:
+        self.link, self.order = link, order
+
+    def __get__(self, state: Kinematics | None, _: object = None) -> FloatArray:
+        if state is None:
+            raise AttributeError("a state has angles, its class has none")
+        return state.angular(self.link)[self.order]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
     """How every link turns, for each driver angle; NaN where the linkage cannot close.
 
-    At a dead position the rates of links 3 and 4 are infinite; NaN where even their sign is open,
-    as with a driver at rest.
+    At a dead position the rates of the links of its loop are infinite; NaN where even their sign is open,
+    as with a driver at rest, or of a second loop that hangs on the first.
 
     Parameters
     ----------
     linkage : Linkage
-    theta2, theta3, theta4 : ndarray, shape (...), rad
-        Directions of links 2, 3 and 4, of a four-bar O2->A, A->B, O4->B; theta3 and theta4 in [-pi, pi].
-    omega2, omega3, omega4 : ndarray, shape (...), rad/s
-    alpha2, alpha3, alpha4 : ndarray, shape (...), rad/s^2
-    jerk2, jerk3, jerk4 : ndarray, shape (...), rad/s^3
-    slide : SlideMotion, optional
-        None of a linkage without a slide.
+    turning : tuple of Turning
+        Of links 2, 3, ...: directions, velocities, accelerations and jerks. They have names, too: theta2 to
+        theta6 (directions of O2->A, A->B, O4->B, C->E, D->E; all but theta2 in [-pi, pi]), omega2, alpha2,
+        jerk2 and so on. Of a slider theta is the direction across its slide, to its left.
+    slides : tuple of SlideMotion or None
+        One for each loop.
+    margins : tuple of ndarray, shape (...)
+        Of each loop the sine of its transmission angle with the sign of the assembly; 0 in dead positions.
     """
 
     linkage: Linkage
-    theta2: FloatArray
-    theta3: FloatArray
-    theta4: FloatArray
-    omega2: FloatArray
-    omega3: FloatArray
-    omega4: FloatArray
-    alpha2: FloatArray
-    alpha3: FloatArray
-    alpha4: FloatArray
-    jerk2: FloatArray
-    jerk3: FloatArray
-    jerk4: FloatArray
-    slide: SlideMotion | None = None
+    turning: tuple[Turning, ...]
+    slides: tuple[SlideMotion | None, ...]
+    margins: tuple[FloatArray, ...]
+
+    theta2, omega2, alpha2, jerk2 = _Of(2, 0), _Of(2, 1), _Of(2, 2), _Of(2, 3)
+    theta3, omega3, alpha3, jerk3 = _Of(3, 0), _Of(3, 1), _Of(3, 2), _Of(3, 3)
+    theta4, omega4, alpha4, jerk4 = _Of(4, 0), _Of(4, 1), _Of(4, 2), _Of(4, 3)
+    theta5, omega5, alpha5, jerk5 = _Of(5, 0), _Of(5, 1), _Of(5, 2), _Of(5, 3)
+    theta6, omega6, alpha6, jerk6 = _Of(6, 0), _Of(6, 1), _Of(6, 2), _Of(6, 3)
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Axes of the linkages and driver angles together."""
         return np.shape(self.theta3)
+
+    @property
+    def slide(self) -> SlideMotion | None:
+        """Of the first loop that has one; None of a linkage without a slide."""
+        return next((slide for slide in self.slides if slide is not None), None)
 
     @property
     def a(self) -> PointMotion:
@@ -114,22 +134,39 @@ class Kinematics:
     @property
     def b(self) -> PointMotion:
         """B, as a point of link 4."""
-        return self.point(4, _along(kind_of(self.linkage).b_from(self.linkage)))
+        return self._end(4)
+
+    @property
+    def c(self) -> PointMotion:
+        """Joint C of a six-bar."""
+        return self.origin(5)
+
+    @property
+    def d(self) -> PointMotion:
+        """Joint D of a six-bar without a slide."""
+        return self.origin(6)
+
+    @property
+    def e(self) -> PointMotion:
+        """Joint E of a six-bar."""
+        return self._end(6)
 
     @property
     def p(self) -> PointMotion:
         """Coupler point P."""
-        return self.point(3, self.linkage.coupler_point)
+        return self.point(self.linkage.mechanism.carries, self.linkage.coupler_point)
 
-    def angular(self, link: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Angle of link 2, 3 or 4, its velocity, acceleration and jerk, each of shape (...)."""
-        _check_link(link)
-        return (
-            getattr(self, f"theta{link}"),
-            getattr(self, f"omega{link}"),
-            getattr(self, f"alpha{link}"),
-            getattr(self, f"jerk{link}"),
-        )
+    def angular(self, link: int) -> Turning:
+        """Angle of a moving link, its velocity, acceleration and jerk."""
+        if not 2 <= link < 2 + len(self.turning):
+            names = [f"{each.number} ({each.name})" for each in self.linkage.mechanism.links[1:]]
+            raise wrong_value("link", link, f"{', '.join(names[:-1])} or {names[-1]}")
+        return self.turning[link - 2]
+
+    def frame_angle(self, link: int) -> FloatArray:
+        """Direction of the u-axis of a link's frame, shape (...), rad: of a slider along its slide."""
+        theta = self.angular(link).theta
+        return theta - np.pi / 2 if _is_slider(self.linkage, link) else theta
 
     def point(self, link: int, at: npt.ArrayLike) -> PointMotion:
         """Motion of a point carried by a link.
@@ -137,10 +174,11 @@ class Kinematics:
         Parameters
         ----------
         link : int
-            2, 3 or 4.
+            1 (the ground, whose frame is the global one) to 4, of a six-bar to 6.
         at : array_like, shape (..., 2), length
-            (u, v) in the link's frame: origin O2, A or O4, u towards A, B or B, v to its left. The frame of
-            a slider begins in B, u along its slide; that of a block in O4, u along theta4.
+            (u, v) in the link's frame: origin O2, A, O4, C or D, u towards A, B, B, E or E, v to its
+            left. The frame of a slider begins in B or E, u along its slide; that of a block in O4, u along
+            theta4.
 
         Returns
         -------
@@ -162,15 +200,46 @@ class Kinematics:
         at = np.asarray(at, dtype=np.float64)
         if at.shape[-1:] != (2,):
             raise ProblemError(f"at has shape {at.shape}; it must be (..., 2)")
+        return PointMotion(*self._carried(link, at))
+
+    def _carried(self, link: int, at: FloatArray) -> FloatArray:
+        """A point and its three derivatives, shape (4, ..., 2)."""
+        if link == 1:
+            return np.stack([at, *(np.zeros(at.shape) for _ in range(3))])
         turning = self.angular(link)
-        if link == 4:
-            turning = (kind_of(self.linkage).direction4(self.linkage, self.theta4), *turning[1:])
-        carried = _carried(at, turning)
-        pivot, way = way_to(self.linkage, link)
-        for before, length in way:
-            carried = carried + _carried(_along(length), self.angular(before))
-        carried[0] += pivot
-        return PointMotion(*carried)
+        carried = _arm(at, (self.frame_angle(link), *turning[1:]))
+        host, origin = self._begins(link)
+        if host == 1:
+            carried[0] += origin
+            return carried
+        return carried + self._carried(host, origin)
+
+    def _begins(self, link: int) -> tuple[int, FloatArray]:
+        """The link that carries the origin of a link's frame, and where on it that is."""
+        linkage = self.linkage
+        if link == 2:
+            return 1, linkage.o2
+        if link == 3:
+            return 2, _along(linkage.r2)
+        loop = (link - 3) // 2
+        dyad = linkage.mechanism.dyads[loop]
+        if link % 2:
+            return dyad.hosts[0], getattr(linkage, LOOP_POINTS[loop][0])
+        if dyad.kind is DyadKind.RRP:
+            return link - 1, _along(getattr(linkage, f"r{link - 1}"))
+        return dyad.hosts[1], getattr(linkage, LOOP_POINTS[loop][1])
+
+    def origin(self, link: int) -> PointMotion:
+        """How the origin of a link's frame moves; of the ground O2."""
+        return self.point(1, self.linkage.o2) if link == 1 else self.point(*self._begins(link))
+
+    def _end(self, link: int) -> PointMotion:
+        """B or E, as a point of the second link of a dyad."""
+        kind = self.linkage.mechanism.dyads[link // 2 - 2].kind
+        ending = "" if link == 4 else "_2"
+        names = {DyadKind.RRR: f"r{link}", DyadKind.RPR: f"offset{ending}"}
+        far = getattr(self.linkage, names[kind]) if kind in names else np.zeros(())
+        return self.point(link, _along(far))
 
 
 def solve_kinematics(
@@ -210,8 +279,8 @@ def solve_kinematics(
 
     Notes
     -----
-    The equations of the loop, differentiated, are two linear ones for each derivative; their formulas are
-    in `grashof.analysis.loops`, a file each kind (Norton, *Design of Machinery*, secs. 6.7, 7.3).
+    The equations of a loop, differentiated, are two linear ones for each derivative; their formulas are
+    in `grashof.analysis.mechanism.dyad` (Norton, *Design of Machinery*, secs. 6.7, 7.3).
 
     Examples
     --------
@@ -222,41 +291,55 @@ def solve_kinematics(
     [-4.120914, 6.997985, 296.089193, 470.13353]
     """
     driver = [np.asarray(value, dtype=np.float64) for value in (theta2, omega2, alpha2, jerk2)]
-    loop_sides = sides(linkage, assembly)
-    slides = kind_of(linkage).slides
-    solved = in_blocks(_solution(type(loop_sides)), [*map(np.asarray, loop_sides), *driver], 9 + 4 * slides)
-    *rates, dead = solved
-    shape = dead.shape
+    kind, operands = linkage.mechanism, operands_of(linkage, assembly)
+    slides = [dyad.slides for dyad in kind.dyads]
+    solved = in_blocks(
+        _solution(kind, len(operands)), [*operands, *driver], 10 * len(slides) + 4 * sum(slides)
+    )
+    shape = solved.shape[1:]
     theta2, omega2, alpha2, jerk2 = (np.broadcast_to(value, shape)[()] for value in driver)
-    if not shape and np.isnan(rates[0]):
-        raise AssemblyError(_cannot_close(linkage, float(theta2)))
-    if dead.any():
-        _warn_of(theta2, dead > 0, kind_of(linkage).dead)
-    theta3, theta4, omega3, omega4, alpha3, alpha4, jerk3, jerk4, *slide = (rate[()] for rate in rates)
-    return Kinematics(
-        linkage, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4, jerk2, jerk3, jerk4,
-        SlideMotion(*slide) if slides else None,
-    )  # fmt: skip
+    turning, motions, margins, rows = [Turning(theta2, omega2, alpha2, jerk2)], [], [], iter(solved)
+    for has_slide, dyad in zip(slides, kind.dyads, strict=True):
+        three, four = (Turning(*(next(rows)[()] for _ in range(4))) for _ in range(2))
+        dead = next(rows) > 0
+        margins.append(next(rows)[()])
+        turning += [three, four]
+        motions.append(SlideMotion(*(next(rows)[()] for _ in range(4))) if has_slide else None)
+        if not shape and np.isnan(three.theta):
+            raise AssemblyError(_cannot_close(linkage, float(theta2)))
+        if dead.any():
+            _warn_of(theta2, dead, _WHY_DEAD[dyad.kind])
+    return Kinematics(linkage, tuple(turning), tuple(motions), tuple(margins))
 
 
-def _solution(kind: type[Any]) -> Callable[..., tuple[FloatArray, ...]]:
-    """Angles, velocities, accelerations, jerks of links 3 and 4, those of a slide, and 1 where it is dead."""
-    parts = len(kind._fields)
+_WHY_DEAD = {
+    DyadKind.RRR: "coupler and output lie in one line",
+    DyadKind.RRP: "the rod stands square to the slide",
+    DyadKind.RPR: "the block is at A",
+}
 
-    def solve(*operands: FloatArray) -> tuple[FloatArray, ...]:
-        loop_sides: Sides = kind(*operands[:parts])
-        theta2, *driver = operands[parts:]
-        loop = loop_sides.close(theta2)
-        dead = np.abs(loop.sine) <= _DEAD
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            rates = loop_sides.rates(loop, dead, *driver)
-        theta3, theta4 = np.arctan2(loop.sin3, loop.cos3), np.arctan2(loop.sin4, loop.cos4)
-        return theta3, theta4, *rates, dead.astype(np.float64)
+
+def _solution(kind: Mechanism, count: int) -> Callable[..., list[FloatArray]]:
+    """Of each loop: angles and rates of its links, 1 where dead, its margin; travel and rates of a slide."""
+
+    def solve(*operands: FloatArray) -> list[FloatArray]:
+        theta2, omega2, alpha2, jerk2 = operands[count:]
+        loops, frames = close(kind, operands[:count], theta2)
+        found: list[FloatArray] = []
+        for loop, moved in zip(loops, move(loops, frames, (omega2, alpha2, jerk2))[0], strict=True):
+            orders, (theta3, theta4) = (moved.first, moved.second, moved.third), loop.angles
+            found += [theta3, *(order.turn3 for order in orders)]
+            found += [theta4, *(order.turn4 for order in orders)]
+            found += [moved.dead.astype(np.float64), loop.closed.margin]
+            if loop.placed.row.slides:
+                travel = loop.placed.sizes.travel(loop.closed, *loop.gap)
+                found += [travel, *(order.travel for order in orders)]
+        return found
 
     return solve
 
 
-def _carried(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
+def _arm(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
     """A vector fixed in a link, and its first three derivatives; shape (4, ..., 2)."""
     operands = [np.asarray(operand) for operand in (at[..., 0], at[..., 1], *angular)]
     arms = in_blocks(_turned, operands, 8)
@@ -266,15 +349,10 @@ def _carried(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
 def _turned(
     u: FloatArray, v: FloatArray, theta: FloatArray, omega: FloatArray, alpha: FloatArray, jerk: FloatArray
 ) -> tuple[FloatArray, ...]:
-    cosine, sine = np.cos(theta), np.sin(theta)
-    x, y = u * cosine - v * sine, u * sine + v * cosine
-    square = omega * omega
+    arm = x, y = Frame(np.cos(theta), np.sin(theta), *_NOWHERE).arm((u, v))
     with np.errstate(invalid="ignore", over="ignore"):
-        turn, pull = jerk - square * omega, 3 * omega * alpha
-        arms = (
-            x, y, -omega * y, omega * x, -alpha * y - square * x, alpha * x - square * y,
-            -turn * y - pull * x, turn * x - pull * y,
-        )  # fmt: skip
+        first, second, third = arm_rates(arm, omega, alpha, jerk)
+        arms = (x, y, *first, *second, *third)
         dead = ~np.isfinite(jerk) & np.isfinite(theta)
         if np.any(dead):  # the fastest growing terms alone, and nothing where there is no arm
             leading = (-alpha * y, alpha * x, -jerk * y, jerk * x)
@@ -287,9 +365,9 @@ def _along(length: FloatArray) -> FloatArray:
     return np.stack([length, np.zeros_like(length)], axis=-1)
 
 
-def _check_link(link: int) -> None:
-    if link not in (2, 3, 4):
-        raise wrong_value("link", link, "2 (driver), 3 (coupler) or 4 (output)")
+def _is_slider(linkage: Linkage, link: int) -> bool:
+    """Whether a link is the slider of its dyad."""
+    return link % 2 == 0 and link > 2 and linkage.mechanism.dyads[link // 2 - 2].kind is DyadKind.RRP
 
 
 def _warn_of(theta2: FloatArray, dead: BoolArray, why: str) -> None:

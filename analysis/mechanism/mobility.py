@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.loops.loop import CHANGE, GrashofClass
-from grashof.analysis.mechanism.position import close_loop, sides
+from grashof.analysis.mechanism.closing import close, operands_of
 from grashof.problems import FourBar, Linkage
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
@@ -184,7 +184,8 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
     """
     scale = max(abs(low), abs(high), 1.0)
     places = np.array([[low], [high]]) + np.array([[-scale], [scale]]) * _OUTWARDS
-    dead = close_loop(sides(linkage), places).sine == 0
+    loops, _ = close(linkage.mechanism, operands_of(linkage), places)
+    dead = np.any([loop.closed.margin == 0 for loop in loops], axis=0)
     first = np.where(dead.any(axis=1), dead.argmax(axis=1), 0)
     return float(places[0, first[0]]), float(places[1, first[1]])
 

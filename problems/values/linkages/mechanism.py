@@ -60,7 +60,7 @@ class Joint:
 
 
 # Names of the points C, D and E of each dyad of a linkage, and of its two links where they are bars.
-_POINTS = (("a", "o4", "b"), ("c", "d", "e"))
+LOOP_POINTS = (("a", "o4", "b"), ("c", "d", "e"))
 _NAMES = (("coupler", "output"), ("coupler-2", "output-2"))
 
 
@@ -97,7 +97,7 @@ class Mechanism:
         names = {1: "ground", 2: "driver"}
         for (first, second), dyad in self._numbered():
             index = first // 2 - 1
-            (c, d, e), (names[first], names[second]) = _POINTS[index], _NAMES[index]
+            (c, d, e), (names[first], names[second]) = LOOP_POINTS[index], _NAMES[index]
             points[first] = [c, e] if dyad.kind is not DyadKind.RPR else [c]
             points[second] = [e] if dyad.kind is DyadKind.RRP else [d, e]
             if dyad.slides:
@@ -156,7 +156,7 @@ class Mechanism:
         """The pins and slides, in the order of arrays that have an axis for them: three of a dyad."""
         found = [Joint("O2", (1, 2))]
         for (first, second), dyad in self._numbered():
-            c, d, e = (name.upper() for name in _POINTS[first // 2 - 1])
+            c, d, e = (name.upper() for name in LOOP_POINTS[first // 2 - 1])
             found.append(Joint(c, (dyad.hosts[0], first)))
             found.append(Joint(e, (first, second), slides=dyad.kind is DyadKind.RPR))
             found.append(Joint(d, (dyad.hosts[1], second), slides=dyad.kind is DyadKind.RRP))

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 
@@ -42,8 +41,8 @@ def slide_points(linkage: Linkage, state: Position, travel: Travel) -> dict[str,
         over, half = float(linkage.coupler_point[0]), half_block(linkage)
         ends = np.stack(
             [
-                np.minimum(slide_travel(linkage, state), travel.low),
-                np.maximum(slide_travel(linkage, state), travel.high),
+                np.minimum(state.travel, travel.low),
+                np.maximum(state.travel, travel.high),
             ]
         )
         low = np.where(ends[0] < 0, ends[0] - half, 0.0)

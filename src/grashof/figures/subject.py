@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position, verify
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.figures.slides import Travel
 from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
@@ -75,7 +74,7 @@ class Subject:
         """How far its slide goes; NaN where it has none."""
         if not self.linkage.mechanism.slides:
             return Travel(np.nan, np.nan)
-        far = [slide_travel(self.linkage, solve_position(self.linkage, each)) for each in self.sweep.angles()]
+        far = [solve_position(self.linkage, each).travel for each in self.sweep.angles()]
         every = np.concatenate(far)
         return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
 

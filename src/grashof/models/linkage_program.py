@@ -8,7 +8,6 @@ from typing import cast
 import numpy as np
 
 from grashof.analysis import solve_position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import InvertedSliderCrank, ProblemError, SliderCrank
@@ -85,9 +84,9 @@ def _rpm(model: Model) -> float:
 def _guide(model: Model) -> FloatArray:
     """Ends of a guide that is somewhat longer than the way of B, shape (2, 2)."""
     state = solve_position(model.linkage, np.linspace(model.low, model.high, 721))
-    travel = slide_travel(model.linkage, state)
+    travel = state.travel
     low, high = float(np.nanmin(travel)), float(np.nanmax(travel))
     ends = np.array([low, high]) + _LONGER * (high - low) * np.array([-1, 1])
     angle = float(cast(SliderCrank, model.linkage).slide_angle)
     along = np.array([np.cos(angle), np.sin(angle)])
-    return model.first.b + np.outer(ends - slide_travel(model.linkage, model.first), along)
+    return model.first.b + np.outer(ends - model.first.travel, along)

@@ -9,7 +9,6 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
@@ -148,7 +147,7 @@ def _four_bar(model: Model) -> tuple[list[_Link], _Loop]:
 
 def _slider_crank(model: Model) -> tuple[list[_Link], _Loop]:
     linkage, at = cast(SliderCrank, model.linkage), model.first
-    slide = _Joint("slide", float(slide_travel(linkage, at)), (1, 0, 0), "slide")
+    slide = _Joint("slide", float(at.travel), (1, 0, 0), "slide")
     slider = _Link(4, at.b, float(linkage.slide_angle), slide, {})
     return [_crank(model, _coupler(model)), slider], _Loop(3, 4, np.array([float(linkage.r3), 0.0]))
 
@@ -156,7 +155,7 @@ def _slider_crank(model: Model) -> tuple[list[_Link], _Loop]:
 def _inverted(model: Model) -> tuple[list[_Link], _Loop]:
     """The rod hangs on the block, and the loop closes in A."""
     linkage, at = cast(InvertedSliderCrank, model.linkage), model.first
-    travel = float(slide_travel(linkage, at))
+    travel = float(at.travel)
     slide = _Joint("slide", travel, (-1, 0, 0), "slide")
     points = {"P": linkage.coupler_point, "B": np.array([travel, 0.0])}
     rod = _Link(3, np.array([float(linkage.offset), travel]), -np.pi / 2, slide, points)

@@ -23,7 +23,7 @@ LIMIT_POSITIONS = {
 }
 
 
-def joints_with_forces(kind: Mechanism) -> dict[str, tuple[int, ...]]:
+def joints_with_forces(kind: Mechanism) -> dict[str, tuple[int, int]]:
     """The joints in which links press on each other, slides among them, with the numbers of the links."""
     pins = {name.upper(): links for name, links in kind.joints.items()}
     return pins | ({"slide": kind.slides[0]} if kind.slides else {})

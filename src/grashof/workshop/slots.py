@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 
 from grashof.analysis import output_stroke, solve_position
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
@@ -29,7 +28,7 @@ def slot_ends(linkage: Linkage, ranges: Iterable[tuple[float, float]], sizes: Pl
     for low, high in ranges:
         inside = low + (np.ravel([turns, np.asarray(turns) + np.pi]) - low) % (2 * np.pi)
         theta2 = np.append(np.linspace(low, high, _SAMPLES), inside[inside <= high])
-        found.append(slide_travel(linkage, solve_position(linkage, theta2)))
+        found.append(solve_position(linkage, theta2).travel)
     every = np.concatenate(found)
     return np.array([np.nanmin(every) - sizes.gap / 2, np.nanmax(every) + sizes.gap / 2])
 

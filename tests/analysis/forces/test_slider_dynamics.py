@@ -27,7 +27,7 @@ from grashof.analysis import (
     virtual_work_torque,
 )
 from grashof.analysis.forces.bars import bars_of
-from grashof.analysis.forces.joints import frame_angle, joint_motion, margin, origin, slide_of
+from grashof.analysis.forces.joints import joint_motion, slide_of
 from grashof.analysis.forces.loads import cross, wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, ProblemError, SliderCrank
 from grashof.problems.values.dynamics.motor import MotorSpec
@@ -144,7 +144,7 @@ def test_every_link_and_the_whole_are_in_balance(
             total = sum(force for _, force in forces) + weight + outside[link].force
             momentum = np.asarray(body.mass)[..., None] * centre.acceleration
             np.testing.assert_allclose(total, momentum, rtol=0, atol=1e-10 * scale)
-            start = origin(state, link).position
+            start = state.origin(link).position
             turning = couple + outside[link].moment + cross(start - o2, outside[link].force)
             turning = turning + cross(centre.position - o2, weight)
             turning = turning + sum(cross(place - o2, force) for place, force in forces)
@@ -256,10 +256,10 @@ def test_frames_of_links_are_those_of_their_points(kind: type[Linkage], made: Ma
         state = state_of(linkage)
         for link in (2, 3, 4):
             start, end = (state.point(link, at).position for at in ((0.0, 0.0), (1.0, 0.0)))
-            angle = frame_angle(state, link)
+            angle = state.frame_angle(link)
             np.testing.assert_allclose(end - start, np.stack([np.cos(angle), np.sin(angle)], -1), atol=1e-14)
-            np.testing.assert_allclose(start + np.zeros_like(end), origin(state, link).position + 0 * end)
-        assert (margin(state) * linkage.assembly > 0).all()
+            np.testing.assert_allclose(start + np.zeros_like(end), state.origin(link).position + 0 * end)
+        assert (state.margins[0] * linkage.assembly > 0).all()
 
 
 def test_masses_of_bars_sliders_blocks_and_rods(slider_loads: Specs) -> None:

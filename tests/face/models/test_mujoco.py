@@ -6,7 +6,6 @@ import pytest
 
 from grashof.analysis import full_rotation, solve_kinematics, solve_position
 from grashof.analysis.forces.energy import energies
-from grashof.analysis.mechanism.slide import slide_travel
 from grashof.models import Model, mjcf
 from grashof.problems import LinkageSpec, SliderCrank
 
@@ -30,7 +29,7 @@ def apart(model: Model, joints: dict[str, float]) -> float:
     found = [wrapped(joints["O2"] + joints["A"] - at.theta3)] if "A" in joints else []
     found += [wrapped(joints["O4"] - at.theta4)] if "O4" in joints else []
     if "slide" in joints:
-        travel = float(slide_travel(model.linkage, at))
+        travel = float(at.travel)
         found.append((joints["slide"] / model.metre - travel) / float(model.linkage.lengths.max()))
     return float(np.abs(found).max())
 
@@ -63,7 +62,7 @@ def test_it_has_the_energy_of_the_linkage(model: Model) -> None:
     speeds = {"O2": state.omega2, "A": state.omega3 - state.omega2, "O4": state.omega4}
     step = 1e-6
     beside = solve_position(model.linkage, model.start + np.array([-step, step]))
-    rate = float(np.diff(slide_travel(model.linkage, beside))[0]) / (2 * step) * model.omega2
+    rate = float(np.diff(beside.travel)[0]) / (2 * step) * model.omega2
     speeds["slide"] = rate * model.metre
     for number, name in enumerate(names(made)):
         data.qvel[number] = float(speeds[name])

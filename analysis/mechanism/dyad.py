@@ -1,0 +1,313 @@
+"""Dyads: how two links close the gap between two others, and how they move. One body of each formula.
+
+A dyad closes the gap w from C to D. It has two unknowns q and two equations gap(q) = w, whose matrix J is the
+derivative of the gap: J dq = dw, and so on. The determinant of J over its size is the margin, the sine of the
+transmission angle with the sign of the assembly. The links are called 3 and 4 here, as in the first loop; of
+a second dyad they are links 5 and 6. Each kind has the same methods:
+
+- `place`: the dyad where its gap is (x, y); `travel`: how far its slide has gone then.
+- `solve`: J^-1 (x, y) times `scale`, with `inverse` = `scale` over the margin. A scale of 1 gives rates, one
+  of the margin what stays finite in dead positions.
+- `rest`: what the second derivative of the gap has besides J times that of q; with `second` the third one,
+  which then gives third derivatives of q less the cubes of the angular velocities.
+- `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
+- `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
+- `transmission`: the angle in [0, pi] at a gap; NaN where the dyad is open.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import DyadKind
+
+EPS = float(np.finfo(np.float64).eps)
+ROUNDING = 8 * EPS  # share of lengths
+Vector: TypeAlias = tuple[FloatArray, FloatArray]
+_NONE = np.zeros(())
+
+
+class Closed(NamedTuple):
+    """A closed dyad, each of shape (...); NaN where the gap is too wide or too narrow, but for the reach.
+
+    Directions of link 3 and of link 4 (of a slider across its slide, to its left); the margin, which keeps
+    its digits near a dead position; the length from C along link 3 to E.
+    """
+
+    cos3: FloatArray
+    sin3: FloatArray
+    cos4: FloatArray
+    sin4: FloatArray
+    margin: FloatArray
+    reach: FloatArray
+
+
+class Solved(NamedTuple):
+    """What J makes of a vector: turns of links 3 and 4, and the travel of a slide, each of shape (...)."""
+
+    turn3: FloatArray
+    turn4: FloatArray
+    travel: FloatArray
+
+
+class Pins(NamedTuple):
+    """RRR: bars m from C to E, n from D to E; gap m e3 - n e4. The margin is sin(theta4 - theta3)."""
+
+    m: FloatArray
+    n: FloatArray
+    sign: FloatArray
+    rounding: FloatArray
+
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+        """E is an intersection of the circles about C and D (Norton, *Design of Machinery*, sec. 4.5).
+
+        Its distance from the line C-D comes from Heron's product, which keeps its digits near the dead
+        positions where the usual m^2 - x^2 loses them.
+        """
+        m, n, sign, rounding = self
+        square = x * x + y * y
+        product = ((m + n) ** 2 - square) * (square - (m - n) ** 2)
+        if np.any(product < 0):
+            apart = np.sqrt(square)
+            past = np.abs(apart - np.clip(apart, np.abs(m - n), m + n))
+            product = np.where((product < 0) & (past <= rounding), 0.0, product)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            half = 0.5 / square
+            root = sign * np.sqrt(product)
+            along, beside = 0.5 + (m - n) * (m + n) * half, root * half
+            x3, y3 = along * x - beside * y, along * y + beside * x
+            return Closed(x3 / m, y3 / m, (x3 - x) / n, (y3 - y) / n, root / (2 * m * n), m)
+
+    def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:  # noqa: ARG002
+        """None."""
+        return np.full(np.shape(closed.margin), np.nan)
+
+    def solve(
+        self,
+        closed: Closed,
+        x: FloatArray,
+        y: FloatArray,
+        inverse: FloatArray,
+        scale: FloatArray,  # noqa: ARG002
+    ) -> Solved:
+        """Crossing both sides with e4 or e3 leaves one unknown each (Norton, sec. 6.7)."""
+        cos3, sin3, cos4, sin4, *_ = closed
+        turn3 = (x * cos4 + y * sin4) * (inverse / self.m)
+        return Solved(turn3, (x * cos3 + y * sin3) * (inverse / self.n), _NONE)
+
+    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
+        """-v3^2 m e3 + v4^2 n e4; of third order with -3 v a (and i v^3, which the caller keeps apart)."""
+        cos3, sin3, cos4, sin4, *_ = closed
+        if second is None:
+            pull3, pull4 = self.m * first.turn3**2, self.n * first.turn4**2
+        else:
+            pull3 = 3 * self.m * first.turn3 * second.turn3
+            pull4 = 3 * self.n * first.turn4 * second.turn4
+        return pull4 * cos4 - pull3 * cos3, pull4 * sin4 - pull3 * sin3
+
+    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+        """With s the margin and `same` = cos(theta4 - theta3) = +-1 omega goes like 1/s, alpha like 1/s^3.
+
+        The jerk, the rate of alpha, goes like -3 s'/s^4.
+        """
+        m, n, sign, _ = self
+        same = np.sign(closed.cos4 * closed.cos3 + closed.sin4 * closed.sin3)
+        bend3, bend4 = same / m - 1 / n, 1 / m - same / n
+        size3, size4 = np.abs(first.turn3), np.abs(first.turn4)
+        # m omega3 and n omega4 agree up to `same`; their difference decides the sign of s'.
+        closing = same * np.sign(first.turn4) * (1 / n - same / m)
+        second = Solved(sign * bend3 * size3, sign * bend4 * size4, _NONE)
+        return second, Solved(-bend3 * closing * size3, -bend4 * closing * size4, _NONE)
+
+    def sizes(self, closed: Closed) -> dict[str, Vector]:
+        """-e3 and e4."""
+        return {"m": (-closed.cos3, -closed.sin3), "n": (closed.cos4, closed.sin4)}
+
+    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Law of cosines in C-E-D in its half-angle form, which keeps its digits near 0 and pi."""
+        return self.transmission_at(np.hypot(x, y))
+
+    def transmission_at(self, apart: FloatArray) -> FloatArray:
+        """The same at a distance of C from D."""
+        least, most = np.abs(self.m - self.n), self.m + self.n
+        rounding = ROUNDING * (apart + most)
+        with np.errstate(invalid="ignore"):
+            near, far = _from_zero(apart - least, rounding), _from_zero(most - apart, rounding)
+            return 2 * np.arctan2(np.sqrt(near * (apart + least)), np.sqrt(far * (most + apart)))
+
+
+class Slider(NamedTuple):
+    """RRP: a bar m from C to E, which slides on a line with the direction e, at an offset from D.
+
+    Gap m e3 - (s + i offset) e. The margin is cos(theta3 - slide).
+    """
+
+    m: FloatArray
+    offset: FloatArray
+    ex: FloatArray
+    ey: FloatArray
+    sign: FloatArray
+    rounding: FloatArray
+
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+        """With h from C to the slide, to its left, m sin(theta3 - slide) = h (Norton, sec. 4.6).
+
+        The cosine comes from the product (m - h)(m + h), which keeps its digits near the dead positions.
+        """
+        m, _, ex, ey, sign, rounding = self
+        h = self._height(x, y)
+        product = (m - h) * (m + h)
+        if np.any(product < 0):
+            past = np.abs(h) - m
+            product = np.where((product < 0) & (past <= rounding), 0.0, product)
+        with np.errstate(invalid="ignore"):
+            margin = sign * np.sqrt(product) / m
+            beside = np.where(np.isnan(margin), np.nan, h / m)
+            cos3, sin3 = margin * ex - beside * ey, margin * ey + beside * ex
+            open_ = np.isnan(margin)
+            return Closed(cos3, sin3, np.where(open_, np.nan, -ey), np.where(open_, np.nan, ex), margin, m)
+
+    def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Of E from the foot of D on the line."""
+        return np.asarray(self.m * closed.margin - (x * self.ex + y * self.ey))
+
+    def solve(
+        self, closed: Closed, x: FloatArray, y: FloatArray, inverse: FloatArray, scale: FloatArray
+    ) -> Solved:
+        """The components across the slide, which leaves the turn, and along it."""
+        across, along = y * self.ex - x * self.ey, x * self.ex + y * self.ey
+        turn3 = across * (inverse / self.m)
+        travel = -along * scale - self.m * self._sine(closed) * turn3
+        still = np.where(np.isnan(closed.margin), np.nan, np.zeros(np.shape(turn3)))
+        return Solved(turn3, still, travel)
+
+    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
+        """-v3^2 m e3; of third order with -3 v a."""
+        pull = first.turn3**2 if second is None else 3 * first.turn3 * second.turn3
+        pull = self.m * pull
+        return -pull * closed.cos3, -pull * closed.sin3
+
+    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+        """With c the margin, S = sin(theta3 - slide) = +-1: omega is like 1/c, alpha S/c^3, the jerk 3/c^5.
+
+        Those of the slider go like -S/c, -1/c^3 and -3 S/c^5.
+        """
+        size, side = np.abs(first.turn3), np.sign(self._sine(closed))
+        second = Solved(self.sign * side * size, first.turn4, -self.sign * size)
+        return second, Solved(first.turn3, first.turn4, -side * first.turn3)
+
+    def sizes(self, closed: Closed) -> dict[str, Vector]:
+        """-e3 and i e."""
+        return {"m": (-closed.cos3, -closed.sin3), "offset": (-self.ey, self.ex)}
+
+    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Between the bar and the normal of the slide to its left, where D would be at infinity."""
+        return self.transmission_at(self._height(x, y))
+
+    def transmission_at(self, apart: FloatArray) -> FloatArray:
+        """The same where the slide is so far from C, to its left."""
+        rounding = ROUNDING * (np.abs(apart) + self.m)
+        with np.errstate(invalid="ignore"):
+            near, far = _from_zero(self.m + apart, rounding), _from_zero(self.m - apart, rounding)
+            return 2 * np.arctan2(np.sqrt(near), np.sqrt(far))
+
+    def _height(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        return np.asarray(self.offset + (y * self.ex - x * self.ey))
+
+    def _sine(self, closed: Closed) -> FloatArray:
+        """Of theta3 - slide."""
+        return np.asarray(closed.sin3 * self.ex - closed.cos3 * self.ey)
+
+
+class Block(NamedTuple):
+    """RPR: a rod from C through a block that is pinned in D, at an offset; E is the foot of D on the rod.
+
+    Gap (l - i offset) e3. The margin is l over the width of the gap.
+    """
+
+    offset: FloatArray
+    sign: FloatArray
+    rounding: FloatArray
+
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+        """With l from C along the rod to E (Norton, sec. 4.7).
+
+        l comes from the product (s - |offset|)(s + |offset|) of s = |D - C|, which keeps its digits near the
+        dead positions.
+        """
+        offset, sign, rounding = self
+        apart, away = np.hypot(x, y), np.abs(offset)
+        product = (apart - away) * (apart + away)
+        if np.any(product < 0):
+            product = np.where((product < 0) & (away - apart <= rounding), 0.0, product)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            reach = sign * np.sqrt(product)
+            cosine, sine = reach / apart, offset / apart
+            x, y = x / apart, y / apart
+            cos3, sin3 = x * cosine - y * sine, y * cosine + x * sine
+            return Closed(cos3, sin3, -sin3, cos3, cosine, reach)
+
+    def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:  # noqa: ARG002
+        """Of the rod through the block: E from C."""
+        return closed.reach
+
+    def solve(
+        self, closed: Closed, x: FloatArray, y: FloatArray, inverse: FloatArray, scale: FloatArray
+    ) -> Solved:
+        """The components across the rod, which leaves the turn, and along it."""
+        along, across = x * closed.cos3 + y * closed.sin3, y * closed.cos3 - x * closed.sin3
+        turn = across * (inverse / np.hypot(closed.reach, self.offset))
+        return Solved(turn, turn, along * scale - self.offset * turn)
+
+    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
+        """2 i l' v e3 - v^2 z, z = (l - i offset) e3; then (3 i l'' v + 3 l' (i a - v^2)) e3 - 3 v a z."""
+        turn, _, travel = first
+        if second is None:
+            pull, push, along = turn**2, 2 * travel * turn, _NONE
+        else:
+            pull = 3 * turn * second.turn3
+            push = 3 * (second.travel * turn + travel * second.turn3)
+            along = 3 * travel * turn**2
+        ahead, beside = -pull * closed.reach - along, push + pull * self.offset
+        cos3, sin3 = closed.cos3, closed.sin3
+        return ahead * cos3 - beside * sin3, ahead * sin3 + beside * cos3
+
+    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
+        """Omega goes like 1/l, alpha like offset / l^3, the jerk like 3 offset^2 / l^5.
+
+        Of the rod like -offset / l, -offset^2 / l^3 and -3 offset^3 / l^5.
+        """
+        turn, size, side = first.turn3, np.abs(first.turn3), np.sign(self.offset)
+        bend = self.sign * side * size
+        return Solved(bend, bend, -self.sign * size), Solved(turn, turn, -side * turn)
+
+    def sizes(self, closed: Closed) -> dict[str, Vector]:
+        """I e3."""
+        return {"offset": (-closed.sin3, closed.cos3)}
+
+    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Up to pi/2: its sine is l over the width of the gap, by its half angle."""
+        return self.transmission_at(np.hypot(x, y))
+
+    def transmission_at(self, apart: FloatArray) -> FloatArray:
+        """The same at a distance of C from D."""
+        away = np.abs(self.offset)
+        with np.errstate(invalid="ignore"):
+            near = _from_zero(apart - away, ROUNDING * (apart + away))
+            return 2 * np.arctan2(np.sqrt(near), np.sqrt(apart + away))
+
+
+DyadSizes: TypeAlias = Pins | Slider | Block
+DYADS: dict[DyadKind, type[Pins] | type[Slider] | type[Block]] = {
+    DyadKind.RRR: Pins,
+    DyadKind.RRP: Slider,
+    DyadKind.RPR: Block,
+}
+
+
+def _from_zero(gap: FloatArray, rounding: FloatArray) -> FloatArray:
+    """The gap, 0 where only rounding makes it less: there the position is dead."""
+    return np.where((gap < 0) & (gap >= -rounding), 0.0, gap)

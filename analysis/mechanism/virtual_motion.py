@@ -1,0 +1,53 @@
+"""Velocities that a linkage allows, with a limit in dead positions."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.mechanism.closing import close, operands_of, virtual_rates
+from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, Turning
+from grashof.problems import Linkage
+
+
+def virtual_motion(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> tuple[Kinematics, Kinematics]:
+    """Positions with velocities that the linkage allows, and the same at rest.
+
+    Parameters
+    ----------
+    linkage : Linkage
+    theta2 : array_like, shape (...), rad
+    assembly : array_like, shape (...), optional
+        Of the first loop; the linkage's own by default.
+
+    Returns
+    -------
+    moving, resting : Kinematics
+        Without accelerations.
+
+    Notes
+    -----
+    The driver turns counter-clockwise by the sine of the transmission angle, of two loops by the product of
+    both, so that the others have a limit in a dead position: the rates of `solve_kinematics` times that.
+    """
+    angle = np.asarray(theta2, dtype=np.float64)
+    loops, frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+    shape = np.shape(loops[-1].closed.margin)
+    none = np.zeros(shape)
+    omega2, rates = virtual_rates(loops, frames)
+    moving = [Turning(np.broadcast_to(angle, shape)[()], omega2, none, none)]
+    slides: list[SlideMotion | None] = []
+    for loop, solved in zip(loops, rates, strict=True):
+        turns = solved.turn3, np.broadcast_to(solved.turn4, shape)[()]
+        moving += [Turning(*each, none, none) for each in zip(loop.angles, turns, strict=True)]
+        travel = loop.placed.sizes.travel(loop.closed, *loop.gap)
+        slides.append(SlideMotion(travel, solved.travel, none, none) if loop.placed.row.slides else None)
+    resting = [Turning(each.theta, none, none, none) for each in moving]
+    still = [None if slide is None else SlideMotion(slide.travel, none, none, none) for slide in slides]
+    margins = tuple(loop.closed.margin for loop in loops)
+    return (
+        Kinematics(linkage, tuple(moving), tuple(slides), margins),
+        Kinematics(linkage, tuple(resting), tuple(still), margins),
+    )
