@@ -77,7 +77,7 @@ from grashof.analysis.judge.driven import cylinder_forces
 from grashof.analysis.judge.function_output import FunctionCurves, function_curves
 from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
-from grashof.analysis.judge.tolerance import Robustness, robustness, sensitivity
+from grashof.analysis.judge.tolerance import Robustness, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.loops.loop import GrashofClass
@@ -100,6 +100,7 @@ from grashof.analysis.mechanism.mobility import (
 )
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.reach import reach_box
+from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
 from grashof.analysis.mechanism.transmission import (
     transmission_angle,

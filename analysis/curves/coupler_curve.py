@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
+from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
@@ -39,14 +39,13 @@ def coupler_motion(
     """How P and its link move with the driver; arguments and what is not finite as for `coupler_curve`."""
     kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
     loops, frames = close(kind, operands_of(linkage, assembly), angle)
-    _, rates = move(loops, frames, STEADY, dead_below=0.0)
-    frame, moving = frames[kind.carries], rates[kind.carries]
-    at = linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]
-    x, y = frame.point(at)
-    (vx, vy), (ax, ay), _ = moving.of(frame.arm(at))
-    p = linkage.o2[..., 0] + x + 1j * (linkage.o2[..., 1] + y)
+    _, turns = move(loops, STEADY, dead_below=0.0, whole=True)
+    at = place(frames, kind.carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    (vx, vy), (ax, ay), _ = point_rates(at, turns)
+    p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
+    frame, (omega, alpha, _) = frames[kind.carries], turns[kind.carries].push
     theta = np.arctan2(frame.sine, frame.cosine)
-    return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, *moving.turn[:2])
+    return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
 
 
 def coupler_curve(

@@ -234,8 +234,8 @@ class _Search:
 
 def _output_rate(linkage: Linkage, task: FunctionTask, theta2: FloatArray) -> FloatArray:
     """Derivative of the output by the driver angle; not finite in dead positions."""
-    loops, frames = close(linkage.mechanism, operands_of(linkage), theta2)
-    first = move(loops, frames, STEADY, dead_below=0.0)[0][0].first
+    loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
+    first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
     return first.travel if task.travels else first.turn4
 
 

@@ -8,9 +8,7 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.judge.tolerance import sensitivity
-from grashof.analysis.loops.kinds import kind_of
-from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.sensitivity import sensitivity, turn_sensitivity
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
@@ -103,7 +101,7 @@ def output_sensitivity(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
 
     Notes
     -----
-    See `Kind.turned`; zeros of a slider-crank, whose link 4 does not turn.
+    See `sensitivity`; zeros of a slider-crank, whose link 4 does not turn.
 
     Examples
     --------
@@ -112,6 +110,4 @@ def output_sensitivity(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
     >>> (output_sensitivity(square, np.pi / 2).round(9) + 0.0).tolist()
     [0.5, 0.0, -0.5, 0.0, 0.0, 0.0]
     """
-    state = solve_position(linkage, theta2)
-    _, turned = kind_of(linkage).turned(linkage, state.theta2, state.theta3, state.theta4)
-    return np.concatenate([turned, np.zeros((*turned.shape[:-1], 2))], axis=-1)
+    return turn_sensitivity(linkage, theta2, 4)

@@ -12,11 +12,10 @@ from itertools import product
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.loops.kinds import kind_of
 from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Manufacturing, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
@@ -26,6 +25,7 @@ AnyKind = TypeVar("AnyKind", bound=Linkage)
 SAMPLES = 20_000  # made linkages: a share has a standard error of at most 0.0036
 _POSITIONS = 200_000  # most positions solved for a design: long paths get fewer samples, ...
 _FEWEST = 1_000  # ... but so many at least (0.016)
+_ARMS = {"_u": np.array([1.0, 0.0]), "_v": np.array([0.0, 1.0])}
 _AT_ONCE = 20_000  # positions solved in one piece, which stays in the processor's cache
 
 
@@ -93,51 +93,6 @@ def robustness(linkage: Linkage, task: Task, verdict: Verdict, manufacturing: Ma
         share_linear=yield_linear(slope, manufacturing.band, errors),
         share_made=yield_monte_carlo(linkage, task, verdict, manufacturing.band, errors),
     )
-
-
-def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
-    """Derivatives of the coupler's position by the dimensions, at held driver angles.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-        Driver angle, global.
-    assembly : array_like, shape (...), optional
-        +1 or -1; the linkage's own by default.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, D), length/length and rad/length
-        Rows: x and y of P, theta3. Columns: the `DIMENSIONS`, of a four-bar r1, r2, r3, r4, u, v. NaN
-        where the linkage cannot close, without bound towards a dead position.
-
-    Notes
-    -----
-    The varied equations of the loop give dtheta3, by `Kind.turned` of the linkage's kind.
-
-    Examples
-    --------
-    A square, P at B: a longer output link lifts P by as much, and turns the coupler.
-
-    >>> from grashof.problems import FourBar
-    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
-    >>> (sensitivity(square, np.pi / 2)[:, 3] + 0.0).round(9).tolist()
-    [0.0, 1.0, 0.5]
-    """
-    state = solve_position(linkage, theta2, assembly)
-    theta2, theta3, theta4 = state.theta2, state.theta3, state.theta4
-    turn, _ = kind_of(linkage).turned(linkage, theta2, theta3, theta4)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        along, ahead = np.exp(1j * theta3), np.exp(1j * theta2)
-        arm = (linkage.coupler_point @ np.array([1, 1j])) * along
-        carried = 1j * arm[..., None] * turn
-    carried[..., linkage.mechanism.dimensions.index("r2")] += ahead
-    none = np.zeros((*theta3.shape, 2))
-    moved = np.concatenate([carried, np.stack([along, 1j * along], axis=-1)], axis=-1)
-    turned = np.concatenate([turn, none], axis=-1)
-    return np.stack([moved.real, moved.imag, turned], axis=-2)
 
 
 def dimension_errors(
@@ -221,11 +176,15 @@ def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolAr
     errors = np.where(possible[:, None], errors, 0.0)
     made = {"coupler_point": linkage.coupler_point + errors[:, -2:]}
     for column, name in enumerate(linkage.mechanism.dimensions[:-2]):
+        error = errors[:, column]
         if name == "r1":
             along = np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
-            made["o4"] = linkage.o4 + errors[:, column, None] * along
+            made["o4"] = linkage.o4 + error[:, None] * along
+        elif name[-2:] in _ARMS:
+            arm = name[0]
+            made[arm] = made.get(arm, getattr(linkage, arm)) + error[:, None] * _ARMS[name[-2:]]
         else:
-            made[name] = getattr(linkage, name) + errors[:, column]
+            made[name] = getattr(linkage, name) + error
     return linkage.changed(**made), possible
 
 

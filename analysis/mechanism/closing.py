@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from functools import partial
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -14,114 +15,23 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, Mechanism
 
 _ZERO = np.zeros(())
-_ONE = np.ones(())
-STEADY = _ONE, _ZERO, _ZERO  # a driver at 1 rad/s
-_NOTHING = Solved(_ZERO, _ZERO, _ZERO)
-_STILL: tuple[Vector, ...] = ((_ZERO, _ZERO),) * 3
-_STANDING_TURN = _ZERO, _ZERO, _ZERO
+STEADY = np.ones(()), _ZERO, _ZERO  # a driver at 1 rad/s
+Way: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
 # Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
 # angle or of a length changes the velocities by more than a tenth.
 DEAD = 1e-7
 
 
-class Placed(NamedTuple):
-    """A dyad of a linkage: its row, C and D in the frames of their links, and its sizes."""
+class HostedDyad(NamedTuple):
+    """A dyad of a linkage: its row, C and D in the frames of the links that carry them, and its sizes."""
 
     row: Dyad
-    c: Vector
-    d: Vector
+    at: tuple[Vector, Vector]
     sizes: DyadSizes
 
 
-class Frame(NamedTuple):
-    """Frame of a link: direction of its u-axis, and its origin from O2."""
-
-    cosine: FloatArray
-    sine: FloatArray
-    x: FloatArray
-    y: FloatArray
-
-    def point(self, at: Vector) -> Vector:
-        """A point of the link, from O2."""
-        x, y = self.arm(at)
-        return self.x + x, self.y + y
-
-    def arm(self, at: Vector) -> Vector:
-        """A point of the link from its origin, in global axes."""
-        u, v = at
-        return u * self.cosine - v * self.sine, u * self.sine + v * self.cosine
-
-
-class Rates(NamedTuple):
-    """How a link moves: three derivatives of its angle and of its origin."""
-
-    turn: tuple[FloatArray, FloatArray, FloatArray]
-    origin: tuple[Vector, ...]
-
-    def of(self, arm: Vector) -> tuple[Vector, ...]:
-        """Three derivatives of a point that is so far from the origin, in global axes."""
-        if self.turn is _STANDING_TURN:
-            return _STILL
-        carried = arm_rates(arm, *self.turn)
-        if self.origin is _STILL:
-            return carried
-        return tuple((x0 + x, y0 + y) for (x0, y0), (x, y) in zip(self.origin, carried, strict=True))
-
-    def times(self, scale: FloatArray) -> Rates:
-        """Velocities times a scale."""
-        if self.turn is _STANDING_TURN:
-            return self
-        turn, origin = (self.turn[0] * scale, *self.turn[1:]), self.origin
-        if origin is not _STILL:
-            origin = tuple((x * scale, y * scale) for x, y in origin)
-        return Rates(turn, origin)
-
-
-_STANDING = Rates(_STANDING_TURN, _STILL)
-
-
-class Loop(NamedTuple):
-    """A closed loop: the dyad, C and D from O2, and what it is closed to."""
-
-    placed: Placed
-    c: Vector
-    d: Vector
-    closed: Closed
-
-    @property
-    def gap(self) -> Vector:
-        """From C to D."""
-        (cx, cy), (dx, dy) = self.c, self.d
-        return dx - cx, dy - cy
-
-    @property
-    def e(self) -> Vector:
-        """E from O2."""
-        (x, y), closed = self.c, self.closed
-        return x + closed.reach * closed.cos3, y + closed.reach * closed.sin3
-
-    @property
-    def angles(self) -> Vector:
-        """Directions of links 3 and 4 in [-pi, pi], rad; of a slider across its slide, to its left."""
-        return np.arctan2(self.closed.sin3, self.closed.cos3), np.arctan2(self.closed.sin4, self.closed.cos4)
-
-
-def arm_rates(
-    arm: Vector, omega: FloatArray, alpha: FloatArray, jerk: FloatArray
-) -> tuple[Vector, Vector, Vector]:
-    """Three derivatives of a vector fixed in a link (Norton, *Design of Machinery*, secs. 6.7 and 7.3)."""
-    x, y = arm
-    square = omega * omega
-    turn, pull = jerk - square * omega, 3 * omega * alpha
-    return (
-        (-omega * y, omega * x),
-        (-alpha * y - square * x, alpha * x - square * y),
-        (-turn * y - pull * x, turn * x - pull * y),
-    )
-
-
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage, as plain arrays for `loops_of`: r2, then C, D and the sizes of each dyad.
+    """What closes a linkage, as plain arrays for `close`: r2, then C, D and the sizes of each dyad.
 
     Parameters
     ----------
@@ -172,132 +82,218 @@ def _pair(linkage: Linkage, name: str) -> Vector:
     return at[..., 0], at[..., 1]
 
 
-def placed_dyads(kind: Mechanism, operands: Sequence[FloatArray]) -> Iterator[Placed]:
+def _hosted_dyads(kind: Mechanism, operands: Sequence[FloatArray]) -> Iterator[HostedDyad]:
     """The dyads of `operands_of`."""
     begin = 1
     for row in kind.dyads:
         sizes = DYADS[row.kind]
         cu, cv, du, dv = operands[begin : begin + 4]
         begin += 4 + len(sizes._fields)
-        yield Placed(row, (cu, cv), (du, dv), sizes(*operands[begin - len(sizes._fields) : begin]))
+        yield HostedDyad(row, ((cu, cv), (du, dv)), sizes(*operands[begin - len(sizes._fields) : begin]))
+
+
+class Frame(NamedTuple):
+    """Frame of a link: direction of its u-axis, its origin from O2, and the arms of links that lead there."""
+
+    cosine: FloatArray
+    sine: FloatArray
+    origin: Vector
+    way: Way
+
+    def arm(self, at: Vector) -> Vector:
+        """A point of the link from its origin, in global axes."""
+        u, v = at
+        if v is _ZERO:  # most joints lie on the u-axis
+            return u * self.cosine, u * self.sine
+        return u * self.cosine - v * self.sine, u * self.sine + v * self.cosine
+
+
+class Place(NamedTuple):
+    """A point of a link from O2, and the arms of links that lead to it."""
+
+    x: FloatArray
+    y: FloatArray
+    way: Way
+
+
+class Loop(NamedTuple):
+    """A closed loop: the dyad, C and D, and what it is closed to."""
+
+    dyad: HostedDyad
+    c: Place
+    d: Place
+    closed: Closed
+
+    @property
+    def e(self) -> Vector:
+        """E from O2."""
+        x, y = self.arm
+        return self.c.x + x, self.c.y + y
+
+    @property
+    def arm(self) -> Vector:
+        """From C to E."""
+        reach = self.closed.reach
+        return reach * self.closed.cos3, reach * self.closed.sin3
+
+    @property
+    def travel(self) -> FloatArray:
+        """How far its slide has gone; NaN without a slide."""
+        return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
+
+
+def first_dyad(linkage: Linkage) -> DyadSizes:
+    """The dyad of the first loop."""
+    return next(_hosted_dyads(linkage.mechanism, operands_of(linkage))).sizes
 
 
 def close(
     kind: Mechanism, operands: Sequence[FloatArray], theta2: FloatArray
 ) -> tuple[list[Loop], dict[int, Frame]]:
-    """All loops at driver angles, and the frames of all links."""
-    frames = {
-        1: Frame(_ONE, _ZERO, _ZERO, _ZERO),
-        2: Frame(np.cos(theta2), np.sin(theta2), _ZERO, _ZERO),
-    }
+    """All loops at driver angles, and the frames of the links that carry something."""
+    frames = {2: Frame(np.cos(theta2), np.sin(theta2), (_ZERO, _ZERO), ())}
     loops = []
-    for placed in placed_dyads(kind, operands):
-        (cx, cy), (dx, dy) = c, d = tuple(frames[host].point(at) for host, at in _carried(placed))
-        closed = placed.sizes.place(dx - cx, dy - cy)
-        loop = Loop(placed, c, d, closed)
-        first = len(frames) + 1
-        frames[first] = Frame(closed.cos3, closed.sin3, *c)
-        if placed.row.kind is DyadKind.RRP:
-            frames[first + 1] = Frame(closed.sin4, -closed.cos4, *loop.e)
-        else:
-            frames[first + 1] = Frame(closed.cos4, closed.sin4, *d)
+    for first, dyad in zip((3, 5), _hosted_dyads(kind, operands), strict=False):
+        c, d = (place(frames, host, at) for host, at in zip(dyad.row.hosts, dyad.at, strict=True))
+        closed = dyad.sizes.place(d.x - c.x, d.y - c.y)
+        loop = Loop(dyad, c, d, closed)
         loops.append(loop)
+        frames[first] = Frame(closed.cos3, closed.sin3, (c.x, c.y), c.way)
+        if dyad.row.kind is not DyadKind.RRP:
+            frames[first + 1] = Frame(closed.cos4, closed.sin4, (d.x, d.y), d.way)
+        elif first + 1 == kind.carries:
+            frames[first + 1] = Frame(closed.sin4, -closed.cos4, loop.e, (*c.way, (first, loop.arm)))
     return loops, frames
 
 
-def _carried(placed: Placed) -> Iterator[tuple[int, Vector]]:
-    return zip(placed.row.hosts, (placed.c, placed.d), strict=True)
+def place(frames: dict[int, Frame], link: int, at: Vector) -> Place:
+    """A point of a link; on the ground its place from O2."""
+    if link == 1:
+        return Place(*at, ())
+    frame = frames[link]
+    (ox, oy), (x, y) = frame.origin, frame.arm(at)
+    way = (*frame.way, (link, (x, y)))
+    return Place(x, y, way) if ox is _ZERO else Place(ox + x, oy + y, way)
+
+
+class Turns(NamedTuple):
+    """What the k-th derivatives of a link's angle do to a vector fixed in it: times i push - pull."""
+
+    push: tuple[FloatArray, FloatArray, FloatArray]
+    pull: tuple[FloatArray, FloatArray, FloatArray]
+
+    @classmethod
+    def of(cls, omega: FloatArray, alpha: FloatArray, jerk: FloatArray) -> Turns:
+        """Of angular velocity, acceleration and jerk (Norton, *Design of Machinery*, secs. 6.7 and 7.3)."""
+        square = omega * omega
+        return cls((omega, alpha, jerk - square * omega), (_ZERO, square, 3 * omega * alpha))
+
+    def moved(self, arm: Vector) -> list[Vector]:
+        """Three derivatives of an arm."""
+        x, y = arm
+        return [
+            (-push * y - pull * x, push * x - pull * y)
+            for push, pull in zip(self.push, self.pull, strict=True)
+        ]
 
 
 class Moving(NamedTuple):
     """How the links of a loop move: three derivatives by time of turns and travel, and where it is dead."""
 
-    first: Solved
-    second: Solved
-    third: Solved
+    orders: tuple[Solved, ...]
     dead: BoolArray
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def move(
     loops: Sequence[Loop],
-    frames: dict[int, Frame],
     driver: tuple[FloatArray, FloatArray, FloatArray],
     dead_below: float = DEAD,
-) -> tuple[list[Moving], dict[int, Rates]]:
-    """Rates of all loops and links to the jerk, for angular velocity, acceleration and jerk of the driver.
+    *,
+    whole: bool = False,
+) -> tuple[list[Moving], dict[int, Turns]]:
+    """Rates of all loops to the jerk, for angular velocity, acceleration and jerk of the driver.
 
     Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on
     such a one.
+
+    Returns
+    -------
+    list of Moving, dict of int to Turns
+        By loop, and by link; with `whole` of those of the last loop, too.
     """
-    rates = {1: _STANDING, 2: Rates(driver, _STILL)}
-    found = []
-    for number, loop in enumerate(loops):
-        placed, closed = loop.placed, loop.closed
-        (c1, c2, c3), (d1, d2, d3) = ways = _ways(placed, frames, rates)
-        sizes, margin = placed.sizes, closed.margin
-        dead = np.abs(margin) <= dead_below
+    turns, found = {2: Turns.of(*driver)}, []
+    for first, loop in zip((3, 5), loops, strict=False):
+        sizes, closed = loop.dyad.sizes, loop.closed
+        dead = np.abs(closed.margin) <= dead_below
         some = bool(dead.any())
-        inverse = 1 / (np.where(dead, np.copysign(0.0, sizes.sign), margin) if some else margin)
-        first = sizes.solve(closed, *_less(d1, c1), inverse, _ONE)
-        second = sizes.solve(closed, *_less(d2, c2, sizes.rest(closed, first)), inverse, _ONE)
-        third = sizes.solve(closed, *_less(d3, c3, sizes.rest(closed, first, second)), inverse, _ONE)
-        third = Solved(third.turn3 + first.turn3**3, third.turn4 + first.turn4**3, third.travel)
+        inverse = 1 / (np.where(dead, np.copysign(0.0, sizes.sign), closed.margin) if some else closed.margin)
+        orders: tuple[Solved, ...] = sizes.rates(closed, inverse, *_projected(loop, turns, 3))
         if some:
-            second, third = (
-                Solved(*(np.where(dead, *pair) for pair in zip(end, rate, strict=True)))
-                for end, rate in zip(sizes.leading(closed, first), (second, third), strict=True)
-            )
-        found.append(Moving(first, second, third, dead))
-        rates |= _of_links(2 * number + 3, loop, (first, second, third), frames, ways)
-    return found, rates
+            ends = sizes.leading(closed, orders[0])
+            orders = (orders[0], *map(partial(_where, dead), ends, orders[1:]))
+        found.append(Moving(orders, dead))
+        if whole or loop is not loops[-1]:
+            three, four, _ = zip(*orders, strict=True)
+            turns |= {first: Turns.of(*three), first + 1: Turns.of(*four)}
+    return found, turns
 
 
-@np.errstate(divide="ignore", invalid="ignore")
-def virtual_rates(loops: Sequence[Loop], frames: dict[int, Frame]) -> tuple[FloatArray, list[Solved]]:
+def _where(dead: BoolArray, one: Solved, other: Solved) -> Solved:
+    return Solved(*(np.where(dead, *pair) for pair in zip(one, other, strict=True)))
+
+
+def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
     """Velocities that a linkage allows, with a limit in dead positions: of the driver, and of each loop.
 
     The driver turns counter-clockwise by the product of all margins without their signs: each loop has adj J
     in place of J^-1, and scales all that moves before it by its margin.
     """
-    rates = {1: _STANDING, 2: Rates((np.ones(np.shape(loops[-1].closed.margin)), _ZERO, _ZERO), _STILL)}
+    omegas = {2: np.ones(np.shape(loops[-1].closed.margin))}
     found: list[Solved] = []
-    for number, loop in enumerate(loops):
-        placed, closed = loop.placed, loop.closed
-        (c1, *_), (d1, *_) = ways = _ways(placed, frames, rates)
-        scale = np.abs(closed.margin)
-        solved = placed.sizes.solve(closed, *_less(d1, c1), placed.sizes.sign, scale)
-        found = [Solved(*(each * scale for each in before)) for before in found]
-        rates = {link: each.times(scale) for link, each in rates.items()}
-        ways = [tuple((x * scale, y * scale) for x, y in way) for way in ways]
-        rates |= _of_links(2 * number + 3, loop, (solved, _NOTHING, _NOTHING), frames, ways)
+    for first, loop in zip((3, 5), loops, strict=False):
+        turns = {link: Turns((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
+        ((across, along),) = _projected(loop, turns, 1)
+        scale = np.abs(loop.closed.margin)
+        with np.errstate(invalid="ignore"):
+            solved = loop.dyad.sizes.solve(loop.closed, across, along, loop.dyad.sizes.sign, scale)
+            omegas = {link: omega * scale for link, omega in omegas.items()}
+            found = [Solved(*(each * scale for each in before)) for before in found]
+        omegas |= {first: solved.turn3, first + 1: solved.turn4}
         found.append(solved)
-    return rates[2].turn[0], found
+    return omegas[2], found
 
 
-def _ways(placed: Placed, frames: dict[int, Frame], rates: dict[int, Rates]) -> list[tuple[Vector, ...]]:
-    """Three derivatives of C and of D."""
-    return [rates[host].of(frames[host].arm(at)) for host, at in _carried(placed)]
+def point_rates(at: Place, turns: dict[int, Turns]) -> list[Vector]:
+    """Three derivatives of a point."""
+    x = y = [_ZERO] * 3
+    for link, arm in at.way:
+        moved = turns[link].moved(arm)
+        x = [one + dx for one, (dx, _) in zip(x, moved, strict=True)]
+        y = [one + dy for one, (_, dy) in zip(y, moved, strict=True)]
+    return list(zip(x, y, strict=True))
 
 
-def _less(one: Vector, *others: Vector) -> Vector:
-    x, y = one
-    for dx, dy in others:
-        x, y = x - dx, y - dy
-    return x, y
+def _projected(loop: Loop, turns: dict[int, Turns], orders: int) -> list[Vector]:
+    """Derivatives of the gap along the two directions that its dyad faces."""
+    found = []
+    for ex, ey in loop.dyad.sizes.facing(loop.closed):
+        total: list[FloatArray] = []
+        for link, (x, y) in loop.c.way:
+            push, pull = turns[link]
+            along, across = x * ex + y * ey, y * ex - x * ey
+            total = _sums(
+                total, push[0] * across, *(push[k] * across + pull[k] * along for k in range(1, orders))
+            )
+        for link, (x, y) in loop.d.way:
+            push, pull = turns[link]
+            along, across = x * ex + y * ey, x * ey - y * ex
+            total = _sums(
+                total, push[0] * across, *(push[k] * across - pull[k] * along for k in range(1, orders))
+            )
+        found.append(total)
+    return list(zip(*found, strict=True))
 
 
-def _of_links(
-    number: int,
-    loop: Loop,
-    orders: tuple[Solved, Solved, Solved],
-    frames: dict[int, Frame],
-    ways: Sequence[tuple[Vector, ...]],
-) -> dict[int, Rates]:
-    """Rates of both links of a dyad, which may carry another."""
-    turn3, turn4, _ = zip(*orders, strict=True)
-    first = Rates(turn3, ways[0])
-    if loop.placed.row.kind is DyadKind.RRP:
-        at_e = first.of(frames[number].arm((loop.closed.reach, _ZERO)))
-        return {number: first, number + 1: Rates(turn4, at_e)}
-    return {number: first, number + 1: Rates(turn4, ways[1])}
+def _sums(known: list[FloatArray], *more: FloatArray) -> list[FloatArray]:
+    return [one + other for one, other in zip(known, more, strict=True)] if known else list(more)

@@ -6,10 +6,10 @@ transmission angle with the sign of the assembly. The links are called 3 and 4 h
 a second dyad they are links 5 and 6. Each kind has the same methods:
 
 - `place`: the dyad where its gap is (x, y); `travel`: how far its slide has gone then.
-- `solve`: J^-1 (x, y) times `scale`, with `inverse` = `scale` over the margin. A scale of 1 gives rates, one
-  of the margin what stays finite in dead positions.
-- `rest`: what the second derivative of the gap has besides J times that of q; with `second` the third one,
-  which then gives third derivatives of q less the cubes of the angular velocities.
+- `facing`: two directions; a vector comes as its components along these.
+- `solve`: J^-1 of a vector times `scale`, with `inverse` = `scale` over the margin. A scale of 1 gives rates,
+  one of the margin what stays finite in dead positions.
+- `rates`: three derivatives of q from those of the gap.
 - `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
 - `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
 - `transmission`: the angle in [0, pi] at a gap; NaN where the dyad is open.
@@ -43,6 +43,11 @@ class Closed(NamedTuple):
     sin4: FloatArray
     margin: FloatArray
     reach: FloatArray
+
+    @property
+    def angles(self) -> Vector:
+        """Directions of links 3 and 4 in [-pi, pi], rad."""
+        return np.arctan2(self.sin3, self.cos3), np.arctan2(self.sin4, self.cos4)
 
 
 class Solved(NamedTuple):
@@ -85,28 +90,39 @@ class Pins(NamedTuple):
         """None."""
         return np.full(np.shape(closed.margin), np.nan)
 
+    def facing(self, closed: Closed) -> tuple[Vector, Vector]:
+        """E4, along which link 3 alone counts, and e3, along which link 4 does."""
+        return (closed.cos4, closed.sin4), (closed.cos3, closed.sin3)
+
     def solve(
         self,
-        closed: Closed,
-        x: FloatArray,
-        y: FloatArray,
+        closed: Closed,  # noqa: ARG002
+        first: FloatArray,
+        second: FloatArray,
         inverse: FloatArray,
-        scale: FloatArray,  # noqa: ARG002
+        scale: FloatArray | float,  # noqa: ARG002
     ) -> Solved:
-        """Crossing both sides with e4 or e3 leaves one unknown each (Norton, sec. 6.7)."""
-        cos3, sin3, cos4, sin4, *_ = closed
-        turn3 = (x * cos4 + y * sin4) * (inverse / self.m)
-        return Solved(turn3, (x * cos3 + y * sin3) * (inverse / self.n), _NONE)
+        """Norton, *Design of Machinery*, sec. 6.7."""
+        return Solved(first * inverse / self.m, second * inverse / self.n, _NONE)
 
-    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
-        """-v3^2 m e3 + v4^2 n e4; of third order with -3 v a (and i v^3, which the caller keeps apart)."""
-        cos3, sin3, cos4, sin4, *_ = closed
-        if second is None:
-            pull3, pull4 = self.m * first.turn3**2, self.n * first.turn4**2
-        else:
-            pull3 = 3 * self.m * first.turn3 * second.turn3
-            pull4 = 3 * self.n * first.turn4 * second.turn4
-        return pull4 * cos4 - pull3 * cos3, pull4 * sin4 - pull3 * sin3
+    def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
+        """The second derivative of the gap has -v3^2 m e3 + v4^2 n e4 besides J times that of q.
+
+        With third derivatives less the cubes of the angular velocities the third one has 3 v a for v^2
+        (Norton, sec. 7.3).
+        """
+        over3, over4 = inverse / self.m, inverse / self.n
+        cosine = closed.cos4 * closed.cos3 + closed.sin4 * closed.sin3
+        (to3, to4), (to3_2, to4_2), (to3_3, to4_3) = gap
+        omega3, omega4 = to3 * over3, to4 * over4
+        tip3, tip4 = self.m * omega3, self.n * omega4
+        pull3, pull4 = tip3 * omega3, tip4 * omega4
+        alpha3 = (to3_2 + pull3 * cosine - pull4) * over3
+        alpha4 = (to4_2 + pull3 - pull4 * cosine) * over4
+        pull3, pull4 = 3 * tip3 * alpha3, 3 * tip4 * alpha4
+        jerk3 = (to3_3 + pull3 * cosine - pull4) * over3 + omega3 * omega3 * omega3
+        jerk4 = (to4_3 + pull3 - pull4 * cosine) * over4 + omega4 * omega4 * omega4
+        return Solved(omega3, omega4, _NONE), Solved(alpha3, alpha4, _NONE), Solved(jerk3, jerk4, _NONE)
 
     def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
         """With s the margin and `same` = cos(theta4 - theta3) = +-1 omega goes like 1/s, alpha like 1/s^3.
@@ -174,21 +190,37 @@ class Slider(NamedTuple):
         """Of E from the foot of D on the line."""
         return np.asarray(self.m * closed.margin - (x * self.ex + y * self.ey))
 
-    def solve(
-        self, closed: Closed, x: FloatArray, y: FloatArray, inverse: FloatArray, scale: FloatArray
-    ) -> Solved:
-        """The components across the slide, which leaves the turn, and along it."""
-        across, along = y * self.ex - x * self.ey, x * self.ex + y * self.ey
-        turn3 = across * (inverse / self.m)
-        travel = -along * scale - self.m * self._sine(closed) * turn3
-        still = np.where(np.isnan(closed.margin), np.nan, np.zeros(np.shape(turn3)))
-        return Solved(turn3, still, travel)
+    def facing(self, closed: Closed) -> tuple[Vector, Vector]:  # noqa: ARG002
+        """Across the slide, to its left, and along it."""
+        return (-self.ey, self.ex), (self.ex, self.ey)
 
-    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
-        """-v3^2 m e3; of third order with -3 v a."""
-        pull = first.turn3**2 if second is None else 3 * first.turn3 * second.turn3
-        pull = self.m * pull
-        return -pull * closed.cos3, -pull * closed.sin3
+    def solve(
+        self,
+        closed: Closed,
+        first: FloatArray,
+        second: FloatArray,
+        inverse: FloatArray,
+        scale: FloatArray | float,
+    ) -> Solved:
+        """The component across the slide leaves the turn of the bar."""
+        turn = first * inverse / self.m
+        return Solved(turn, self._still(closed), -second * scale - self.m * self._sine(closed) * turn)
+
+    def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
+        """The second derivative of the gap has -v^2 m e3 besides J times that of q, the third -3 v a m e3."""
+        m, over, cosine, still = self.m, inverse / self.m, closed.margin, self._still(closed)
+        rise = m * self._sine(closed)
+        (across, along), (across_2, along_2), (across_3, along_3) = gap
+        omega = across * over
+        square = omega * omega
+        alpha = (across_2 + rise * square) * over
+        mixed = 3 * omega * alpha
+        turn = (across_3 + rise * mixed) * over
+        return (
+            Solved(omega, still, -along - rise * omega),
+            Solved(alpha, still, -along_2 - rise * alpha - m * cosine * square),
+            Solved(turn + square * omega, still, -along_3 - rise * turn - m * cosine * mixed),
+        )
 
     def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
         """With c the margin, S = sin(theta3 - slide) = +-1: omega is like 1/c, alpha S/c^3, the jerk 3/c^5.
@@ -216,6 +248,10 @@ class Slider(NamedTuple):
 
     def _height(self, x: FloatArray, y: FloatArray) -> FloatArray:
         return np.asarray(self.offset + (y * self.ex - x * self.ey))
+
+    def _still(self, closed: Closed) -> FloatArray:
+        """The turn of a slider: none, NaN where the dyad is open."""
+        return np.where(np.isnan(closed.margin), np.nan, 0.0)
 
     def _sine(self, closed: Closed) -> FloatArray:
         """Of theta3 - slide."""
@@ -254,26 +290,41 @@ class Block(NamedTuple):
         """Of the rod through the block: E from C."""
         return closed.reach
 
-    def solve(
-        self, closed: Closed, x: FloatArray, y: FloatArray, inverse: FloatArray, scale: FloatArray
-    ) -> Solved:
-        """The components across the rod, which leaves the turn, and along it."""
-        along, across = x * closed.cos3 + y * closed.sin3, y * closed.cos3 - x * closed.sin3
-        turn = across * (inverse / np.hypot(closed.reach, self.offset))
-        return Solved(turn, turn, along * scale - self.offset * turn)
+    def facing(self, closed: Closed) -> tuple[Vector, Vector]:
+        """Across the rod, to its left, and along it."""
+        return (-closed.sin3, closed.cos3), (closed.cos3, closed.sin3)
 
-    def rest(self, closed: Closed, first: Solved, second: Solved | None = None) -> Vector:
-        """2 i l' v e3 - v^2 z, z = (l - i offset) e3; then (3 i l'' v + 3 l' (i a - v^2)) e3 - 3 v a z."""
-        turn, _, travel = first
-        if second is None:
-            pull, push, along = turn**2, 2 * travel * turn, _NONE
-        else:
-            pull = 3 * turn * second.turn3
-            push = 3 * (second.travel * turn + travel * second.turn3)
-            along = 3 * travel * turn**2
-        ahead, beside = -pull * closed.reach - along, push + pull * self.offset
-        cos3, sin3 = closed.cos3, closed.sin3
-        return ahead * cos3 - beside * sin3, ahead * sin3 + beside * cos3
+    def solve(
+        self,
+        closed: Closed,
+        first: FloatArray,
+        second: FloatArray,
+        inverse: FloatArray,
+        scale: FloatArray | float,
+    ) -> Solved:
+        """The component across the rod leaves its turn."""
+        turn = first * inverse / np.hypot(closed.reach, self.offset)
+        return Solved(turn, turn, second * scale - self.offset * turn)
+
+    def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
+        """With z = (l - i offset) e3 the second derivative has 2 i l' v e3 - v^2 z besides J times that of q.
+
+        The third one has (3 i l" v + 3 l' (i a - v^2)) e3 - 3 v a z, for third derivatives less the cube.
+        """
+        reach, offset = closed.reach, self.offset
+        over = inverse / np.hypot(reach, offset)
+        (across, along), (across_2, along_2), (across_3, along_3) = gap
+        omega = across * over
+        square, velocity = omega * omega, along - offset * omega
+        alpha = (across_2 - offset * square - 2 * omega * velocity) * over
+        acceleration, mixed = along_2 + reach * square - offset * alpha, omega * alpha
+        turn = (across_3 - 3 * (offset * mixed + alpha * velocity + omega * acceleration)) * over
+        jerk, third = along_3 - offset * turn + 3 * (reach * mixed + square * velocity), turn + square * omega
+        return (
+            Solved(omega, omega, velocity),
+            Solved(alpha, alpha, acceleration),
+            Solved(third, third, jerk),
+        )
 
     def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
         """Omega goes like 1/l, alpha like offset / l^3, the jerk like 3 offset^2 / l^5.

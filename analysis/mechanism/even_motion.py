@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.kinds import first_loop
 from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -193,7 +193,7 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
 
 def _home(linkage: Linkage, low: float, high: float) -> tuple[_Way, float, float, float] | None:
     """How the driver moves between two angles, the angle that it is counted from, and a and b."""
-    a, b = kind_of(linkage).even(linkage)
+    a, b = first_loop(linkage).even(linkage)
     if np.isnan(a):
         return None
     theta1 = float(linkage.theta1)

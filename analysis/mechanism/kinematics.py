@@ -5,20 +5,19 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Frame, arm_rates, close, move, operands_of
+from grashof.analysis.mechanism.closing import Turns, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind, Mechanism
-
-_NOWHERE = np.zeros(()), np.zeros(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -297,7 +296,9 @@ def solve_kinematics(
         _solution(kind, len(operands)), [*operands, *driver], 10 * len(slides) + 4 * sum(slides)
     )
     shape = solved.shape[1:]
-    theta2, omega2, alpha2, jerk2 = (np.broadcast_to(value, shape)[()] for value in driver)
+    theta2, omega2, alpha2, jerk2 = (
+        (value if value.shape == shape else np.broadcast_to(value, shape))[()] for value in driver
+    )
     turning, motions, margins, rows = [Turning(theta2, omega2, alpha2, jerk2)], [], [], iter(solved)
     for has_slide, dyad in zip(slides, kind.dyads, strict=True):
         three, four = (Turning(*(next(rows)[()] for _ in range(4))) for _ in range(2))
@@ -324,16 +325,15 @@ def _solution(kind: Mechanism, count: int) -> Callable[..., list[FloatArray]]:
 
     def solve(*operands: FloatArray) -> list[FloatArray]:
         theta2, omega2, alpha2, jerk2 = operands[count:]
-        loops, frames = close(kind, operands[:count], theta2)
+        loops, _ = close(kind, operands[:count], theta2)
         found: list[FloatArray] = []
-        for loop, moved in zip(loops, move(loops, frames, (omega2, alpha2, jerk2))[0], strict=True):
-            orders, (theta3, theta4) = (moved.first, moved.second, moved.third), loop.angles
+        for loop, moved in zip(loops, move(loops, (omega2, alpha2, jerk2))[0], strict=True):
+            orders, (theta3, theta4) = moved.orders, loop.closed.angles
             found += [theta3, *(order.turn3 for order in orders)]
             found += [theta4, *(order.turn4 for order in orders)]
             found += [moved.dead.astype(np.float64), loop.closed.margin]
-            if loop.placed.row.slides:
-                travel = loop.placed.sizes.travel(loop.closed, *loop.gap)
-                found += [travel, *(order.travel for order in orders)]
+            if loop.dyad.row.slides:
+                found += [loop.travel, *(order.travel for order in orders)]
         return found
 
     return solve
@@ -349,10 +349,10 @@ def _arm(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:
 def _turned(
     u: FloatArray, v: FloatArray, theta: FloatArray, omega: FloatArray, alpha: FloatArray, jerk: FloatArray
 ) -> tuple[FloatArray, ...]:
-    arm = x, y = Frame(np.cos(theta), np.sin(theta), *_NOWHERE).arm((u, v))
+    cosine, sine = np.cos(theta), np.sin(theta)
+    arm = x, y = u * cosine - v * sine, u * sine + v * cosine
     with np.errstate(invalid="ignore", over="ignore"):
-        first, second, third = arm_rates(arm, omega, alpha, jerk)
-        arms = (x, y, *first, *second, *third)
+        arms = (x, y, *chain.from_iterable(Turns.of(omega, alpha, jerk).moved(arm)))
         dead = ~np.isfinite(jerk) & np.isfinite(theta)
         if np.any(dead):  # the fastest growing terms alone, and nothing where there is no arm
             leading = (-alpha * y, alpha * x, -jerk * y, jerk * x)

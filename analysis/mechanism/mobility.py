@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.kinds import first_loop
 from grashof.analysis.loops.loop import CHANGE, GrashofClass
 from grashof.analysis.mechanism.closing import close, operands_of
 from grashof.problems import FourBar, Linkage
@@ -40,7 +40,7 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
     >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
     'crank-rocker'
     """
-    return kind_of(linkage).class_of(linkage, tolerance)
+    return first_loop(linkage).class_of(linkage, tolerance)
 
 
 def triple_rocker_kind(linkage: Linkage) -> str:
@@ -77,7 +77,7 @@ def rotatability(linkage: Linkage) -> FloatArray:
     The diagonal A-O4 runs from |r1 - r2| to r1 + r2 and has to stay between |r3 - r4| and r3 + r4
     (McCarthy & Soh, *Geometric Design of Linkages*, sec. 2.2).
     """
-    return kind_of(linkage).shares(linkage)
+    return first_loop(linkage).shares(linkage)
 
 
 def full_rotation(linkage: Linkage) -> BoolArray:
@@ -144,7 +144,7 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
     [-108.21, 108.21]
     """
-    a, more_a, b, more_b, assembled = kind_of(linkage).span(linkage, float(np.cos(transmission)))
+    a, more_a, b, more_b, assembled = first_loop(linkage).span(linkage, float(np.cos(transmission)))
     # Half-angle forms keep their digits near 0 and pi.
     half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
     half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))

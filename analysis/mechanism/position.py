@@ -2,66 +2,93 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import close, operands_of
+from grashof.analysis.mechanism.closing import Frame, Loop, close, operands_of, place
+from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS
 
 
-class _Angle:
-    """The angle of a link as an attribute: theta2, theta3, ..."""
-
-    def __init__(self, link: int) -> None:
-        self.link = link
-
-    def __get__(self, state: Position | None, _: object = None) -> FloatArray:
-        if state is None or self.link - 2 >= len(state.angles):
-            raise AttributeError(f"there is no theta{self.link}")
-        return state.angles[self.link - 2]
+def _found(formula: Callable[[Position], FloatArray]) -> cached_property[FloatArray]:
+    """What follows from a position, as an attribute."""
+    return cached_property(formula)
 
 
-class _Point:
-    """A moving point as an attribute: a, b, ..."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def __get__(self, state: Position | None, _: object = None) -> FloatArray:
-        if state is None or self.name not in state.points:
-            raise AttributeError(f"no point {self.name} moves")
-        return state.points[self.name]
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Position:
     """Where a linkage stands, for each driver angle; NaN where it cannot close.
 
     Parameters
     ----------
-    angles : tuple of ndarray, shape (...), rad
-        Directions of links 2, 3, ..., also as theta2 to theta6: of a four-bar O2->A, A->B, O4->B; all but
-        theta2 in [-pi, pi]. Of a slider the direction across its slide, to its left.
-    points : dict of str to ndarray, shape (..., 2), length
-        The points that move, also as attributes a to e and p. B of an inverted slider-crank is the foot of O4
-        on the rod.
-    margins : tuple of ndarray, shape (...)
-        Of each loop the sine of its transmission angle with the sign of the assembly; 0 in dead positions.
-    travel : ndarray, shape (...), length
-        Of the first slide, as `SlideMotion` has it, also in dead positions; NaN without a slide.
+    linkage : Linkage
+    theta2 : ndarray, shape (...), rad
+    loops : tuple of Loop
+        Closed, dyad after dyad.
+    frames : dict of int to Frame
+        Of the links that carry something.
+
+    Notes
+    -----
+    All else follows: theta3 to theta6 (rad, in [-pi, pi]; of a slider the direction across its slide, to its
+    left), the points a, b, p, of a six-bar c, d, e (shape (..., 2), length; B of an inverted slider-crank is
+    the foot of O4 on the rod), `margins` and `travel`.
     """
 
-    angles: tuple[FloatArray, ...]
-    points: dict[str, FloatArray]
-    margins: tuple[FloatArray, ...]
-    travel: FloatArray
+    linkage: Linkage
+    theta2: FloatArray
+    loops: tuple[Loop, ...]
+    frames: dict[int, Frame]
 
-    theta2, theta3, theta4, theta5, theta6 = _Angle(2), _Angle(3), _Angle(4), _Angle(5), _Angle(6)
-    a, b, c, d, e, p = _Point("a"), _Point("b"), _Point("c"), _Point("d"), _Point("e"), _Point("p")
+    @cached_property
+    def angles(self) -> dict[int, FloatArray]:
+        """Directions of all moving links, each of shape (...), rad."""
+        found = {2: self.theta2}
+        for first, loop in zip((3, 5), self.loops, strict=False):
+            found |= zip((first, first + 1), loop.closed.angles, strict=True)
+        return found
+
+    @cached_property
+    def margins(self) -> tuple[FloatArray, ...]:
+        """Of each loop the sine of its transmission angle with the sign of the assembly, shape (...)."""
+        return tuple(loop.closed.margin for loop in self.loops)
+
+    @cached_property
+    def travel(self) -> FloatArray:
+        """Of the first slide, as `SlideMotion` has it, also in dead positions; NaN without a slide."""
+        return next((loop for loop in self.loops if loop.dyad.row.slides), self.loops[0]).travel
+
+    @cached_property
+    def p(self) -> FloatArray:
+        """The coupler point."""
+        at = self.linkage.coupler_point
+        return self._global(place(self.frames, self.linkage.mechanism.carries, (at[..., 0], at[..., 1]))[:2])
+
+    def point(self, name: str) -> FloatArray:
+        """A point of the linkage by its name, shape (..., 2)."""
+        if name in self.linkage.mechanism.ground:
+            return np.broadcast_to(getattr(self.linkage, name), (*np.shape(self.theta2), 2))
+        found: FloatArray = getattr(self, name)
+        return found
+
+    def _global(self, at: Vector) -> FloatArray:
+        o2 = self.linkage.o2
+        return np.stack(np.broadcast_arrays(o2[..., 0] + at[0], o2[..., 1] + at[1]), axis=-1)
+
+    theta3 = _found(lambda self: self.angles[3])
+    theta4 = _found(lambda self: self.angles[4])
+    theta5 = _found(lambda self: self.angles[5])
+    theta6 = _found(lambda self: self.angles[6])
+    a = _found(lambda self: self._global(self.loops[0].c[:2]))
+    b = _found(lambda self: self._global(self.loops[0].e))
+    c = _found(lambda self: self._global(self.loops[1].c[:2]))
+    d = _found(lambda self: self._global(self.loops[1].d[:2]))
+    e = _found(lambda self: self._global(self.loops[1].e))
 
 
 def solve_position(
@@ -95,28 +122,12 @@ def solve_position(
     >>> np.degrees([state.theta3, state.theta4]).round(6).tolist()
     [20.297883, 57.32488]
     """
-    angle, kind = np.asarray(theta2, dtype=np.float64), linkage.mechanism
-    loops, frames = close(kind, operands_of(linkage, assembly), angle)
-    ox, oy = linkage.o2[..., 0], linkage.o2[..., 1]
-    found = {"p": frames[kind.carries].point((linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))}
-    for names, loop in zip(LOOP_POINTS, loops, strict=False):
-        found |= zip(names, (loop.c, loop.d, loop.e), strict=True)
-    points = {}
-    for name in kind.moving:
-        x, y = found[name]
-        points[name] = np.stack(np.broadcast_arrays(ox + x, oy + y), axis=-1)
-    slide = next((loop for loop in loops if loop.placed.row.slides), loops[0])
-    theta2 = np.broadcast_to(angle, np.shape(loops[0].closed.cos3))
-    return Position(
-        (theta2, *(each for loop in loops for each in loop.angles)),
-        points,
-        tuple(loop.closed.margin for loop in loops),
-        slide.placed.sizes.travel(slide.closed, *slide.gap),
-    )
+    angle = np.asarray(theta2, dtype=np.float64)
+    loops, frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+    theta2 = np.broadcast_to(angle, np.shape(loops[-1].closed.margin))
+    return Position(linkage, theta2, tuple(loops), frames)
 
 
 def places(linkage: Linkage, state: Position) -> dict[str, FloatArray]:
     """Where the points of a linkage are in some of its positions, each of shape (..., 2), by their names."""
-    kind = linkage.mechanism
-    ground = {name: np.broadcast_to(getattr(linkage, name), state.a.shape) for name in kind.ground}
-    return {name: (ground | state.points)[name] for name in kind.points}
+    return {name: state.point(name) for name in linkage.mechanism.points}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.kinds import first_loop
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
@@ -73,7 +73,7 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
     >>> float(stroke.time_ratio.round(6))
     1.355573
     """
-    theta2 = kind_of(linkage).limits(linkage) % (2 * np.pi)
+    theta2 = first_loop(linkage).limits(linkage) % (2 * np.pi)
     state = solve_position(linkage[..., None], theta2)
     turned = (np.diff(state.theta4, axis=-1)[..., 0] + np.pi) % (2 * np.pi) - np.pi
     theta4 = state.theta4[..., :1] + np.stack([np.zeros_like(turned), turned], axis=-1)

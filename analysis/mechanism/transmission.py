@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import kind_of
+from grashof.analysis.loops.kinds import first_loop
+from grashof.analysis.mechanism.closing import first_dyad
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
@@ -40,8 +41,8 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
     >>> np.degrees(transmission_angle(norton, np.radians([0, 180]))).round(4).tolist()
     [26.3843, 86.4167]
     """
-    kind = kind_of(linkage)
-    return kind.transmission(linkage, kind.apart(linkage, np.subtract(theta2, linkage.theta1)))
+    apart = first_loop(linkage).apart(linkage, np.subtract(theta2, linkage.theta1))
+    return first_dyad(linkage).transmission_at(apart)
 
 
 def quality(mu: npt.ArrayLike) -> FloatArray:
@@ -102,6 +103,6 @@ def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
 
 def ground_line_transmission(linkage: Linkage) -> tuple[FloatArray, FloatArray]:
     """Mu with O2A along theta1, towards O4 and away from it: the extremes over a turn."""
-    kind = kind_of(linkage)
-    folded, stretched = kind.apart_on_line(linkage)
-    return kind.transmission(linkage, folded), kind.transmission(linkage, stretched)
+    folded, stretched = first_loop(linkage).apart_on_line(linkage)
+    dyad = first_dyad(linkage)
+    return dyad.transmission_at(folded), dyad.transmission_at(stretched)

@@ -33,17 +33,17 @@ def virtual_motion(
     both, so that the others have a limit in a dead position: the rates of `solve_kinematics` times that.
     """
     angle = np.asarray(theta2, dtype=np.float64)
-    loops, frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+    loops, _ = close(linkage.mechanism, operands_of(linkage, assembly), angle)
     shape = np.shape(loops[-1].closed.margin)
     none = np.zeros(shape)
-    omega2, rates = virtual_rates(loops, frames)
+    omega2, rates = virtual_rates(loops)
     moving = [Turning(np.broadcast_to(angle, shape)[()], omega2, none, none)]
     slides: list[SlideMotion | None] = []
     for loop, solved in zip(loops, rates, strict=True):
         turns = solved.turn3, np.broadcast_to(solved.turn4, shape)[()]
-        moving += [Turning(*each, none, none) for each in zip(loop.angles, turns, strict=True)]
-        travel = loop.placed.sizes.travel(loop.closed, *loop.gap)
-        slides.append(SlideMotion(travel, solved.travel, none, none) if loop.placed.row.slides else None)
+        moving += [Turning(*each, none, none) for each in zip(loop.closed.angles, turns, strict=True)]
+        has_slide = loop.dyad.row.slides
+        slides.append(SlideMotion(loop.travel, solved.travel, none, none) if has_slide else None)
     resting = [Turning(each.theta, none, none, none) for each in moving]
     still = [None if slide is None else SlideMotion(slide.travel, none, none, none) for slide in slides]
     margins = tuple(loop.closed.margin for loop in loops)

@@ -256,7 +256,9 @@ def test_no_warning_where_the_driver_turns() -> None:
 
 def test_what_is_asked_of_a_point_is_checked() -> None:
     state = solve_kinematics(TRIPLE_ROCKER, 0.3)
-    with pytest.raises(ProblemError, match="link is 1; it must be 2"):
-        state.point(1, (0, 0))
+    with pytest.raises(
+        ProblemError, match=r"link is 5; it must be 2 \(driver\), 3 \(coupler\) or 4 \(output\)"
+    ):
+        state.point(5, (0, 0))
     with pytest.raises(ProblemError, match=r"at has shape \(3,\)"):
         state.point(2, (0, 0, 1))

@@ -1,0 +1,131 @@
+"""How places and angles depend on the dimensions of a linkage, at held driver angles."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from grashof.analysis.mechanism.closing import Loop, Place, close, operands_of, place
+from grashof.analysis.mechanism.dyad import Vector
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.linkages.mechanism import DyadKind
+
+
+def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
+    """Derivatives of the coupler's position by the dimensions, at held driver angles.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        One, or a batch whose axes broadcast against `theta2`.
+    theta2 : array_like, shape (...), rad
+        Driver angle, global.
+    assembly : array_like, shape (...), optional
+        +1 or -1 of the first loop; the linkage's own by default.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, D), length/length and rad/length
+        Rows: x and y of P, the angle of the link that carries it. Columns: the dimensions of the mechanism,
+        of a four-bar r1, r2, r3, r4, u, v. NaN where the linkage cannot close, without bound towards a dead
+        position.
+
+    Notes
+    -----
+    The varied equations of each loop give the turns of its links: J dq = dw less what its lengths change.
+
+    Examples
+    --------
+    A square, P at B: a longer output link lifts P by as much, and turns the coupler.
+
+    >>> from grashof.problems import FourBar
+    >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
+    >>> (sensitivity(square, np.pi / 2)[:, 3] + 0.0).round(9).tolist()
+    [0.0, 1.0, 0.5]
+    """
+    varied = _Varied(linkage, theta2, assembly)
+    carries = linkage.mechanism.carries
+    at = place(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    turn = varied.turns[carries]
+    moved = varied.moved(at, carries) + varied.columns(varied.along(carries, "u", "v"))
+    shape = np.broadcast_shapes(moved.shape, turn.shape)
+    return np.stack([np.broadcast_to(each, shape) for each in (moved.real, moved.imag, turn)], axis=-2)
+
+
+def turn_sensitivity(linkage: Linkage, theta2: npt.ArrayLike, link: int) -> FloatArray:
+    """Derivatives of the angle of a moving link by the dimensions, shape (..., D), rad/length."""
+    return _Varied(linkage, theta2).turns[link]
+
+
+class _Varied:
+    """A linkage in some positions, and what each of its dimensions turns and moves."""
+
+    def __init__(
+        self, linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+    ) -> None:
+        self.linkage, self.names = linkage, linkage.mechanism.dimensions
+        angle = np.asarray(theta2, dtype=np.float64)
+        loops, self.frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+        shape = np.shape(loops[-1].closed.margin)
+        self.turns: dict[int, FloatArray] = {2: np.zeros((*shape, len(self.names)))}
+        self.origins: dict[int, ComplexArray] = {2: np.zeros((*shape, len(self.names)), dtype=complex)}
+        for first, loop in zip((3, 5), loops, strict=False):
+            self._vary(first, loop)
+
+    def columns(self, by: dict[str, ComplexArray]) -> ComplexArray:
+        """Derivatives by some dimensions among those by all, shape (..., D)."""
+        shape = self.origins[2].shape
+        found = np.zeros(shape, dtype=complex)
+        for name, value in by.items():
+            found[..., self.names.index(name)] = value
+        return found
+
+    def along(self, link: int, *names: str) -> dict[str, ComplexArray]:
+        """How a point of a link moves with its places along and across the link."""
+        unit = np.ones((), dtype=complex) if link == 1 else _complex(self.frames[link][:2])
+        return dict(zip(names, (unit, np.asarray(1j * unit)), strict=False))
+
+    def moved(self, at: Place, link: int) -> ComplexArray:
+        """How a point moves with the link that carries it; one of the ground does not."""
+        if link == 1:
+            return np.zeros(self.origins[2].shape, dtype=complex)
+        _, arm = at.way[-1]
+        carried: ComplexArray = 1j * _complex(arm)[..., None] * self.turns[link]
+        return self.origins[link] + carried
+
+    def _vary(self, first: int, loop: Loop) -> None:
+        sizes, closed, row = loop.dyad.sizes, loop.closed, loop.dyad.row
+        c, d = (self.moved(at, host) for at, host in zip((loop.c, loop.d), row.hosts, strict=True))
+        c_by, d_by = self._own(first, row.hosts, pinned=row.kind is not DyadKind.RRP)
+        c, d = c + self.columns(c_by), d + self.columns(d_by)
+        names = {"m": f"r{first}", "n": f"r{first + 1}", "offset": "offset" if first == 3 else "offset_2"}
+        lost = {names[name]: _complex(by) for name, by in sizes.sizes(closed).items()}
+        gap = d - c + self.columns(lost)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inverse = 1 / closed.margin
+            one, other = (_complex(each)[..., None] for each in sizes.facing(closed))
+            first_part, second_part = (np.moveaxis((gap * each.conj()).real, -1, 0) for each in (one, other))
+            solved = sizes.solve(closed, first_part, second_part, inverse, 1.0)
+        three, four = (
+            np.moveaxis(turn + np.zeros(gap.shape[-1:] + gap.shape[:-1]), 0, -1) for turn in solved[:2]
+        )
+        self.turns |= {first: three, first + 1: four}
+        self.origins |= {first: c, first + 1: d}
+        if row.kind is DyadKind.RRP:
+            e3 = _complex((closed.cos3, closed.sin3))
+            carried = 1j * (closed.reach * e3)[..., None] * three
+            self.origins[first + 1] = c + carried + self.columns({names["m"]: e3})
+
+    def _own(
+        self, first: int, hosts: tuple[int, int], *, pinned: bool
+    ) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
+        """How C and D move with their places on their links."""
+        if first == 3:
+            ground = {"r1": np.exp(1j * self.linkage.theta1)} if pinned else {}
+            return self.along(2, "r2"), ground
+        return self.along(hosts[0], "c_u", "c_v"), self.along(hosts[1], "d_u", "d_v") if pinned else {}
+
+
+def _complex(vector: Vector) -> ComplexArray:
+    return np.asarray(vector[0] + 1j * vector[1])
