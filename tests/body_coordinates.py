@@ -21,7 +21,8 @@ from body_plans import Array, Complexes, Plan, complex_of
 
 CONVERGED = 1e-12  # correction of Newton's method, in rad or sizes of the linkage
 NEAR = 0.05  # share of a step that the first correction has to stay below
-MOST_STEP = 0.1  # rad
+MOST_STEP = 0.1  # rad, of the driver
+MOST_MOVE = 0.5  # of any body, in rad or sizes of the linkage: near a dead position tangents lead far away
 LEAST_STEP = 1e-7  # rad; a driver that cannot go on by it is in a dead position
 MOST_FALL = np.log(4.0)  # of the determinant's logarithm in a step
 
@@ -222,8 +223,9 @@ def _advance(plan: Plan, q: Array, here: Array, there: Array) -> _Way:
         met, first = newton(sub, q[on] + move, aim, 8)
         met_matrix = jacobian(sub, met)
         met_sign, met_log = _determinant(met_matrix)
-        share = first / (NEAR * _length(sub, move) + CONVERGED)
-        good = (share < 1) & (met_sign == sign[on]) & (met_log > log[on] - MOST_FALL)
+        far = _length(sub, move)
+        share = first / (NEAR * far + CONVERGED)
+        good = (share < 1) & (far < MOST_MOVE) & (met_sign == sign[on]) & (met_log > log[on] - MOST_FALL)
         yes, no = on[good], on[~good]
         before[yes], log_before[yes] = here[yes], log[yes]
         q[yes], here[yes], log[yes], matrix[yes] = met[good], aim[good], met_log[good], met_matrix[good]

@@ -255,7 +255,8 @@ def test_six_bars_stop_where_either_loop_does(row: Any) -> None:
     first = plan_of(FourBar(batch.o2, batch.o4, batch.r2, batch.r3, batch.r4, (0, 0), batch.assembly))
     standing = start(first, 0.5)
     stopped = 0
-    for dead in reach(plan, q, 0.5):
+    ends = reach(plan, q, 0.5)
+    for dead in ends:
         here = np.isfinite(dead)
         at = rates(first, follow(first, standing, 0.5, np.where(here, dead, 0.5)[None]))
         c = carried(at, batch.hosts[0], batch.c)[0, 0]
@@ -270,6 +271,23 @@ def test_six_bars_stop_where_either_loop_does(row: Any) -> None:
         np.testing.assert_allclose(missed[here], 0, atol=1e-8)
         stopped += here.sum()
     assert stopped >= 6
+    low, high = ends
+    turn = np.linspace(-2, 3, 21)[:, None]
+    found = np.isfinite(follow(plan, q, 0.5, turn * np.ones(len(q)))).all(axis=-1)
+    assert (found == ((turn > low) & (turn < high))).all()
+
+
+def test_forces_go_through_links_without_mass() -> None:
+    """A load on link 5 of a Stephenson III: link 6 bears along DE, and both ends of link 5 bear the load."""
+    batch = six_bars("pins 3 1", 10, np.random.default_rng(8))
+    plan = plan_of(batch)
+    motion, load = rates(plan, start(plan, 1.0)), np.array([2.0, -3.0])
+    found = forces(plan, motion, {}, [(5, (0.1, 0.2), load, 0.0)])
+    tip = np.stack([batch.r6, 0 * batch.r6], axis=-1)
+    along = carried(motion, 6, tip)[0] - carried(motion, 6, (0.0, 0.0))[0]
+    np.testing.assert_allclose(cross(along, found["e"]), 0, atol=1e-11)  # on link 5 by 6
+    np.testing.assert_allclose(found["d"], found["e"], atol=1e-11)  # on link 6 by the ground
+    np.testing.assert_allclose(found["c"], found["e"] + load, atol=1e-11)  # on link 3 by 5
 
 
 def test_klanns_leg() -> None:
