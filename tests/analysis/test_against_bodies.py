@@ -54,9 +54,11 @@ def both(request: pytest.FixtureRequest) -> Both:
 
 def agree(found: Array, expected: Array, clear: Array) -> None:
     """To 1e-9 of the greatest of each linkage, where it is clear of dead positions."""
-    apart = np.where(clear, np.abs(found - expected), 0.0)
-    peak = np.where(clear, np.abs(expected), 0.0).max(axis=0)
-    assert (apart <= 1e-9 * np.maximum(peak, 1e-3)).all()
+    apart, size = (
+        np.where(clear, np.abs(values).reshape(*clear.shape, -1).max(axis=-1), 0.0)
+        for values in (found - expected, expected)
+    )
+    assert (apart <= 1e-9 * np.maximum(size.max(axis=0), 1e-3)).all()
 
 
 def test_every_linkage_moves(both: Both) -> None:
@@ -66,15 +68,16 @@ def test_every_linkage_moves(both: Both) -> None:
 
 
 def test_positions_and_rates_to_the_jerk(both: Both) -> None:
-    for link in (2, 3, 4):
-        at = both.rng.normal(size=(COUNT, 2))
-        moved = both.state.point(link, at)
-        expected = np.stack([moved.position, moved.velocity, moved.acceleration, moved.jerk])
-        found = carried(both.motion, link, at)
-        for k in range(4):
-            agree(found[k], expected[k], both.clear[..., None])
-        for k, rate in enumerate(both.state.angular(link)[1:], 1):
-            agree(both.motion[k, ..., 3 * link - 4], rate, both.clear)
+    """Against the greatest of all links: rounding in one is as large as rates of the others ask for."""
+    places = both.rng.normal(size=(3, COUNT, 2))
+    moved = [both.state.point(link, at) for link, at in enumerate(places, 2)]
+    found = np.stack([carried(both.motion, link, at) for link, at in enumerate(places, 2)], axis=-1)
+    for k, name in enumerate(("position", "velocity", "acceleration", "jerk")):
+        expected = np.stack([getattr(motion, name) for motion in moved], axis=-1)
+        agree(found[k], expected, both.clear)
+    turned = [both.state.angular(link) for link in (2, 3, 4)]
+    for k in (1, 2, 3):
+        agree(both.motion[k, ..., 2::3], np.stack([rates[k] for rates in turned], axis=-1), both.clear)
 
 
 def test_a_slide_travels_the_same(both: Both) -> None:
@@ -121,7 +124,7 @@ def test_joint_forces_and_torque(both: Both) -> None:
         pairs |= {"slide": "slide_force", "slide moment": "slide_moment"}
     for name, theirs in pairs.items():
         values = getattr(expected, theirs)
-        agree(found[name], values, both.clear[..., None] if values.ndim == 3 else both.clear)
+        agree(found[name], values, both.clear)
 
 
 def test_the_driver_stops_at_the_ends_of_its_range(both: Both) -> None:
