@@ -18,32 +18,6 @@ Point = tuple[int, Any]  # a link, and u + iv in its frame
 
 
 @dataclass(frozen=True)
-class SixBar:
-    """A four-bar, named as in `FourBar`, with a dyad between two of its links; one, or a batch.
-
-    `hosts` are the links that carry C and D, `c` and `d` their places there, r5 = CE and r6 = DE.
-    A slide on the ground may take the place of D and link 6.
-    """
-
-    o2: Any
-    o4: Any
-    r2: Any
-    r3: Any
-    r4: Any
-    hosts: tuple[int, int]
-    c: Any
-    r5: Any
-    d: Any = None
-    r6: Any = None
-    assembly: Any = 1
-    assembly_2: Any = 1
-    coupler_point: Any = (0.0, 0.0)
-    point_link: int = 5
-    slide_angle_2: Any = None
-    offset_2: Any = None
-
-
-@dataclass(frozen=True)
 class Plan:
     """What joins the bodies; the numbers in pins, slots and sides are those of points and angles."""
 
@@ -118,7 +92,7 @@ class _Sketch:
 
 
 def plan_of(linkage: Any) -> Plan:
-    """The bodies of a linkage of the package, or of a `SixBar`; of its public fields alone."""
+    """The bodies of a linkage of the package, from its public fields alone."""
     made, crank, kind = _Sketch(), (2, linkage.r2), type(linkage).__name__
     o2 = complex_of(linkage.o2)
     made.pin("o2", (2, 0.0), (1, o2))
@@ -134,8 +108,9 @@ def plan_of(linkage: Any) -> Plan:
         made.rrr("a b o4", (3, 4), crank, (1, complex_of(linkage.o4)), linkage.r3, linkage.r4)
         sizes += [linkage.r3, linkage.r4]
     made.signs.append(linkage.assembly)
-    if hasattr(linkage, "hosts"):
-        (i, j), c, angle = linkage.hosts, complex_of(linkage.c), linkage.slide_angle_2
+    if kind == "SixBar":
+        (i, j), c = linkage.choices["hosts"], complex_of(linkage.c)
+        angle = getattr(linkage, "slide_angle_2", None)
         if angle is None:
             made.rrr("c e d", (5, 6), (i, c), (j, complex_of(linkage.d)), linkage.r5, linkage.r6)
         else:

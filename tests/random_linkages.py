@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from body_coordinates import carried, follow, rates, start
-from body_plans import SixBar, plan_of
+from body_plans import plan_of
 
-from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
 
 # Links that carry C and D: Watt I (twice), Watt II (twice), Stephenson I, Stephenson III.
 PINNED = ((2, 3), (3, 4), (2, 1), (4, 1), (2, 4), (3, 1))
@@ -54,19 +54,22 @@ def six_bars(row: str, count: int, rng: np.random.Generator, turning: bool = Tru
     c, d = (size * rng.normal(0, 0.7, (count, 2)) + (first.o4 if host == 1 else 0) for host in (i, j))
     plan = plan_of(first)
     motion = rates(plan, follow(plan, start(plan, 0.0), 0.0, TURN))
-    way_c, shared = carried(motion, i, c)[0], (first.o2, first.o4, first.r2, first.r3, first.r4, (i, j), c)
-    sign, point = rng.choice([-1, 1], count), first.coupler_point
+    way_c = carried(motion, i, c)[0]
+    shared = {
+        name: getattr(first, name) for name in ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly")
+    }
+    shared |= {"hosts": (i, j), "c": c, "assembly_2": rng.choice([-1, 1], count)}
     if press:
         angle = rng.uniform(-np.pi, np.pi, count)
         across = ((way_c - first.o2) * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)).sum(axis=-1)
         offset = across.mean(axis=0) + 0.3 * first.r1 * rng.normal(size=count)
         shares = rng.uniform(1.05, 3, count) if turning else rng.uniform(0.7, 1.5, count)
         r5 = np.abs(across - offset).max(axis=0) * shares
-        return SixBar(*shared, r5, None, None, first.assembly, sign, point, 5, angle, offset)
+        return SixBar(**shared, r5=r5, slide_angle_2=angle, offset_2=offset)
     apart = np.linalg.norm(carried(motion, j, d)[0] - way_c, axis=-1)
     least, most = apart.min(axis=0), apart.max(axis=0)
     if turning:
         total, more = most * rng.uniform(1.05, 2, count), least * rng.uniform(-0.9, 0.9, count)
     else:
         total, more = most * rng.uniform(0.75, 1.2, count), most * rng.uniform(-0.6, 0.6, count)
-    return SixBar(*shared, (total + more) / 2, d, (total - more) / 2, first.assembly, sign, point)
+    return SixBar(**shared, d=d, r5=(total + more) / 2, r6=(total - more) / 2)

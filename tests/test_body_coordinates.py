@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from body_coordinates import carried, follow, forces, gap, jacobian, margins, rates, reach, start
-from body_plans import Array, Plan, SixBar, plan_of
+from body_plans import Array, Plan, plan_of
 from random_linkages import ROWS, any_linkages, crank_rockers, six_bars
 
-from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
 
 KINDS = (FourBar, SliderCrank, InvertedSliderCrank)
 NORTON = {"o2": (0, 0), "o4": (100, 0), "r2": 40, "r3": 120, "r4": 80}
@@ -250,7 +250,7 @@ def test_six_bars_turn_and_stand_where_newton_finds_them_anew(row: Any) -> None:
 def test_six_bars_stop_where_either_loop_does(row: Any) -> None:
     """The dyad is stretched or folded there, or its rod stands square to its slide: on the four-bar alone."""
     batch = six_bars(row, 20, np.random.default_rng(6), turning=False)
-    plan = plan_of(batch)
+    (hosts, press), plan = ROWS[row], plan_of(batch)
     q = start(plan, 0.5, guesses=40)
     first = plan_of(FourBar(batch.o2, batch.o4, batch.r2, batch.r3, batch.r4, (0, 0), batch.assembly))
     standing = start(first, 0.5)
@@ -259,9 +259,9 @@ def test_six_bars_stop_where_either_loop_does(row: Any) -> None:
     for dead in ends:
         here = np.isfinite(dead)
         at = rates(first, follow(first, standing, 0.5, np.where(here, dead, 0.5)[None]))
-        c = carried(at, batch.hosts[0], batch.c)[0, 0]
-        if batch.slide_angle_2 is None:
-            apart = np.linalg.norm(carried(at, batch.hosts[1], batch.d)[0, 0] - c, axis=-1)
+        c = carried(at, hosts[0], batch.c)[0, 0]
+        if not press:
+            apart = np.linalg.norm(carried(at, hosts[1], batch.d)[0, 0] - c, axis=-1)
             missed = np.minimum(
                 np.abs(batch.r5 + batch.r6 - apart), np.abs(np.abs(batch.r5 - batch.r6) - apart)
             )

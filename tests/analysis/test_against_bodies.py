@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from body_coordinates import carried, follow, forces, margins, rates, reach, start
 from body_plans import Array, plan_of
-from random_linkages import any_linkages
+from random_linkages import ROWS, any_linkages, six_bars
 
 from grashof.analysis import (
     AppliedForce,
@@ -139,3 +139,17 @@ def test_the_driver_stops_at_the_ends_of_its_range(both: Both) -> None:
         chosen = np.abs(moved).argmin()
         assert abs(moved[chosen]) < 1e-9
         assert high - low == pytest.approx(own[chosen, 1] - own[chosen, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_six_bars_move_alike(row: str) -> None:
+    batch = six_bars(row, 40, np.random.default_rng(9))
+    plan, turn = plan_of(batch), np.linspace(0, 2 * np.pi, 25)[:, None]
+    motion = rates(plan, follow(plan, start(plan, 0.0), 0.0, turn[:, 0]), *DRIVER)
+    clear = (np.abs(margins(plan, motion[0])) > 0.05).all(axis=-1)
+    assert clear.mean() > 0.5
+    state, places = solve_kinematics(batch, turn, *DRIVER), np.array([(0.3, -0.2), (-0.4, 0.7)])
+    moved = [state.point(link, at) for link, at in zip((5, 6), places, strict=True)]
+    found = np.stack([carried(motion, link, at) for link, at in zip((5, 6), places, strict=True)], axis=-1)
+    for k, name in enumerate(("position", "velocity", "acceleration", "jerk")):
+        agree(found[k], np.stack([getattr(point, name) for point in moved], axis=-1), clear)
