@@ -1,0 +1,75 @@
+"""Batches of linkages at random, of every kind, placed and turned anywhere."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from body_coordinates import carried, follow, rates, start
+from body_plans import plan_of
+
+from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
+
+# Links that carry C and D: Watt I (twice), Watt II (twice), Stephenson I, Stephenson III.
+PINNED = ((2, 3), (3, 4), (2, 1), (4, 1), (2, 4), (3, 1))
+PRESSES = ((4, 1), (3, 1))  # those with a slide on the ground
+ROWS = {
+    **{f"pins {i} {j}": ((i, j), False) for i, j in PINNED},
+    **{f"slide {i} {j}": ((i, j), True) for i, j in PRESSES},
+}
+TURN = np.linspace(0, 2 * np.pi, 73)
+
+
+def any_linkages(kind: type[Any], count: int, rng: np.random.Generator) -> Any:
+    """Linkages of one loop whose drivers turn or swing; some cannot be assembled at a given angle."""
+    o2, point, assembly = rng.normal(size=(count, 2)), rng.normal(size=(count, 2)), rng.choice([-1, 1], count)
+    o4, offset = o2 + 1.5 * rng.normal(size=(count, 2)), 0.5 * rng.normal(size=count)
+    if kind is SliderCrank:
+        r2, r3, angle = (rng.uniform(*ends, count) for ends in ((0.3, 1.5), (0.5, 3), (-np.pi, np.pi)))
+        return SliderCrank(o2, r2, r3, offset, angle, point, assembly)
+    if kind is InvertedSliderCrank:
+        return InvertedSliderCrank(o2, o4, rng.uniform(0.3, 2, count), offset, point, assembly)
+    return FourBar(o2, o4, *rng.uniform(0.4, 2.5, (3, count)), point, assembly)
+
+
+def crank_rockers(count: int, rng: np.random.Generator) -> FourBar:
+    """Four-bars whose drivers turn fully, most of them well away from dead positions."""
+    o2, theta1, point = (
+        rng.normal(size=(count, 2)),
+        rng.uniform(-np.pi, np.pi, count),
+        rng.normal(size=(count, 2)),
+    )
+    size, r2 = np.exp(rng.uniform(-1, 1, count)), rng.uniform(0.2, 0.8, count)
+    total, apart = 1 + r2 + rng.uniform(0.1, 1.5, count), (1 - r2) * rng.uniform(-0.9, 0.9, count)
+    o4 = o2 + (size * [np.cos(theta1), np.sin(theta1)]).T
+    r3, r4 = size * (total + apart) / 2, size * (total - apart) / 2
+    return FourBar(o2, o4, size * r2, r3, r4, size[:, None] * point, rng.choice([-1, 1], count))
+
+
+def six_bars(row: str, count: int, rng: np.random.Generator, turning: bool = True) -> SixBar:
+    """Six-bars of one of `ROWS` whose drivers turn fully; or are stopped by the second loop, many of them."""
+    (i, j), press = ROWS[row]
+    first = crank_rockers(count, rng)
+    size = first.r1[:, None]
+    c, d = (size * rng.normal(0, 0.7, (count, 2)) + (first.o4 if host == 1 else 0) for host in (i, j))
+    plan = plan_of(first)
+    motion = rates(plan, follow(plan, start(plan, 0.0), 0.0, TURN))
+    way_c = carried(motion, i, c)[0]
+    shared = {
+        name: getattr(first, name) for name in ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly")
+    }
+    shared |= {"hosts": (i, j), "c": c, "assembly_2": rng.choice([-1, 1], count)}
+    if press:
+        angle = rng.uniform(-np.pi, np.pi, count)
+        across = ((way_c - first.o2) * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)).sum(axis=-1)
+        offset = across.mean(axis=0) + 0.3 * first.r1 * rng.normal(size=count)
+        shares = rng.uniform(1.05, 3, count) if turning else rng.uniform(0.7, 1.5, count)
+        r5 = np.abs(across - offset).max(axis=0) * shares
+        return SixBar(**shared, r5=r5, slide_angle_2=angle, offset_2=offset)
+    apart = np.linalg.norm(carried(motion, j, d)[0] - way_c, axis=-1)
+    least, most = apart.min(axis=0), apart.max(axis=0)
+    if turning:
+        total, more = most * rng.uniform(1.05, 2, count), least * rng.uniform(-0.9, 0.9, count)
+    else:
+        total, more = most * rng.uniform(0.75, 1.2, count), most * rng.uniform(-0.6, 0.6, count)
+    return SixBar(**shared, d=d, r5=(total + more) / 2, r6=(total - more) / 2)
