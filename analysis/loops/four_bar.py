@@ -40,7 +40,7 @@ class FourBarSides(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def close(self, theta2: FloatArray) -> Loop:
+    def close(self, theta2: FloatArray) -> Loop:  # closure: RRR
         """B is an intersection of the circles about A and O4 (Norton, *Design of Machinery*, sec. 4.5).
 
         Its distance from the diagonal A-O4 comes from Heron's product, which keeps its digits near the dead

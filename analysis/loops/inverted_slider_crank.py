@@ -32,7 +32,7 @@ class InvertedSides(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def close(self, theta2: FloatArray) -> Loop:
+    def close(self, theta2: FloatArray) -> Loop:  # closure: RPR
         """With l from A along the rod to B: e^(i theta3) (l - i offset) = O4 - A (Norton, sec. 4.7).
 
         l comes from the product (s - |offset|)(s + |offset|) of s = |O4 - A|, which keeps its digits near the

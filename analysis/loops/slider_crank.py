@@ -33,7 +33,7 @@ class SliderCrankSides(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def close(self, theta2: FloatArray) -> Loop:
+    def close(self, theta2: FloatArray) -> Loop:  # closure: RRP
         """With h from A to the slide, to its left, r3 sin(theta3 - slide_angle) = h (Norton, sec. 4.6).
 
         The cosine comes from the product (r3 - h)(r3 + h), which keeps its digits near the dead positions.
