@@ -24,7 +24,7 @@ NORTON = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(60
 Array = npt.NDArray[np.float64]
 
 
-def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:
+def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:  # closure: RRR
     """Angles, velocities and accelerations of links 3 and 4: three angles, two 2x2 solves, no more."""
     r1, r2, r3, r4 = map(float, NORTON.lengths)
     cos2, sin2 = np.cos(theta2), np.sin(theta2)

@@ -29,7 +29,7 @@ STEEPEST = np.cos(np.radians(15))  # cosine of the least transmission angle over
 
 def planted_points(
     kind: str, rng: np.random.Generator
-) -> tuple[ComplexArray, SliderCrank | InvertedSliderCrank]:
+) -> tuple[ComplexArray, SliderCrank | InvertedSliderCrank]:  # closure: RRP, RPR
     """Eight points in order, and the full-crank linkage of random sizes that they are taken from.
 
     Parameters

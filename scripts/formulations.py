@@ -87,7 +87,7 @@ class CouplerFormulation:
         driver: FloatArray = x[10] + choice.way * self.task.timing
         return driver
 
-    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:  # closure: RRR
         """Of positions, and of angles times the task's length."""
         o2, (r2, r3, r4), (u, v), body = x[:2], x[4:7], x[7:9], x[9]
         theta2 = self.driver(x, choice)
@@ -164,7 +164,7 @@ class FunctionFormulation:
         x[:3] = np.exp(rng.uniform(np.log(self.low[:3]), np.log(self.high[:3])))
         return x
 
-    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:  # closure: RRR
         """Of the output angle at every pair, rad."""
         r2, r3, r4 = x[:3]
         theta2 = x[3] + choice.way * self.task.inputs

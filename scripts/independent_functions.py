@@ -41,7 +41,7 @@ class Generator:
     output_sense: int
     assembly: int
 
-    def loop(self, unknowns: FloatArray, turned: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def loop(self, unknowns: FloatArray, turned: FloatArray) -> tuple[FloatArray, FloatArray]:  # closure: RRR
         """Output angle, and the cosine of the transmission angle; beyond 1 where the loop is open."""
         r2, r3, r4 = np.exp(np.clip(unknowns[:3], -FAR, FAR))
         seen = r2 * np.exp(1j * (unknowns[3] + turned)) - 1

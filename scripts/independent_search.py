@@ -120,7 +120,7 @@ class Places:
         return np.abs(self.o4 - self.o2)
 
 
-def places(aim: Aim, designs: Designs) -> Places:
+def places(aim: Aim, designs: Designs) -> Places:  # closure: RRR
     """All joints at all targets; where a loop does not close, links 3 and 4 are in line."""
     x = designs.x
     o2, o4, coupler = (x[:, k : k + 1] + 1j * x[:, k + 1 : k + 2] for k in (0, 2, 7))

@@ -1,6 +1,5 @@
 """The package as a whole: its map of folders, its layers, what importing it costs."""
 
-import ast
 import re
 import subprocess
 import sys
@@ -9,20 +8,20 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
-FOLDERS = {"problems": "grashof.problems", "analysis": "grashof.analysis", "synth": "grashof.synth"}
-# Every layer may import from those before it.
-LAYERS = ("grashof.problems", "grashof.analysis", "grashof.synth", "grashof")
+sys.path.append(str(Path(__file__).parents[1] / "scripts"))  # where its map is drawn
 
-
-def name_of(path: Path) -> str:
-    """Import name of a file, or of the folder of an `__init__.py`."""
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    parts = parts[1:] if parts[0] == "src" else ("grashof", *parts)
-    return ".".join(part for part in parts if part != "__init__")
-
-
-SOURCES = {name_of(path): path for folder in (*FOLDERS, "src") for path in (ROOT / folder).rglob("*.py")}
+from source_tree import (
+    FOLDERS,
+    LAYERS,
+    ROOT,
+    SOURCES,
+    circle_of_modules,
+    circle_of_rooms,
+    imported,
+    imports_of_rooms,
+    layer_of,
+    room,
+)
 
 
 def test_package_map_names_every_folder() -> None:
@@ -35,19 +34,6 @@ def test_package_map_names_every_folder() -> None:
     assert all((folder / "__init__.py").exists() for folder in with_code)
 
 
-def imported(name: str) -> set[str]:
-    """Modules that a module imports, lazily or not; a package where it takes a name from it."""
-    found = set()
-    for node in ast.walk(ast.parse(SOURCES[name].read_text())):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            module = node.module or ""
-            full = [f"{module}.{alias.name}" for alias in node.names]
-            found |= {each if each in SOURCES else module for each in full}
-    return found
-
-
 @pytest.mark.parametrize("name", SOURCES)
 def test_layers_import_only_from_below(name: str) -> None:
     mine = layer_of(name)
@@ -58,50 +44,14 @@ def test_layers_import_only_from_below(name: str) -> None:
             assert not other.startswith("casadi"), f"{name} imports casadi"
 
 
-def layer_of(name: str) -> str:
-    layer = ".".join(name.split(".")[:2])
-    return layer if layer in LAYERS else "grashof"
-
-
-def circle(arrows: dict[str, set[str]]) -> list[str]:
-    """Some circle of arrows, empty where there is none."""
-    left = dict(arrows)
-    while True:
-        reached = set().union(*left.values())
-        free = [name for name, others in left.items() if name not in reached or not others & left.keys()]
-        if not free:
-            return sorted(left)
-        for name in free:
-            del left[name]
-
-
 @pytest.mark.slow
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    arrows = {name: imported(name) - {name} for name in SOURCES}
-    # A package takes names from its modules to pass them on.
-    passing_on = {name for name, path in SOURCES.items() if path.name == "__init__.py"}
-    assert circle({name: others - passing_on for name, others in arrows.items()}) == []
-
-
-def room(name: str) -> str:
-    """Package that a module lies in."""
-    return name if SOURCES[name].name == "__init__.py" else name.rpartition(".")[0]
-
-
-def imports_of_rooms() -> dict[str, set[str]]:
-    """Other rooms that the modules of each room import from."""
-    arrows: dict[str, set[str]] = {}
-    for name in SOURCES:
-        if SOURCES[name].name != "__init__.py":
-            others = {room(other) for other in imported(name) if other in SOURCES}
-            arrows.setdefault(room(name), set()).update(others - {room(name)})
-    return arrows
+    assert circle_of_modules() == []
 
 
 @pytest.mark.slow
 def test_no_room_imports_from_one_that_imports_from_it() -> None:
-    layers = set(LAYERS)
-    assert circle({name: others - layers for name, others in imports_of_rooms().items()}) == []
+    assert circle_of_rooms() == []
 
 
 @pytest.mark.slow

@@ -65,7 +65,7 @@ def _rrr_margins(linkage: FourBar, driver: Vector) -> Margins:
     return Margins(square - (r3 - r4) * (r3 - r4), -square + (r3 + r4) * (r3 + r4))
 
 
-def _rrr_rod(linkage: FourBar, driver: Vector, root: Centred) -> Rod:
+def _rrr_rod(linkage: FourBar, driver: Vector, root: Centred) -> Rod:  # closure: RRR
     """e3 = w (|w|^2 + r3^2 - r4^2 + i root) / (2 r3 |w|^2), w from A to O4."""
     square, r3, r4 = _diagonal2(linkage, driver), _number(linkage.r3), _number(linkage.r4)
     twice = square * (2 * linkage.r3)
@@ -85,7 +85,7 @@ def _rrp_margins(linkage: SliderCrank, driver: Vector) -> Margins:
     return Margins(h + linkage.r3, -h + linkage.r3)
 
 
-def _rrp_rod(linkage: SliderCrank, driver: Vector, root: Centred) -> Rod:
+def _rrp_rod(linkage: SliderCrank, driver: Vector, root: Centred) -> Rod:  # closure: RRP
     """e3 = slide (root + i h) / r3, h from A to the slide."""
     cos, sin = unit(linkage.slide_angle)
     h = _to_slide(linkage, driver)
@@ -98,7 +98,7 @@ def _rpr_margins(linkage: InvertedSliderCrank, driver: Vector) -> Margins:
     return Margins(diagonal - away, diagonal + away)
 
 
-def _rpr_rod(linkage: InvertedSliderCrank, driver: Vector, root: Centred) -> Rod:
+def _rpr_rod(linkage: InvertedSliderCrank, driver: Vector, root: Centred) -> Rod:  # closure: RPR
     """e3 = w (l + i offset) / |w|^2, w from A to O4, l the root."""
     square = _diagonal2(linkage, driver)
     return Rod(_to_o4(linkage, driver).times(root / square, driver.x.constant(linkage.offset) / square), root)

@@ -40,7 +40,7 @@ def newton_position(
     theta2: npt.ArrayLike,
     guess: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     max_steps: int = 50,
-) -> NewtonPosition:
+) -> NewtonPosition:  # closure: RRR
     """Directions of coupler and output by Newton-Raphson.
 
     Parameters

@@ -66,7 +66,7 @@ class Pins(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
         """E is an intersection of the circles about C and D (Norton, *Design of Machinery*, sec. 4.5).
 
         Its distance from the line C-D comes from Heron's product, which keeps its digits near the dead
@@ -168,7 +168,7 @@ class Slider(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRP
         """With h from C to the slide, to its left, m sin(theta3 - slide) = h (Norton, sec. 4.6).
 
         The cosine comes from the product (m - h)(m + h), which keeps its digits near the dead positions.
@@ -268,7 +268,7 @@ class Block(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:
+    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
         """With l from C along the rod to E (Norton, sec. 4.7).
 
         l comes from the product (s - |offset|)(s + |offset|) of s = |D - C|, which keeps its digits near the

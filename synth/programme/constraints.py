@@ -149,7 +149,7 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
 
 def _closed(
     form: Form, x: Unknowns, a: list[ca.SX]
-) -> tuple[list[ca.SX], Callable[[int], ca.SX], list[ca.SX]]:
+) -> tuple[list[ca.SX], Callable[[int], ca.SX], list[ca.SX]]:  # closure: RRR, RRP, RPR
     """B at every target, `Places.across`, and what is zero where the loop closes."""
     turned = [unit(x.theta3[k]) for k in range(form.targets)]
     if form.kind.turns_with_coupler:

@@ -60,7 +60,7 @@ class FourBarKind(Kind):
 
     def closed(
         self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:
+    ) -> Closed:  # closure: RRR
         r2, r3, r4 = lengths
         diagonal = 1 - r2[:, None] * e2
         s = np.abs(diagonal)

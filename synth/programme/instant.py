@@ -193,6 +193,7 @@ class FourBarInstant(Instant):
 
     @classmethod
     def of(cls, o2: Vector, ground: Vector, lengths: Any, arm: Vector, assembly: Any, driver: Moment) -> Self:
+        # closure: RRR
         r2, r3, r4 = lengths[1], lengths[2], lengths[3]
         crank = r2 * Vector(np.cos(driver.theta2), np.sin(driver.theta2))
         diagonal = ground - crank

@@ -62,7 +62,7 @@ class InvertedKind(Kind):
 
     def closed(
         self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:
+    ) -> Closed:  # closure: RPR
         r2, _, offset = lengths
         diagonal = 1 - r2[:, None] * e2
         beside2 = np.abs(diagonal) ** 2 - offset[:, None] ** 2

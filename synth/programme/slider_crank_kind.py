@@ -63,7 +63,7 @@ class SliderCrankKind(Kind):
 
     def closed(
         self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:
+    ) -> Closed:  # closure: RRP
         r2, r3, offset = lengths
         reach = offset[:, None] - r2[:, None] * e2.real
         beside2 = (1 - reach) * (1 + reach)

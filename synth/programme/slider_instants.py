@@ -21,6 +21,7 @@ class SliderCrankInstant(Instant):
 
     @classmethod
     def of(cls, o2: Vector, ground: Vector, lengths: Any, arm: Vector, assembly: Any, driver: Moment) -> Self:
+        # closure: RRP
         """With h = offset - r2 e2 . n from A to the slide: r3 e3 = h n +- sqrt(r3^2 - h^2) s."""
         r2, r3, offset = lengths[1], lengths[2], lengths[3]
         across, along = ground, -ground.left
@@ -99,6 +100,7 @@ class InvertedInstant(Instant):
 
     @classmethod
     def of(cls, o2: Vector, ground: Vector, lengths: Any, arm: Vector, assembly: Any, driver: Moment) -> Self:
+        # closure: RPR
         """With l from A along the rod to B: O4 - A = (l - i offset) e3."""
         r1, r2, offset = lengths[0], lengths[1], lengths[3]
         crank = r2 * Vector(np.cos(driver.theta2), np.sin(driver.theta2))

@@ -165,7 +165,7 @@ def _at_points(points: ComplexArray, target: SearchTargets) -> tuple[Placed, Flo
     return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction
 
 
-def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:
+def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:  # closure: RRP
     """Slider-cranks that pass all points: where they stand there, and the shorter sense of the driver."""
     found = through.linkages
     if not isinstance(found, SliderCrank):

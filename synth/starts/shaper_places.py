@@ -93,7 +93,7 @@ class ShaperPlaces(RockerPlaces):
         return np.stack([low, high])
 
 
-def _along_rod(diagonal: ComplexArray, offset: FloatArray) -> ComplexArray:
+def _along_rod(diagonal: ComplexArray, offset: FloatArray) -> ComplexArray:  # closure: RPR
     """From A to B, the foot of the perpendicular from O4 on the rod; the diagonal is that from A to O4."""
     rod = np.sqrt(np.maximum(np.abs(diagonal) ** 2 - offset**2, 0.0))
     coupler: ComplexArray = rod * diagonal / (rod - 1j * offset)

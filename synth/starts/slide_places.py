@@ -202,7 +202,7 @@ class SlidePlaces(Places):
         return a, _on_slide(a, r3, offset)
 
 
-def _on_slide(a: ComplexArray, r3: FloatArray, offset: FloatArray) -> ComplexArray:
+def _on_slide(a: ComplexArray, r3: FloatArray, offset: FloatArray) -> ComplexArray:  # closure: RRP
     """B ahead of A on a slide along x; where the rod does not reach it, above or below A."""
     beside = offset - a.imag
     b: ComplexArray = a + np.sqrt(np.maximum((r3 - beside) * (r3 + beside), 0.0)) + 1j * beside

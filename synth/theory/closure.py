@@ -11,6 +11,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 
 def coupler_of(diagonal: ComplexArray, r3: FloatArray, r4: FloatArray, assembly: FloatArray) -> ComplexArray:
+    # closure: RRR
     """From A to B; NaN where the loop is open.
 
     Parameters
@@ -101,7 +102,7 @@ class SliderCrankClosure(Closure):
         return np.array([o2.real, o2.imag, theta1, 0.0, abs(a - o2), abs(b - a), offset])
 
     @staticmethod
-    def closed(dimensions: FloatArray, e2: ComplexArray, assembly: FloatArray) -> Closed:
+    def closed(dimensions: FloatArray, e2: ComplexArray, assembly: FloatArray) -> Closed:  # closure: RRP
         o2, e4 = complex(*dimensions[:2]), np.full(len(e2), np.exp(1j * dimensions[2]))
         r2, r3, offset = dimensions[4:]
         reach = (offset - r2 * _along(e2, e4)) / r3
@@ -126,7 +127,7 @@ class InvertedSliderCrankClosure(Closure):
         return np.array([o2.real, o2.imag, o4.real, o4.imag, abs(a - o2), 0.0, offset])
 
     @staticmethod
-    def closed(dimensions: FloatArray, e2: ComplexArray, assembly: FloatArray) -> Closed:
+    def closed(dimensions: FloatArray, e2: ComplexArray, assembly: FloatArray) -> Closed:  # closure: RPR
         o2, o4 = complex(*dimensions[:2]), complex(*dimensions[2:4])
         r2, _, offset = dimensions[4:]
         diagonal = o4 - o2 - r2 * e2

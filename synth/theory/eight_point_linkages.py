@@ -177,6 +177,7 @@ def _real_solutions(
 
 
 def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int) -> Through:
+    # closure: RRP
     """Those that close.
 
     Parameters
@@ -217,7 +218,7 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
 
 def _inverted_slider_cranks(
     places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
-) -> Through:
+) -> Through:  # closure: RPR
     """Those that close.
 
     Parameters

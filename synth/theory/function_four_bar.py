@@ -67,7 +67,7 @@ class FourBars(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def outputs(self, turned: FloatArray) -> FloatArray:
+    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RRR
         """theta4, unwrapped along the rotation, from the triangle A-B-O4."""
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)

@@ -60,7 +60,7 @@ class InvertedSliderCranks(Generators):
         distance: FloatArray = np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
         return distance
 
-    def outputs(self, turned: FloatArray) -> FloatArray:
+    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RPR
         """Direction of the rod, unwrapped: that of A-O4, and the offset beside it."""
         r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):

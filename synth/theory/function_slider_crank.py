@@ -69,7 +69,7 @@ class SliderCranks(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def _closed(self, turned: FloatArray) -> tuple[FloatArray, ...]:
+    def _closed(self, turned: FloatArray) -> tuple[FloatArray, ...]:  # closure: RRP
         """r2 cos(theta2), r2 sin(theta2), h from A to the slide, and B less A along it, each (M, N)."""
         r2, r3, share = np.exp(self.shape[:, :1]), np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
         theta2 = self.shape[:, 3:] + turned

@@ -23,7 +23,7 @@ _GREY = 120, 120, 120
 _CRANK = {"A": "O2 + r2 * (cos(t), sin(t))"}
 _STEPS: dict[type[Linkage], dict[str, str]] = {
     # Norton, Design of Machinery, sec. 4.5: B on circles about A and O4.
-    FourBar: {
+    FourBar: {  # closure: RRR
         **_CRANK,
         "d": "sqrt((x(O4) - x(A))^2 + (y(O4) - y(A))^2)",
         "f": "(r3^2 - r4^2 + d^2) / (2 * d)",
@@ -33,7 +33,7 @@ _STEPS: dict[type[Linkage], dict[str, str]] = {
         "g": "(y(B) - y(A)) / r3",
     },
     # Sec. 4.6: h from A to the slide, to its left.
-    SliderCrank: {
+    SliderCrank: {  # closure: RRP
         **_CRANK,
         "h": "c - ((y(A) - y(O2)) * cos(k) - (x(A) - x(O2)) * sin(k))",
         "f": "s * sqrt(r3^2 - h^2)",
@@ -42,7 +42,7 @@ _STEPS: dict[type[Linkage], dict[str, str]] = {
         "g": "(y(B) - y(A)) / r3",
     },
     # Sec. 4.7: (f - i c) turned by the rod's angle is O4 - A.
-    InvertedSliderCrank: {
+    InvertedSliderCrank: {  # closure: RPR
         **_CRANK,
         "d": "(x(O4) - x(A))^2 + (y(O4) - y(A))^2",
         "f": "s * sqrt(d - c^2)",

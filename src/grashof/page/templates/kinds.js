@@ -8,6 +8,7 @@ const unitVector = (x, y) => {
 
 // B is the crossing of the circles about A and O4 on the side that the assembly names. Heron's
 // product keeps its digits near dead positions.
+// closure: RRR
 function closeFourBar({ o4, r3, r4 }, a, assembly) {
   const [x, y] = [o4[0] - a[0], o4[1] - a[1]];
   const s = Math.hypot(x, y);
@@ -26,6 +27,7 @@ function closeFourBar({ o4, r3, r4 }, a, assembly) {
 }
 
 // B is on the slide, ahead of A along it or behind; `h` is the height of the slide above A.
+// closure: RRP
 function closeSliderCrank({ o2, r3, offset, slide_angle }, a, assembly) {
   const [cos, sin] = [Math.cos(slide_angle), Math.sin(slide_angle)];
   const [x, y] = [a[0] - o2[0], a[1] - o2[1]];
@@ -42,6 +44,7 @@ function closeSliderCrank({ o2, r3, offset, slide_angle }, a, assembly) {
 }
 
 // The rod passes O4 at the offset; B is the foot of O4 on it, `slide` from A along the rod.
+// closure: RPR
 function closeInverted({ o4, offset }, a, assembly) {
   const [x, y] = [o4[0] - a[0], o4[1] - a[1]];
   const s = Math.hypot(x, y);
