@@ -295,7 +295,7 @@ def _one_or_each(given: object, name: str) -> tuple[float, ...]:
         if len(given) not in (1, *_COUNTS):
             return tuple(given)  # of no linkage: `misplaced` tells what it must be
         each = tuple(from_zero(value, name) for value in given)
-        return each[:1] if len(set(each)) == 1 else each
+        return each[:1] if len(each) <= len(JOINTS) and len(set(each)) == 1 else each
     return (from_zero(given, name),)  # type: ignore[arg-type]
 
 

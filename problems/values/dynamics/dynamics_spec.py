@@ -123,7 +123,7 @@ class DynamicsSpec(Stated):
                 self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
         for name in ("masses", "inertias"):
             self._set(name, _each(getattr(self, name), f"dynamics.{name}"))
-        if self.masses is not None and not any(self.masses):
+        if self.masses and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
         if self.centres is not None:
             self._set("centres", _places(self.centres, "dynamics.centres"))
@@ -230,12 +230,15 @@ def _each(values: Sequence[float] | None, where: str) -> tuple[float, ...] | Non
         return None
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a number for each moving link")
-    return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(values))
+    given = tuple(values)
+    if len(given) not in _MOVING:
+        return given  # of no linkage: `misplaced` tells how many there must be
+    return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(given))
 
 
 def _places(values: Any, where: str) -> tuple[Pair, ...]:
     if not isinstance(values, Sequence):
         raise wrong_value(where, values, "a place [u, v] for each moving link")
     if len(values) not in _MOVING:
-        return tuple(values)  # of no linkage: `misplaced` tells what it must be
+        return tuple(values)
     return tuple((u, v) for u, v in (numbers(value, 2, f"{where}[{i}]") for i, value in enumerate(values)))

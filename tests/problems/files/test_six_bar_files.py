@@ -288,6 +288,69 @@ def test_a_list_without_a_part_of_a_six_bar_says_what_belongs_there(tmp_path: Pa
             load_linkage(f"{path}#3")
 
 
+ACTING = """
+[dynamics]
+masses = [1, 2, 3, 4, 5]
+inertias = [1, 2, 3, 4, 5]
+centres = [[0, 0], [1, 0], [1, 0], [1, 0], [1, 0]]
+[[loads]]
+link = 6
+at = [1, 0]
+force = [0, -9]
+[[loads]]
+link = 5
+over = "theta6"
+table = "load.csv"
+[[springs]]
+between = [{ link = 1, at = [0, 2] }, { link = 5 }]
+stiffness = 500
+[[torsion_springs]]
+between = [5, 3]
+stiffness = 7
+free_angle_deg = 30
+[friction]
+viscous = [1, 2, 3, 4, 5, 6, 7]
+"""
+
+
+def test_what_acts_on_every_link_is_read(tmp_path: Path) -> None:
+    (tmp_path / "load.csv").write_text("theta6_deg,moment_nm\n0,1\n90,2\n360,1\n", encoding="utf-8")
+    head = 'mechanism = "stephenson-3"\nlength_unit = "m"\n'
+    (tmp_path / "mine.toml").write_text(head + FOUR_BAR + DYAD + ACTING, encoding="utf-8")
+    found = load_linkage_spec(tmp_path / "mine.toml").dynamics
+    assert found is not None
+    assert found.masses == (1, 2, 3, 4, 5)
+    assert found.centres == ((0, 0), *[(1, 0)] * 4)
+    assert found.loads[1].values == ((0, 1), (90, 2), (360, 1))
+    assert found.springs[0].between[1].link == 5
+    assert (found.torsion_springs[0].between, found.torsion_springs[0].free_angle_deg) == ((3, 5), -30)
+    assert found.friction is not None
+    assert found.friction.viscous == (1, 2, 3, 4, 5, 6, 7)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            "[dynamics]\nmasses = [1, 2, 3]\ninertias = [1, 2, 3, 4, 5]",
+            "dynamics.masses has 3 entries; it must have 5 numbers",
+        ),
+        ("[[loads]]\nlink = 7\nmoment = 1", "loads[0].link is 7; it must be 2, 3, 4, 5 or 6"),
+        ("[[loads]]\nlink = 1\nmoment = 1", "loads[0].link is 1; it must be 2, 3, 4, 5 or 6"),
+        (
+            "[[dampers]]\nbetween = [{ link = 2 }, { link = 9 }]\ndamping = 1",
+            "dampers[0].between[1].link is 9; it must be 1, 2, 3, 4, 5 or 6",
+        ),
+        (
+            "[friction]\nviscous = [1, 2]",
+            "friction.viscous is [1, 2]; it must be a number, or seven: in O2, A, B, O4, C, E, D",
+        ),
+    ],
+)
+def test_what_acts_where_there_is_nothing_is_refused(text: str, line: str) -> None:
+    assert refused(FOUR_BAR + DYAD + text) == [line]
+
+
 def meeting(p: Any, r: float, q: Any, s: float, side: int) -> Any:
     """The point at r from p and at s from q, on the left of p -> q (+1) or on its right."""
     way = q - p
