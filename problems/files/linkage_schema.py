@@ -269,13 +269,11 @@ class LinkageTable(_Checked, MachineTables, _Heading):
             metres(self.length_unit, "pumping_unit")
             if self._given("output_arm") is None:
                 raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
-        dyad = self._given("dyad")
-        choices = (
-            {} if dyad is None else {"hosts": kind.dyads[1].hosts, "point_link": self._given("point_link")}
-        )
-        second = {} if dyad is None else dyad.value()
+        second: dict[str, Any] = {}
+        if (dyad := self._given("dyad")) is not None:
+            second = dyad.value() | {"hosts": kind.dyads[1].hosts, "point_link": self._given("point_link")}
         first = [row for row in kind.parameters if row.name not in second]
-        given = {row.name: _in_radians(row, getattr(self, row.key)) for row in first} | second | choices
+        given = {row.name: _in_radians(row, getattr(self, row.key)) for row in first} | second
         linkage = linkage_of(self.mechanism, given | ({"o4": self._o4()} if "o4" in given else {}))
         if "r1" in kind.lengths and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
