@@ -235,3 +235,10 @@ def test_a_link_is_a_whole_number(link: Any) -> None:
 
 def test_a_torsion_spring_given_the_other_way_round_has_the_other_sign() -> None:
     assert TorsionSpringSpec((6, 5), 1.0, 30) == TorsionSpringSpec((5, 6), 1.0, -30)
+
+
+def test_lists_of_sections_and_pins_are_of_one_loop() -> None:
+    section = SectionSpec(width=[1, 2, 3], height=1)
+    spec = DynamicsSpec(section=section, strength=StrengthSpec(1e8, pin_diameter=[1, 1, 1, 2]))
+    for row in MECHANISMS:
+        assert len(misplaced(spec, row)) == (0 if len(row.dyads) == 1 else 2)
