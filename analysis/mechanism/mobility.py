@@ -8,7 +8,7 @@ import numpy.typing as npt
 from grashof.analysis.loops.kinds import first_loop
 from grashof.analysis.loops.loop import CHANGE, GrashofClass
 from grashof.analysis.mechanism.closing import close, operands_of
-from grashof.problems import FourBar, Linkage
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 _OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).eps  # rad: rounding of an end
@@ -51,9 +51,9 @@ def triple_rocker_kind(linkage: Linkage) -> str:
     Barker 1985, *A complete classification of planar four-bar linkages*: the number is that of the
     longest link (ground, driver, coupler, output).
     """
-    if not isinstance(linkage, FourBar) or grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
+    if grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
         return ""
-    return f"RRR{int(np.argmax(linkage.lengths)) + 1}"
+    return f"RRR{int(np.argmax(linkage.lengths[:4])) + 1}"
 
 
 def rotatability(linkage: Linkage) -> FloatArray:
