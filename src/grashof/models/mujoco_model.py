@@ -61,10 +61,10 @@ class _Loop(NamedTuple):
 def mjcf(model: Model) -> str:
     """A model in MJCF: lengths in m, masses in kg, the motion in the x-y plane.
 
-    Coordinates are the angles of links on the ground from the x-axis (of a block: theta4), those in A, C and D
-    of links on moving ones, and the travel of slides. The model stands assembled at the driver angle it begins
-    from, and a drive turns it steadily. Gravity and masses are those of the file, or bars of 1 kg/m; friction,
-    springs and loads are left out.
+    Coordinates are the angles of links on the ground from the x-axis (of a block: theta4), those in A, C and
+    D of links on moving ones, and the travel of slides. The model stands assembled at the driver angle it
+    begins from, and a drive turns it steadily. Gravity and masses are those of the file, or bars of 1 kg/m;
+    friction, springs and loads are left out.
 
     Parameters
     ----------
