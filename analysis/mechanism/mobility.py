@@ -37,6 +37,7 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
     'crank-rocker'
     """
@@ -106,6 +107,7 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
     >>> passes_change_point(parallelogram, 0.1, 3.1), passes_change_point(parallelogram, 3.1, 3.2)
     (False, True)
@@ -140,6 +142,7 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> triple_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
     [-108.21, 108.21]
@@ -244,6 +247,7 @@ def circuit_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLi
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> double_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=3, r3=1, r4=3)
     >>> circuit_index(double_rocker, np.radians([60, -60]), assembly=1).tolist()
     [0, 1]

@@ -12,7 +12,7 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.synth.theory.distinct import DISTINCT, apart, best_first, pick_apart, signature
+from grashof.synth.theory.distinct import DISTINCT, apart, best_first, mirrored, pick_apart, signature
 
 bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
