@@ -1,18 +1,18 @@
 """The layer on which each plate lies, so that no plate or pin hits another one while the linkage moves.
 
 The base is layer 0. A pin joins two plates and passes all layers between, on each of them inside a spacer as
-wide as a link's end: there it is in the way of every other part. The coupler shares a pin with both other
-links, so only driver and output can share a layer, and there are eight orders on one base. Empty layers would
-make pins longer and free nothing.
+wide as a link's end: there it is in the way of every other part. Links that share a pin lie on different
+layers, which leaves eight orders of a four-bar on one base. Empty layers would make pins longer and free
+nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations, product
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -25,15 +25,12 @@ from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.workshop.plates import Plate, PlateSizes
+from grashof.workshop.slots import base_angle
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
 _SAMPLES = 721
+GROUND = "ground"
 _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
-
-
-def plated(kind: Mechanism) -> tuple[str, ...]:
-    """The links that are plates: all that move, but for a slider or a block, which is a pin in a slot."""
-    return tuple(link.name for link in kind.links[1:] if not (kind.slides and link is kind.links[-1]))
 
 
 def pinned(kind: Mechanism) -> dict[str, tuple[str, ...]]:
@@ -178,11 +175,6 @@ def poses(linkage: Linkage, theta2: FloatArray) -> dict[str, FloatArray]:
     return {name: np.column_stack([points[at], angle]) for name, (at, angle) in placed.items()}
 
 
-def base_angle(linkage: Linkage) -> float:
-    """Along which the base lies, rad: from O2 to O4, or along the slide."""
-    return float(getattr(linkage, "slide_angle", linkage.theta1))
-
-
 def placed(points: FloatArray, place: FloatArray) -> FloatArray:
     """Points (m, 2) of a plate where the plate is, shape (..., m, 2), for places (..., 3)."""
     cos, sin = np.cos(place[..., 2])[..., None], np.sin(place[..., 2])[..., None]
@@ -209,7 +201,12 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
     -------
     Stack
         With two bases, joined by posts outside the reach of the links, where no order on one base is free:
-        the second one carries the last joint from the other side, so that its pin passes no layer.
+        the second one carries some of the ground pivots from the other side.
+
+    Raises
+    ------
+    ProblemError
+        No order is free, as may be of a six-bar.
     """
 
     @cache
@@ -223,45 +220,75 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
         worst = int(np.argmin(gaps))
         return float(gaps[worst]), float(motion.theta2[worst])
 
-    links, joints = plated(linkage.mechanism), pinned(linkage.mechanism)
+    def meeting(order: Order) -> tuple[str, str] | None:
+        """The first two parts that come too close, if any do."""
+        return next((pair for pair in _passing(order) if gap(*pair)[0] < sizes.gap), None)
+
+    links, joints = tuple(plates), pinned(linkage.mechanism)
     met: dict[str, None] = {}
-    for layers in _orders(links, joints):
-        pins = _pins(joints, layers)
-        pair = next((pair for pair in _passing(layers, pins) if gap(*pair)[0] < sizes.gap), None)
-        if pair is None:
-            return Stack(layers, pins, met=tuple(met))
+    for order in _orders(links, joints, [()]):
+        if (pair := meeting(order)) is None:
+            return Stack(*order, met=tuple(met))
         met[_meeting(*pair, *gap(*pair), links)] = None
-    layers, top = {name: level for level, name in enumerate(links, start=1)}, len(links) + 1
+    pivots = [name for name, parts in joints.items() if GROUND in parts]
+    above = [some for count in range(1, len(pivots)) for some in combinations(pivots, count)]
+    free = next((order for order in _orders(links, joints, above) if meeting(order) is None), None)
+    if free is None:
+        raise ProblemError(
+            f"no order of the layers lets the {linkage.mechanism.word} move freely, on two bases neither; "
+            f"on one, {next(iter(met))}"
+        )
     posts = _posts(plates, linkage, motion, sizes)
-    *lower, last = _pins(joints, layers)
-    pins = (*lower, Pin(last.name, top - 1, top))
-    pins += tuple(Pin(f"post {i}", 0, top) for i in range(1, len(posts) + 1))
-    return Stack(layers, pins, posts, tuple(met))
+    top = max(free.layers.values()) + 1
+    pins = (*free.pins, *(Pin(f"post {i}", 0, top) for i in range(1, len(posts) + 1)))
+    return Stack(free.layers, pins, posts, tuple(met))
 
 
-def _orders(links: tuple[str, ...], joints: Mapping[str, tuple[str, ...]]) -> list[dict[str, int]]:
-    """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest."""
+class Order(NamedTuple):
+    """Layers of the links, and the pins that follow from them."""
+
+    layers: dict[str, int]
+    pins: tuple[Pin, ...]
+
+
+def _orders(
+    links: tuple[str, ...], joints: Mapping[str, tuple[str, ...]], above: Sequence[tuple[str, ...]]
+) -> list[Order]:
+    """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest.
+
+    `above` has the choices of ground pivots that a second base carries.
+    """
     levels = range(1, len(links) + 1)
-    orders = (dict(zip(links, each, strict=True)) for each in product(levels, repeat=len(links)))
+    orders = (
+        Order(layers, _pins(joints, layers, upper))
+        for each in product(levels, repeat=len(links))
+        if set(each) == set(range(1, max(each) + 1))  # no layer is empty
+        for layers in [dict(zip(links, each, strict=True))]
+        for upper in above
+    )
 
-    def possible(layers: dict[str, int]) -> bool:
-        """Whether no pin joins two parts on one layer, and no layer is empty."""
-        apart = all(pin.low < pin.high for pin in _pins(joints, layers))
-        return apart and set(layers.values()) == set(range(1, max(layers.values()) + 1))
+    def cost(order: Order) -> tuple[int, int, int]:
+        spacers = sum(len(pin.passed) for pin in order.pins)
+        return max(order.layers.values()), spacers, order.layers["driver"]
 
-    def cost(layers: dict[str, int]) -> tuple[int, int, int]:
-        spacers = sum(len(pin.passed) for pin in _pins(joints, layers))
-        return max(layers.values()), spacers, layers["driver"]
-
-    return sorted(filter(possible, orders), key=cost)
-
-
-def _pins(joints: Mapping[str, tuple[str, ...]], layers: Mapping[str, int]) -> tuple[Pin, ...]:
-    return tuple(Pin(name, *sorted(layers.get(part, 0) for part in parts)) for name, parts in joints.items())
+    # No pin joins two parts on one layer.
+    return sorted((each for each in orders if all(pin.low < pin.high for pin in each.pins)), key=cost)
 
 
-def _passing(layers: Mapping[str, int], pins: tuple[Pin, ...]) -> Iterator[tuple[str, str]]:
+def _pins(
+    joints: Mapping[str, tuple[str, ...]], layers: Mapping[str, int], above: tuple[str, ...]
+) -> tuple[Pin, ...]:
+    """The pins, those of the pivots `above` from the base over all layers."""
+    top = max(layers.values()) + 1
+    return tuple(
+        Pin(name, *sorted(layers.get(part, top if name in above else 0) for part in parts))
+        for name, parts in joints.items()
+    )
+
+
+def _passing(order: Order) -> Iterator[tuple[str, str]]:
     """Pairs of parts that are on the same layer somewhere."""
+    layers, pins = order
     for layer in range(1, max(layers.values()) + 1):
         there = [name for name in layers if layers[name] == layer]
         there += [pin.name for pin in pins if layer in pin.passed]

@@ -1,22 +1,42 @@
 """Linkages of every kind, turning and swinging, on both assemblies, in several units."""
 
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
+from random_linkages import ROWS, TURN, six_bars
 
-from grashof.analysis import full_rotation
+from grashof.analysis import full_rotation, solve_position
 from grashof.analysis.judge.planted import (
     random_full_crank,
     random_inverted_slider_crank,
     random_slider_crank,
 )
 from grashof.models import Model
-from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, SixBar, load_linkage_spec
 
 DRIVEN = DynamicsSpec(
     speed_rpm=-90.0, masses=(0.4, 1.2, 0.7), inertias=(0.01, 0.05, 0.02), gravity=(0.0, -9.81)
 )
+
+
+# Klann's leg (US patent 6 260 862).
+LEG = SixBar(
+    o2=(1.599, 0.750), o4=(1.009, 0.574), r2=0.268, r3=0.590, r4=0.3206, assembly=-1, hosts=(3, 1),
+    c=(1.09894712, -0.11645274), d=(1.366, 1.366), r5=0.8966, r6=0.5177,
+    coupler_point=(-0.77628869, -0.44862839),
+)  # fmt: skip
+
+
+def turning_six_bar(row: str, point_link: int) -> SixBar:
+    """A six-bar of one of `ROWS` well away from dead positions."""
+    rng = np.random.default_rng(71)
+    for _ in count():
+        found = six_bars(row, 1, rng)[0]
+        if np.min(np.abs(solve_position(found, TURN).margins)) > 0.3:
+            return SixBar(**(found.stated | {"point_link": point_link}))
+    raise AssertionError
 
 
 def models() -> list[Model]:
@@ -31,6 +51,10 @@ def models() -> list[Model]:
     rocker = FourBar(o2=(1, 0), o4=(5, 1), r2=3.5, r3=3, r4=2, coupler_point=(1, 1), assembly=-1)
     assert not full_rotation(rocker)
     found.append(Model.of(LinkageSpec(rocker, "swinging", length_unit="m")))
+    for number, row in enumerate(ROWS):
+        linkage, unit = turning_six_bar(row, 2 + (3 + number) % 5), ("m", "mm", "in", "")[number % 4]
+        found.append(Model.of(LinkageSpec(linkage, f"{linkage.mechanism.word} with {row}", length_unit=unit)))
+    found.append(Model.of(LinkageSpec(LEG, "leg", length_unit="m")))
     return [*found, Model.of(load_linkage_spec("pumpjack"))]
 
 
