@@ -268,6 +268,27 @@ _SLIDER_CRANK = (
 )
 _INVERTED = f'mechanism = "inverted-slider-crank"\n{_HEAD}o2 = [1, 2]\nr2 = 1\noffset = -0.5\n'
 _FOUR_BAR = 'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
+_SIX_BAR = (
+    f'mechanism = "watt-2"\n{_HEAD}o2 = [1, 2]\nr1 = 4\nground_angle_deg = 20\nr2 = 1\nr3 = 4\nr4 = 3\n'
+    "coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\npoint_link = 6\n"
+)
+_DYAD = '[dyad]\nkind = "RRR"\nhosts = [4, 1]\nc = [4, 1]\nd = [9, 0]\nr5 = 4\nr6 = 3\nassembly = -1\n'
+_PRESS = '[dyad]\nkind = "RRP"\nc = [4, 1]\nr5 = 7\noffset = -2\nslide_angle_deg = 30\n'
+_ON_SIX = """
+[dynamics]
+masses = [1, 2, 3, 4, 5]
+inertias = [1, 2, 3, 4, 5]
+centres = [[0.5, 0], [2, 0.1], [1, 0], [1, 0], [1, 0]]
+[[loads]]
+link = 6
+over = "theta6"
+values = [[0, 1, 2], [180, 3, 4], [360, 1, 2]]
+[[torsion_springs]]
+between = [6, 5]
+stiffness = 7
+[friction]
+viscous = [1, 2, 3, 4, 5, 6, 7]
+"""
 _LINKAGES = (
     *(_SLIDER_CRANK + acting for acting in (_SLIDING, _OTHERWISE, _acting(_ON_SLIDE))),
     f"{_INVERTED}r1 = 4\nground_angle_deg = 200\n"
@@ -286,6 +307,8 @@ _LINKAGES = (
     "length_unit = 'm'\no4 = [5, 3]\nr2 = 1.2\nr3 = 3.8\nr4 = 3\noutput_arm = 4\n"
     "[pumping_unit]\nrod_load = 2e4\n",
     "o2 = [1, 1]\no4 = [5, 1]\nr2 = 3\nr3 = 3\nr4 = 4\n",  # its driver does not turn fully
+    f"{_SIX_BAR}{_DYAD}{_ON_SIX}",
+    f"{_SIX_BAR.replace('r1 = 4', 'o4 = [5, 3]').replace('ground_angle_deg = 20', '')}{_PRESS}{_SLIDING}",
 )
 
 

@@ -22,11 +22,12 @@ from pydantic_core import PydanticUndefined
 
 from grashof.problems import DynamicsSpec, Problem, Requirements
 from grashof.problems.files.dynamics_schema import MachineTables
-from grashof.problems.files.linkage_schema import FILES, LinkageTable
+from grashof.problems.files.linkage_schema import FILES, DyadTable, LinkageTable
 from grashof.problems.files.problem_schema import ProblemFile, WeightsTable
 from grashof.problems.files.tables import Table, tables_of
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.mechanisms import CLASSES
+from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity
 from grashof.problems.values.requirements.requirements import LIMITS, Rotatability
@@ -107,8 +108,10 @@ def _sources(table: type[Table]) -> Iterator[object]:
         yield Search
     if issubclass(table, ProblemFile):
         yield from (Problem, DynamicsSpec)
+    elif issubclass(table, DyadTable):
+        yield SixBar
     elif issubclass(table, LinkageTable):
-        yield from (CLASSES[kind] for kind, file in FILES.items() if file is table)
+        yield from {CLASSES.get(kind, SixBar): None for kind, file in FILES.items() if file is table}
         yield from (LinkageSpec, DynamicsSpec)
     elif isinstance(made := _made(table), type):
         yield from (getattr(made, "from_degrees", made), made)

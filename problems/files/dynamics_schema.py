@@ -10,9 +10,10 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from grashof.problems.files.number_table import Names, number_table
 from grashof.problems.files.tables import Table, listed
-from grashof.problems.values.checks import located
+from grashof.problems.values.checks import located, refuse
 from grashof.problems.values.dynamics.acting import (
     OVER,
+    TURNING,
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -27,10 +28,12 @@ from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, Pumpi
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.dynamics.strength import StrengthSpec
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.specs.dynamics_of_kind import without_place
 
 Point = Annotated[list[float], listed("[u, v]")]
 # Columns of files, with or without their units.
-_ENDINGS = {"theta2": "_deg", "theta4": "_deg", "time": "_s"}
+_ENDINGS = {"time": "_s", **dict.fromkeys(TURNING, "_deg")}
 _PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
 _ROD_LOADS = {
@@ -289,12 +292,14 @@ class MachineTables(Table):
     section: SectionTable | None = None
     strength: StrengthTable | None = None
 
-    def dynamics_spec(self) -> DynamicsSpec | None:
-        """All of it as one value; None where nothing is stated."""
+    def dynamics_spec(self, *kinds: Mechanism) -> DynamicsSpec | None:
+        """All of it as one value, for some kinds of linkages; None where nothing is stated."""
         names = [name for name in MachineTables.model_fields if getattr(self, name)]
         if not names:
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
-        return DynamicsSpec(
+        spec = DynamicsSpec(
             **own, **{name: _argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
+        refuse([line for kind in kinds for line in without_place(spec, kind)])
+        return spec

@@ -32,8 +32,8 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, mechanism
+from grashof.problems.values.linkages.mechanism import MECHANISMS
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, WORDS, mechanism
 from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.specs.problem import Problem
 
@@ -137,7 +137,7 @@ def linkage_catalogue() -> tuple[str, ...]:
     Examples
     --------
     >>> linkage_catalogue()
-    ('crank-shaper', 'engine', 'lufkin-c912d', 'luggage-report', 'pumpjack')
+    ('crank-shaper', 'dwell-six-bar', 'engine', 'klann', 'lufkin-c912d', 'luggage-report', 'pumpjack')
     """
     return _LINKAGES.names
 
@@ -177,7 +177,7 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) ->
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     """Design of a list that `grashof solve` wrote, and all that the list states of it."""
-    from grashof.problems.files.linkage_schema import linkage_from
+    from grashof.problems.files.linkage_schema import as_document, linkage_from
 
     where = f"{path}#{which}"
     if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
@@ -201,11 +201,11 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     rank = ranks[which]
     design = designs[rank]
     with located_in(where):
-        kind = mechanism(design.get("mechanism", FOUR_BAR))
-    keys = {row.name: row for row in ONE_LOOP[kind].parameters}
+        kind = mechanism(design.get("mechanism", FOUR_BAR), among=WORDS)
+    keys = _names(kind, design.get("linkage"))
     try:
         stated = {key: design["linkage"][key] for key in keys}
-        turned = {key: stated.pop(key) for key, row in keys.items() if row.kind == "angle"}
+        turned = {key: stated.pop(key) for key, angle in keys.items() if angle}
         direction = design["direction"]
     except (KeyError, TypeError):
         raise ProblemError(
@@ -213,7 +213,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         ) from None
     # JSON can spell what no file can hold.
     heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
-    document = {"title": heading, "length_unit": unit, "mechanism": kind, **stated}
+    document = {"title": heading, "length_unit": unit, "mechanism": kind, **as_document(stated)}
     document["dynamics"] = content.get("dynamics", {})
     with located_in(where):
         driven = _cylinder(design.get("cylinder"))
@@ -230,6 +230,15 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
             linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
         )
     return listed, design
+
+
+def _names(word: str, stated: Any) -> dict[str, bool]:
+    """What `Linkage.stated` has for a kind of linkage, and whether it is an angle."""
+    rows = [row for row in MECHANISMS if row.word == word]
+    given = set(stated) if isinstance(stated, dict) else set()
+    kind = max(rows, key=lambda row: len(given & {each.name for each in row.parameters}))
+    choices = ("hosts", "point_link") if len(kind.dyads) > 1 else ()
+    return {each.name: each.kind == "angle" for each in kind.parameters} | dict.fromkeys(choices, False)
 
 
 def _cylinder(stated: Any) -> Cylinder | None:

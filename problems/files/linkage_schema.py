@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,14 +11,29 @@ import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
-from grashof.problems.files.tables import Table, Text, listed, of_length, stated
-from grashof.problems.values.checks import GREATEST, MOST_TURNS, finite_number, noted, number_within, refused
+from grashof.problems.files.tables import Table, Text, listed, of_length, one_of, stated
+from grashof.problems.values.checks import (
+    GREATEST,
+    MOST_TURNS,
+    finite_number,
+    noted,
+    number_within,
+    refuse,
+    refused,
+)
 from grashof.problems.values.dynamics.dynamics_spec import metres
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import ONE_LOOP, Mechanism
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, PARAMETERS, linkage_of, mechanism, not_had
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism
+from grashof.problems.values.linkages.mechanisms import (
+    FOUR_BAR,
+    PARAMETERS,
+    WORDS,
+    linkage_of,
+    mechanism,
+    not_had,
+)
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
 
@@ -47,7 +63,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
         ...
     grashof.problems.values.errors.ProblemError: coupler is unknown; did you mean coupler_point?
     """
-    kind = mechanism(document.get("mechanism", FOUR_BAR))
+    kind = mechanism(document.get("mechanism", FOUR_BAR), among=WORDS)
     wrong = dict(_of_other_kinds(document, kind))
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
@@ -58,20 +74,63 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     raise refused(lines)
 
 
+def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
+    """What `Linkage.stated` has, but angles, by the keys of a linkage file.
+
+    Examples
+    --------
+    >>> as_document({"r2": 1.0, "r5": 3.0, "offset_2": 0.5, "hosts": [3, 1]})
+    {'r2': 1.0, 'dyad': {'kind': 'RRP', 'hosts': [3, 1], 'r5': 3.0, 'offset': 0.5}}
+    """
+    inner = {key: given[row.name] for key, row in _OF_DYAD.items() if row.name in given}
+    names = ("hosts", *(row.name for row in _OF_DYAD.values()))
+    rest = {name: value for name, value in given.items() if name not in names}
+    if "hosts" in given:
+        kind = DyadKind.RRP if "offset_2" in given else DyadKind.RRR
+        rest["dyad"] = {"kind": str(kind), "hosts": given["hosts"], **inner}
+    return rest
+
+
 def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
     """Keys that only linkages of other kinds have, with what is wrong."""
-    for key in (key for key in document if key not in FILES[kind].model_fields):
-        if having := [word for word, file in FILES.items() if key in file.model_fields]:
-            yield key, not_had(key, (kind,), having)
+    own = set(FILES[kind].model_fields)
+    own |= set(DyadTable.model_fields) if "dyad" in own else set()  # one of these is in the wrong place
+    for key in (key for key in document if key not in own):
+        having = [word for word, file in FILES.items() if key in file.model_fields]
+        if having:
+            one_loop = [word for word in having if word in ONE_LOOP]
+            yield key, not_had(key, (kind,), one_loop or having)
 
 
-_PARAMETERS = {row.key: row for row in PARAMETERS}
+_SIX_BARS = tuple(row for row in MECHANISMS if len(row.dyads) > 1)
+
+
+def _by_key(row: Parameter) -> tuple[str, Parameter]:
+    return replace(row, name=row.name.removesuffix("_2")).key, row
+
+
+# What the second dyad of six-bars is given by, by the keys of its table; the first loop is a four-bar.
+_OF_DYAD = dict(
+    _by_key(each) for row in _SIX_BARS for each in row.parameters if each not in ONE_LOOP[FOUR_BAR].parameters
+)
+_PARAMETERS = {row.key: row for row in PARAMETERS} | {
+    key: replace(row, name=row.name.removesuffix("_2")) for key, row in _OF_DYAD.items()
+}
 Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
+_Arm = Annotated[list[float], listed("[u, v]"), of_length(2, "[u, v]")]
+_Hosts = Annotated[list[int], listed("two numbers of links"), of_length(2, "two numbers of links")]
 _TYPES: dict[str, Any] = {"place": Point, "arm": Point, "sign": int}
-_USUAL: dict[str, Any] = {"arm": [0.0, 0.0], "distance": 0.0, "sign": 1, "angle": 0.0}
+_USUAL: dict[str, Any] = {
+    "o2": [0.0, 0.0], "coupler_point": [0.0, 0.0], "offset": 0.0, "assembly": 1, "slide_angle_deg": 0.0,
+    "body_angle_deg": 0.0,
+}  # fmt: skip
 
 
-_Word = Annotated[str, AfterValidator(mechanism)]
+def _word(word: str) -> str:
+    return mechanism(word, among=WORDS)
+
+
+_Word = Annotated[str, AfterValidator(_word)]
 
 
 class _Heading(Table):
@@ -95,16 +154,8 @@ class _Heading(Table):
     mechanism: _Word = FOUR_BAR
 
 
-class LinkageTable(MachineTables, _Heading):
-    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides.
-
-    Parameters
-    ----------
-    r1 : float, length
-        Instead of `o4`: length O2O4.
-    ground_angle_deg : float, deg
-        With `r1`: direction of O4 from O2; 0 without it.
-    """
+class _Checked(Table):
+    """Parameters of a linkage, each checked by itself."""
 
     @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"), check_fields=False)
     @classmethod
@@ -134,21 +185,103 @@ class LinkageTable(MachineTables, _Heading):
         most = MOST_TURNS * 360
         return None if angle is None else number_within(angle, -most, most, str(key.field_name))
 
+
+class _DyadTable(_Checked):
+    """The second dyad of a six-bar.
+
+    Parameters
+    ----------
+    kind : {"RRR", "RRP"}
+        Its joints from C over E to D: three pins, or instead of D a slide on the ground.
+    hosts : list of int
+        The links that carry C and D, in this order: 1 is the ground. Needed where a mechanism has several.
+    offset : float, length
+        With a slide: of its line from O2, positive to the left of its direction; 0 without it.
+    slide_angle_deg : float, deg
+        With a slide: its direction, counter-clockwise from +x; 0 without it.
+    assembly : int
+        +1 when E lies left of the directed line C->D, or ahead of C along the slide; else -1.
+    """
+
+    kind: Annotated[str, one_of(DyadKind.RRR, DyadKind.RRP)] = str(DyadKind.RRR)
+    hosts: _Hosts | None = None
+
+    def value(self) -> dict[str, Any]:
+        """What it states, as arguments of `SixBar`."""
+        found, wrong = {}, []
+        for key, row in _OF_DYAD.items():
+            having = _kinds_having(row)
+            given = getattr(self, key)
+            if self.kind in having:
+                given = _USUAL.get(key) if given is None else given
+                wrong += [f"{key} is missing"] if given is None else []
+                found[row.name] = _in_radians(row, given)
+            elif given is not None:
+                wrong.append(f"{key} does not go with kind {self.kind}; only {' and '.join(having)} has it")
+        refuse(wrong)
+        return found
+
+    def row(self, word: str) -> Mechanism:
+        """The six-bar that it makes of those with a word."""
+        of_kind = [row for row in _SIX_BARS if row.dyads[1].kind == self.kind]
+        rows = {row.dyads[1].hosts: row for row in of_kind if row.word == word}
+        ground = "a slide lies on the ground, so " if self.kind == DyadKind.RRP else ""
+        if not rows:
+            raise ProblemError(f"dyad.kind is '{self.kind}'; {ground}it must be RRR with mechanism {word}")
+        allowed = f"{' or '.join(str(list(pair)) for pair in rows)} with mechanism {word}"
+        if self.hosts is None and len(rows) > 1:
+            raise ProblemError(f"dyad.hosts is missing; it must be {allowed}")
+        hosts = next(iter(rows)) if self.hosts is None else (self.hosts[0], self.hosts[1])
+        if hosts in rows:
+            return rows[hosts]
+        made = [f", which makes a {row.word}" for row in of_kind if row.dyads[1].hosts == hosts]
+        given = f"dyad.hosts is {shown(self.hosts)}{''.join(made)}"
+        raise ProblemError(f"{given}; {ground}it must be {allowed}")
+
+
+def _kinds_having(parameter: Parameter) -> list[str]:
+    """The kinds of a second dyad that have a parameter."""
+    kinds = (row.dyads[1].kind for row in _SIX_BARS if parameter.name in [x.name for x in row.parameters])
+    return list(dict.fromkeys(map(str, kinds)))
+
+
+def _in_radians(row: Parameter, given: Any) -> Any:
+    return np.radians(given) if row.kind == "angle" else given
+
+
+class LinkageTable(_Checked, MachineTables, _Heading):
+    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides.
+
+    Parameters
+    ----------
+    r1 : float, length
+        Instead of `o4`: length O2O4.
+    ground_angle_deg : float, deg
+        With `r1`: direction of O4 from O2; 0 without it.
+    """
+
     def value(self) -> Linkage:
         """The linkage itself, checked with what belongs to it."""
-        if (dynamics := self.dynamics_spec()) is not None and dynamics.acts:
+        kind = self._kind()
+        if (dynamics := self.dynamics_spec(kind)) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known
         if self._given("pumping_unit") is not None:
             metres(self.length_unit, "pumping_unit")
             if self._given("output_arm") is None:
                 raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
-        kind = ONE_LOOP[self.mechanism]
-        given = {row.name: getattr(self, row.key) for row in kind.parameters}
-        given |= {row.name: np.radians(given[row.name]) for row in kind.parameters if row.kind == "angle"}
+        second: dict[str, Any] = {}
+        if (dyad := self._given("dyad")) is not None:
+            second = dyad.value() | {"hosts": kind.dyads[1].hosts, "point_link": self._given("point_link")}
+        first = [row for row in kind.parameters if row.name not in second]
+        given = {row.name: _in_radians(row, getattr(self, row.key)) for row in first} | second
         linkage = linkage_of(self.mechanism, given | ({"o4": self._o4()} if "o4" in given else {}))
         if "r1" in kind.lengths and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
+
+    def _kind(self) -> Mechanism:
+        dyad: _DyadTable | None = self._given("dyad")
+        return ONE_LOOP[self.mechanism] if dyad is None else dyad.row(self.mechanism)
 
     def _o4(self) -> list[float]:
         given: list[float] | None = self._given("o4")
@@ -187,23 +320,38 @@ def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
     if row.name == "o4":
         yield from (("o4", (Point | None, None)), ("r1", (float | None, None)))
         yield "ground_angle_deg", (float | None, None)
-    elif row.name == "o2":
-        yield "o2", (Point, Field(default=[0.0, 0.0]))
     else:
-        yield row.key, (_TYPES.get(row.kind, float), _USUAL.get(row.kind, ...))
+        yield row.key, (_TYPES.get(row.kind, float), Field(default=_USUAL.get(row.key, ...)))
 
 
-def _file(kind: Mechanism) -> type[LinkageTable]:
+def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
     """The file of a kind: the parameters that it has, and what else goes with them."""
-    keys = {key: made for row in kind.parameters for key, made in _keys(row)}
-    also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys else {}
-    if kind.word == FOUR_BAR:
+    keys = {key: made for row in kind.parameters for key, made in _keys(row)} | more
+    also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys and not more else {}
+    if word == FOUR_BAR:
         also["pumping_unit"] = (PumpingUnitTable | None, None)
-    name = kind.word.title().replace("-", "")
+    name = word.title().replace("-", "")
     begin = create_model(f"_{name}", __base__=_Heading, **keys)
     bases: tuple[Any, ...] = (LinkageTable, MachineTables, begin)
     file: type[LinkageTable] = create_model(f"{name}Table", __base__=bases, **also)
     return file
 
 
-FILES: dict[str, type[LinkageTable]] = {word: _file(kind) for word, kind in ONE_LOOP.items()}
+def _dyad_file() -> type[_DyadTable]:
+    """The table of the second dyad: what all have, and what not all have."""
+    keys: dict[str, Any] = {}
+    for key, row in _OF_DYAD.items():
+        of_all = set(_kinds_having(row)) == {row.dyads[1].kind for row in _SIX_BARS}
+        given = _Arm if row.paired else _TYPES.get(row.kind, float)
+        keys[key] = (given, _USUAL.get(key, ...)) if of_all else (given | None, None)
+    doc = _DyadTable.__doc__
+    table: type[_DyadTable] = create_model("DyadTable", __base__=_DyadTable, __doc__=doc, **keys)
+    return table
+
+
+DyadTable = _dyad_file()
+_SIX_BAR = _file("six-bar", ONE_LOOP[FOUR_BAR], point_link=(int, 5), dyad=(DyadTable, ...))
+FILES: dict[str, type[LinkageTable]] = {
+    **{word: _file(word, kind) for word, kind in ONE_LOOP.items()},
+    **{row.word: _SIX_BAR for row in _SIX_BARS},
+}

@@ -1,22 +1,29 @@
-"""What acts on a linkage besides weight and drive: loads, springs, dampers, friction."""
+"""What acts on a linkage besides weight and drive: loads, springs, dampers, friction.
+
+Which links, joints and angles there are depends on the kind of linkage: `misplaced` checks that.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 
 from grashof.problems.values.checks import GREATEST, bounded, finite_rows, from_zero, numbers
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.stated import Stated
 
 Pair = tuple[float, float]
-OVER = ("theta2", "theta4", "travel", "time")
-TURNING = ("theta2", "theta4")  # over angles, in deg: a whole turn
+TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a whole turn
+OVER = (*TURNING, "travel", "time")
 TURN_DEG = 360.0
-# The joints by the links that they join.
-JOINTS = ((1, 2), (2, 3), (3, 4), (1, 4))
+# The joints by the links that they join: of linkages of one loop, and of any; how many a linkage may have.
+JOINTS = tuple(joint.links for joint in MECHANISMS[0].every_joint)
+_ANY_JOINTS = tuple(joint.links for row in MECHANISMS for joint in row.every_joint)
+_COUNTS = {len(row.every_joint) for row in MECHANISMS}
 # Of friction in a slide, one number each.
 SLIDE_KEYS = ("slide_mu", "slide_length", "slide_viscous", "slide_force")
 
@@ -28,17 +35,17 @@ class Place(Stated):
     Parameters
     ----------
     link : int
-        1 (the ground, whose frame is the global one) to 4.
+        1 (the ground, whose frame is the global one) to 4; of a six-bar to 6.
     at : pair of float, length
-        In the link's frame: from O2, A or O4, u towards A, B or B, v to its left; of a slider from B,
-        u along the slide.
+        In the link's frame: from O2, A, O4, C or D, u towards A, B, B, E or E, v to its left; of a slider
+        from B or E, u along the slide.
     """
 
     link: int
     at: Pair = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        _one_of("link", self.link, (1, 2, 3, 4))
+        _check_link(self.link)
         object.__setattr__(self, "at", numbers(self.at, 2, "at"))
 
 
@@ -49,7 +56,7 @@ class LoadSpec(Stated):
     Parameters
     ----------
     link : int
-        The link that it acts on: 2, 3 or 4.
+        The link that it acts on: 2, 3 or 4; of a six-bar 2 to 6.
     at : pair of float, length
         Of a force: its point in the link's frame.
     force : pair of float, N, optional
@@ -60,8 +67,8 @@ class LoadSpec(Stated):
         Instead of both: (place, fx, fy) or (place, moment), places rising, in deg, length or s. Between
         rows the load follows a curve through them that rises and falls as they do.
     over : str
-        What the places are: "theta2", "theta4" (deg, a whole turn), "travel" (length: of a slide, see
-        `FrictionSpec`) or "time" (s from the start).
+        What the places are: "theta2", "theta4", of a six-bar "theta6" (deg, a whole turn), "travel" (length:
+        of a slide, see `FrictionSpec`) or "time" (s from the start).
     frame : str
         Axes of the force: "global", or "link", with which it turns.
 
@@ -85,9 +92,8 @@ class LoadSpec(Stated):
     frame: str = "global"
 
     def __post_init__(self) -> None:
-        _one_of("link", self.link, (2, 3, 4))
+        _check_link(self.link)
         object.__setattr__(self, "at", numbers(self.at, 2, "at"))
-        _one_of("over", self.over, OVER)
         _one_of("frame", self.frame, ("global", "link"))
         given = [name for name in ("force", "moment", "values") if getattr(self, name) is not None]
         if len(given) != 1:
@@ -169,7 +175,8 @@ class TorsionSpringSpec(Stated):
     Parameters
     ----------
     between : pair of int
-        Links of a joint: 1 and 2 (O2), 2 and 3 (A), 3 and 4 (B), 1 and 4 (O4).
+        Links of a joint: 1 and 2 (O2), 2 and 3 (A), 3 and 4 (B), 1 and 4 (O4); of a six-bar further those in
+        C, D and E.
     stiffness : float, N m/rad
         Moment for each radian from the free angle.
     free_angle_deg : float, deg
@@ -184,12 +191,10 @@ class TorsionSpringSpec(Stated):
         pair = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
         if len(pair) == 2 and pair[0] == pair[1]:
             raise ProblemError(f"between joins link {pair[0]} to itself; it must be two links of a joint")
-        if tuple(sorted(pair, key=repr)) not in JOINTS:
-            raise wrong_value("between", list(pair), "two links of a joint: [1, 2], [2, 3], [3, 4] or [1, 4]")
         free = bounded(self.free_angle_deg, "free_angle_deg")
-        in_order = pair == tuple(sorted(pair))
-        object.__setattr__(self, "between", tuple(sorted(pair)))
-        object.__setattr__(self, "free_angle_deg", free if in_order else -free)
+        turned = pair[::-1] in _ANY_JOINTS
+        object.__setattr__(self, "between", pair[::-1] if turned else pair)
+        object.__setattr__(self, "free_angle_deg", -free if turned else free)
         object.__setattr__(self, "stiffness", from_zero(self.stiffness, "stiffness"))
 
 
@@ -200,7 +205,7 @@ class CounterweightSpec(Stated):
     Parameters
     ----------
     link : int
-        The link that carries it: 2, 3 or 4.
+        The link that carries it: 2, 3 or 4; of a six-bar 2 to 6.
     mass : float, kg
         Of the weight.
     at : pair of float, length
@@ -212,7 +217,7 @@ class CounterweightSpec(Stated):
     at: Pair
 
     def __post_init__(self) -> None:
-        _one_of("link", self.link, (2, 3, 4))
+        _check_link(self.link)
         object.__setattr__(self, "mass", from_zero(self.mass, "mass"))
         object.__setattr__(self, "at", numbers(self.at, 2, "at"))
 
@@ -221,19 +226,21 @@ class CounterweightSpec(Stated):
 class FrictionSpec(Stated):
     """Friction in the joints O2, A, B, O4, a number for each, or one for all; and in a slide.
 
+    Of a six-bar the joints are O2, A, B, O4, C, E, D.
+
     Parameters
     ----------
-    coulomb : float or four floats
+    coulomb : float or one a joint
         Coefficient of friction of the pins; it needs `pin_radius`.
-    pin_radius : float or four floats, length
+    pin_radius : float or one a joint, length
         Of the pins, for `coulomb`.
-    viscous : float or four floats, N m s/rad
+    viscous : float or one a joint, N m s/rad
         Moment for each rad/s.
-    moment : float or four floats, N m
+    moment : float or one a joint, N m
         Of constant size, against the rotation.
     slide_mu : float
-        Coefficient of friction of the slide, for the force across it: of the slider of a slider-crank on
-        the ground, of the rod of an inverted one in its block.
+        Coefficient of friction of the slide, for the force across it: of a slider on the ground, of the
+        rod of an inverted slider-crank in its block.
     slide_length : float, length
         Of the guide, that its moment presses on at both ends; by default `slide_mu` leaves the moment out.
     slide_viscous : float, N s/m
@@ -253,7 +260,7 @@ class FrictionSpec(Stated):
 
     def __post_init__(self) -> None:
         for name in self.__slots__:
-            check = from_zero if name in SLIDE_KEYS else _one_or_four
+            check = from_zero if name in SLIDE_KEYS else _one_or_each
             object.__setattr__(self, name, check(getattr(self, name), name))
         if self.slide_length and not self.slide_mu:
             raise ProblemError("slide_mu is missing; slide_length is of no use without it")
@@ -278,12 +285,17 @@ def _one_of(name: str, value: object, allowed: tuple[object, ...]) -> None:
         raise wrong_value(name, value, f"{', '.join(named[:-1])} or {named[-1]}")
 
 
-def _one_or_four(given: object, name: str) -> tuple[float, ...]:
+def _check_link(link: object) -> None:
+    if isinstance(link, bool) or not isinstance(link, Integral):
+        raise wrong_value("link", link, "the number of a link")
+
+
+def _one_or_each(given: object, name: str) -> tuple[float, ...]:
     if isinstance(given, Sequence) and not isinstance(given, str):
-        if len(given) not in (1, 4):
-            raise wrong_value(name, list(given), "a number, or four: in O2, A, B, O4")
+        if len(given) not in (1, *_COUNTS):
+            return tuple(given)  # of no linkage: `misplaced` tells what it must be
         each = tuple(from_zero(value, name) for value in given)
-        return each[:1] if len(set(each)) == 1 else each
+        return each[:1] if len(each) <= len(JOINTS) and len(set(each)) == 1 else each
     return (from_zero(given, name),)  # type: ignore[arg-type]
 
 

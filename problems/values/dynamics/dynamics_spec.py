@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,11 +22,12 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.stated import Stated
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 STEADY = 30 / np.pi  # rpm: 1 rad/s
-Triple = tuple[float, float, float]
+_MOVING = {len(row.links) - 1 for row in MECHANISMS}  # how many moving links a linkage may have
 _LISTS: dict[str, type] = {
     "loads": LoadSpec,
     "springs": SpringSpec,
@@ -50,12 +51,12 @@ class DynamicsSpec(Stated):
     ----------
     mass_per_length : float, kg/length, optional
         The links are slender uniform bars from joint to joint.
-    masses : three floats, kg, optional
-        Instead, with `inertias`: of links 2, 3 and 4.
-    inertias : three floats, kg length^2, optional
-        Of links 2, 3 and 4 about their centres of mass.
-    centres : three pairs of float, length, optional
-        Centres of mass of links 2, 3 and 4 in their frames; by default halfway between the joints of
+    masses : floats, kg, optional
+        Instead, with `inertias`: of links 2, 3 and 4; of a six-bar of links 2 to 6.
+    inertias : floats, kg length^2, optional
+        Of the same links about their centres of mass.
+    centres : pairs of float, length, optional
+        Centres of mass of the same links in their frames; by default halfway between the joints of
         each link (the coupler's between A and B, wherever P is).
     density : float, kg/m^3, optional
         Instead: the links are uniform bars of the `section`.
@@ -98,9 +99,9 @@ class DynamicsSpec(Stated):
     """
 
     mass_per_length: float | None = None
-    masses: Triple | None = None
-    inertias: Triple | None = None
-    centres: tuple[Pair, Pair, Pair] | None = None
+    masses: tuple[float, ...] | None = None
+    inertias: tuple[float, ...] | None = None
+    centres: tuple[Pair, ...] | None = None
     density: float | None = None
     payload: float = 0.0
     speed_rpm: float = STEADY
@@ -121,8 +122,8 @@ class DynamicsSpec(Stated):
             if (given := getattr(self, name)) is not None:
                 self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
         for name in ("masses", "inertias"):
-            self._set(name, _triple(getattr(self, name), f"dynamics.{name}"))
-        if self.masses is not None and not any(self.masses):
+            self._set(name, _each(getattr(self, name), f"dynamics.{name}"))
+        if self.masses and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
         if self.centres is not None:
             self._set("centres", _places(self.centres, "dynamics.centres"))
@@ -224,13 +225,20 @@ def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     return METRES[length_unit]
 
 
-def _triple(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
+def _each(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
     if values is None:
         return None
-    return tuple(from_zero(value, f"{where}[{i}]") for i, value in enumerate(numbers(values, 3, where)))
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise wrong_value(where, values, "a number for each moving link")
+    given = tuple(values)
+    if len(given) not in _MOVING:
+        return given  # of no linkage: `misplaced` tells how many there must be
+    return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(given))
 
 
-def _places(values: Any, where: str) -> tuple[tuple[float, ...], ...]:
-    if not isinstance(values, Sequence) or len(values) != 3:
-        raise wrong_value(where, values, "three places [u, v], of links 2, 3 and 4")
-    return tuple(numbers(value, 2, f"{where}[{index}]") for index, value in enumerate(values))
+def _places(values: Any, where: str) -> tuple[Pair, ...]:
+    if not isinstance(values, Sequence):
+        raise wrong_value(where, values, "a place [u, v] for each moving link")
+    if len(values) not in _MOVING:
+        return tuple(values)
+    return tuple((u, v) for u, v in (numbers(value, 2, f"{where}[{i}]") for i, value in enumerate(values)))

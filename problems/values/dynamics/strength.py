@@ -10,9 +10,10 @@ from typing import Any
 from grashof.problems.values.checks import one_or_each, size_number
 from grashof.problems.values.dynamics.section import LINKS, SHAPES, OneOrEach, SectionSpec
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.stated import Stated
 
-JOINTS = ("O2", "A", "B", "O4")
+JOINTS = tuple(joint.name for joint in MECHANISMS[0].every_joint)
 
 
 @dataclass(frozen=True, slots=True, init=False)

@@ -153,11 +153,11 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
     return tuple(given)
 
 
-def mechanism(word: str, where: str = "mechanism") -> str:
-    """A word for a kind of linkages, checked."""
-    if isinstance(word, str) and word in ONE_LOOP:
+def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = tuple(ONE_LOOP)) -> str:
+    """A word for a kind of linkages, checked: one of those that problems may ask for, or of others."""
+    if isinstance(word, str) and word in among:
         return word
-    meant = near_miss(word, list(ONE_LOOP)) if isinstance(word, str) else None
+    meant = near_miss(word, among) if isinstance(word, str) else None
     if meant is not None:
         raise ProblemError(f"{where} is {shown(word)}; did you mean {meant}?")
-    raise wrong_value(where, word, _ANY)
+    raise wrong_value(where, word, f"{', '.join(among[:-1])} or {among[-1]}")

@@ -1,14 +1,14 @@
-"""What of some dynamics does not go with a kind of linkage: slides that it has not, pins at its slides."""
+"""What of some dynamics does not go with a kind of linkage: links, joints or slides that it has not."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from grashof.problems.values.dynamics.acting import JOINTS, SLIDE_KEYS
+from grashof.problems.values.dynamics.acting import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
 
-_AT = ("O2", "A", "B", "O4")
 # What a slide has instead of each key of `FrictionSpec`.
 _INSTEAD = {
     "coulomb": "slide_mu",
@@ -16,6 +16,7 @@ _INSTEAD = {
     "viscous": "slide_viscous",
     "moment": "slide_force",
 }
+_WORDS = {3: "three", 4: "four", 5: "five", 7: "seven"}
 
 
 def misplaced(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
@@ -34,17 +35,90 @@ def misplaced(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
     >>> misplaced(given, SliderCrank.mechanism)[0]
     'torsion_springs[0].between is [1, 4]; a slider-crank has a slide there, so it must be at a pin'
     """
-    return [*_loads(spec, kind), *_torsion_springs(spec, kind), *_friction(spec, kind)]
+    slides = (*_loads(spec, kind), *_torsion_springs(spec, kind), *_friction(spec, kind))
+    return [*without_place(spec, kind), *slides]
+
+
+def without_place(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
+    """The same of links, joints and angles alone, by their numbers and names.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> from grashof.problems.values.dynamics.acting import LoadSpec
+    >>> without_place(DynamicsSpec(loads=(LoadSpec(5, moment=1.0),)), FourBar.mechanism)
+    ['loads[0].link is 5; it must be 2, 3 or 4']
+    """
+    return [*_sizes(spec, kind), *_links(spec, kind), *_angles(spec, kind), *_joints(spec, kind)]
+
+
+def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
+    moving = [link.number for link in kind.links if link.number > 1]
+    for name in ("masses", "inertias"):
+        given = getattr(spec, name)
+        if given is not None and len(given) != len(moving):
+            entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
+            yield f"dynamics.{name} has {entries}; it must have {len(moving)} numbers"
+    if spec.centres is not None and len(spec.centres) != len(moving):
+        places = f"{_WORDS[len(moving)]} places [u, v], of links {_listed(moving, 'and')}"
+        yield str(wrong_value("dynamics.centres", spec.centres, places))
+    for table, given in (("section", spec.section), ("strength", spec.strength)):
+        for name, value in () if given is None else given.stated.items():
+            count = len(kind.every_joint) if name == "pin_diameter" else len(moving)
+            if isinstance(value, tuple) and len(value) != count:  # such lists are of linkages of one loop
+                entries = f"{table}.{name} has {len(value)} entries"
+                yield f"{entries}; it must be a number with mechanism {kind.word}"
+
+
+def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
+    """Of what acts on moving links, and between any two."""
+    held = [(f"loads[{i}]", each.link, 2) for i, each in enumerate(spec.loads)]
+    held += [(f"counterweights[{i}]", each.link, 2) for i, each in enumerate(spec.counterweights)]
+    springs, dampers = ([each.between for each in acting] for acting in (spec.springs, spec.dampers))
+    for name, pairs in (("springs", springs), ("dampers", dampers)):
+        ends = ((i, end, place) for i, pair in enumerate(pairs) for end, place in enumerate(pair))
+        held += [(f"{name}[{i}].between[{end}]", place.link, 1) for i, end, place in ends]
+    for where, number, least in held:
+        allowed = [link.number for link in kind.links if link.number >= least]
+        if number not in allowed:
+            yield str(wrong_value(f"{where}.link", number, _listed(allowed, "or")))
+
+
+def _angles(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
+    words = _over(kind)
+    for index, load in enumerate(spec.loads):
+        if load.over not in words:
+            yield str(wrong_value(f"loads[{index}].over", load.over, _listed(words, "or")))
+
+
+def _over(kind: Mechanism, but: str = "") -> list[str]:
+    """What loads may be over: angles of links that there are, and whatever is no angle."""
+    angles = [f"theta{link.number}" for link in kind.links]
+    return [word for word in OVER if (word in angles or word not in TURNING) and word != but]
+
+
+def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
+    joints = kind.every_joint
+    for index, spring in enumerate(spec.torsion_springs):
+        pairs = [list(joint.links) for joint in joints]
+        if list(spring.between) not in pairs:
+            wanted = f"two links of a joint: {_listed(pairs, 'or')}"
+            yield str(wrong_value(f"torsion_springs[{index}].between", list(spring.between), wanted))
+    for key in _INSTEAD if spec.friction is not None else ():
+        each = getattr(spec.friction, key)
+        if len(each) not in (1, len(joints)):
+            in_all = f"{_WORDS[len(joints)]}: in {', '.join(joint.name for joint in joints)}"
+            yield str(wrong_value(f"friction.{key}", list(each), f"a number, or {in_all}"))
 
 
 def _loads(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
+    fixed = [f"theta{second}" for first, second in kind.slides if first == 1]
     for index, load in enumerate(spec.loads):
-        where = f"loads[{index}].over is '{load.over}'"
+        where, instead = f"loads[{index}].over is '{load.over}'", _listed(_over(kind, but=load.over), "or")
         if load.over == "travel" and not kind.slides:
-            yield f"{where}; {_named(kind)} has no slide, so it must be theta2, theta4 or time"
-        if load.over == "theta4" and (1, 4) in kind.slides:
-            turning = f"the slider of {_named(kind)} does not turn"
-            yield f"{where}; {turning}, so it must be theta2, travel or time"
+            yield f"{where}; {_named(kind)} has no slide, so it must be {instead}"
+        if load.over in fixed:
+            yield f"{where}; the slider of {_named(kind)} does not turn, so it must be {instead}"
 
 
 def _torsion_springs(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
@@ -63,13 +137,18 @@ def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
             if getattr(friction, key):
                 yield f"friction.{key} is {getattr(friction, key):g}; {_named(kind)} has no slide"
         return
-    slide = JOINTS.index(kind.slides[0])
+    slide, joint = next((i, joint) for i, joint in enumerate(kind.every_joint) if joint.slides)
     for key, instead in _INSTEAD.items():
         each = getattr(friction, key)
-        if len(each) == len(JOINTS) and each[slide]:
-            where = f"friction.{key}[{slide}] is {each[slide]:g}, in {_AT[slide]}"
+        if len(each) == len(kind.every_joint) and each[slide]:
+            where = f"friction.{key}[{slide}] is {each[slide]:g}, in {joint.name}"
             yield f"{where}; {_named(kind)} has a slide there, so it must be 0 ({instead} is for slides)"
 
 
 def _named(kind: Mechanism) -> str:
     return f"{'an' if kind.word[0] in 'aeiou' else 'a'} {kind.word}"
+
+
+def _listed(words: Sequence[object], last: str) -> str:
+    *most, end = map(str, words)
+    return f"{', '.join(most)} {last} {end}"

@@ -25,6 +25,7 @@ from grashof.problems.files.linkage_file import load_design
 
 ROOT = Path(__file__).parents[3]
 SLIDERS = ("engine", "crank-shaper")
+SIX_BARS = ("klann", "dwell-six-bar")
 PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
 
 
@@ -36,7 +37,8 @@ def written(folder: Path, text: str) -> Path:
 
 def test_catalogue_is_what_is_shipped() -> None:
     shipped = {path.stem for path in (ROOT / "problems" / "data" / "linkages").glob("*.toml")}
-    assert set(linkage_catalogue()) == shipped == {"pumpjack", "lufkin-c912d", "luggage-report", *SLIDERS}
+    four_bars = {"pumpjack", "lufkin-c912d", "luggage-report"}
+    assert set(linkage_catalogue()) == shipped == {*four_bars, *SLIDERS, *SIX_BARS}
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     assert "data/linkages/*.toml" in settings["package-data"]["*"]
 
@@ -139,7 +141,10 @@ def test_a_name_that_is_none() -> None:
             "luggage",
             "^luggage: is a problem; solve it, then name a design: luggage-designs/candidates.json#1$",
         ),
-        ("chair", "the catalogue has crank-shaper, engine, lufkin-c912d, luggage-report, pumpjack"),
+        (
+            "chair",
+            "the catalogue has crank-shaper, dwell-six-bar, engine, klann, lufkin-c912d, luggage-report, ",
+        ),
         ("d/candidates.csv#3", "is a table; name the design as d/candidates.json#3$"),
         ("d/nearest.csv#1", "is a table of misses; a linkage file with their dimensions can be read$"),
         ("candidates.csv", "is a table; name the design as candidates.json#1$"),

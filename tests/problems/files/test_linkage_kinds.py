@@ -24,6 +24,7 @@ SLIDER = 'mechanism = "slider-crank"\nr2 = 1\nr3 = 4\n'
 INVERTED = 'mechanism = "inverted-slider-crank"\no4 = [2, 0]\nr2 = 1\n'
 BOTH = "four-bar and inverted-slider-crank have it"
 SLIDES = "slider-crank and inverted-slider-crank have it"
+KINDS = "four-bar, slider-crank, inverted-slider-crank, stephenson-3, stephenson-1, watt-1 or watt-2"
 # Numbers of which no digit may be lost.
 EVERY: dict[str, Linkage] = {
     "four-bar": FourBar((0.1, 1 / 3), (4, 0.7), 1, 4, 3, (0.1 + 0.2, -0.3), -1, 0.7),
@@ -101,10 +102,10 @@ def test_an_inverted_slider_crank_by_length_and_angle_of_the_ground(tmp_path: Pa
             "mechanism is 'slidercrank'; did you mean slider-crank?"
         ]),
         (SLIDER.replace('"slider-crank"', "3"), [
-            "mechanism is 3; it must be four-bar, slider-crank or inverted-slider-crank"
+            f"mechanism is 3; it must be {KINDS}"
         ]),
         (SLIDER.replace('"slider-crank"', '["slider-crank"]'), [
-            "mechanism is ['slider-crank']; it must be four-bar, slider-crank or inverted-slider-crank"
+            f"mechanism is ['slider-crank']; it must be {KINDS}"
         ]),
         (SLIDER.replace("r2 = 1", "r2 = -1") + "r1 = 2\nassembly = 0", [
             "r1 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank have it",

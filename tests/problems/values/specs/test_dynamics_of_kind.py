@@ -1,5 +1,8 @@
 """Dynamics that do not go with a kind of linkage are refused, a clear line each."""
 
+from typing import Any
+
+import numpy as np
 import pytest
 
 from grashof.problems import (
@@ -12,8 +15,21 @@ from grashof.problems import (
     ProblemError,
     SliderCrank,
 )
-from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec, TorsionSpringSpec
+from grashof.problems.values.dynamics.acting import (
+    CounterweightSpec,
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import StrengthSpec
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
+from grashof.problems.values.linkages.mechanisms import linkage_of
+from grashof.problems.values.specs.dynamics_of_kind import misplaced
 
 LINKAGES: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0), (4, 0), 1, 4, 3),
@@ -67,3 +83,162 @@ def test_a_guide_length_needs_a_coefficient() -> None:
         FrictionSpec(slide_length=0.1)
     with pytest.raises(ProblemError, match=r"^slide_mu is -0.1; it must be"):
         FrictionSpec(slide_mu=-0.1)
+
+
+def linkage_of_row(row: Mechanism) -> Linkage:
+    rng = np.random.default_rng(3)
+    sizes = {each.name: rng.uniform(0.5, 2.0, 2 if each.paired else ()) for each in row.parameters}
+    signs = {each.name: 1 for each in row.parameters if each.kind == "sign"}
+    choices = {"hosts": row.dyads[1].hosts} if len(row.dyads) > 1 else {}
+    return linkage_of(row.word, sizes | signs | choices)
+
+
+def everywhere(row: Mechanism, more: int = 0) -> DynamicsSpec:
+    """Something of each sort on each link and in each joint, and on so many links more."""
+    moving = range(2, len(row.links) + 1 + more)
+    ends = [(Place(1), Place(link, (0.1, 0.2))) for link in moving]
+    fixed = [f"theta{second}" for first, second in row.slides if first == 1]
+    angles = [word for word in ("theta2", "theta4", "theta6")[: len(row.dyads) + 1] if word not in fixed]
+    each = tuple(0.0 if joint.slides else 1.0 + i for i, joint in enumerate(row.every_joint))
+    return DynamicsSpec(
+        masses=tuple(1.0 + link for link in moving),
+        inertias=tuple(1.0 + link for link in moving),
+        centres=tuple((link, 0.5) for link in moving),
+        loads=(
+            *(LoadSpec(link, force=(0, 1)) for link in moving),
+            *(LoadSpec(4, values=((0, 1), (360, 1)), over=over) for over in angles),
+            *(LoadSpec(2, values=((0, 1), (9, 1)), over="travel") for _ in row.slides),
+        ),
+        springs=tuple(SpringSpec(both, 1.0) for both in ends),
+        dampers=tuple(DamperSpec(both, 1.0) for both in ends),
+        counterweights=tuple(CounterweightSpec(link, 1.0, (0, 0)) for link in moving),
+        torsion_springs=tuple(
+            TorsionSpringSpec(joint.links, 1.0) for joint in row.every_joint if not joint.slides
+        ),
+        friction=FrictionSpec(0.1, each, each, 0.2, slide_mu=0.1 if row.slides else 0.0),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "row", MECHANISMS, ids=lambda row: f"{row.word}-{row.dyads[-1].kind}-{row.dyads[-1].hosts}"
+)
+def test_every_link_and_joint_that_a_linkage_has_takes_everything(row: Mechanism) -> None:
+    spec = everywhere(row)
+    assert LinkageSpec(linkage_of_row(row), "mine", length_unit="m", dynamics=spec).dynamics == spec
+    allowed = "2, 3 or 4" if len(row.dyads) == 1 else "2, 3, 4, 5 or 6"
+    number, count = len(row.links) + 1, len(row.links) - 1
+    assert misplaced(everywhere(row, more=1), row) == [
+        f"dynamics.masses has {count + 1} entries; it must have {count} numbers",
+        f"dynamics.inertias has {count + 1} entries; it must have {count} numbers",
+        *(
+            line
+            for line in misplaced(everywhere(row, more=1), row)
+            if line.startswith("dynamics.centres is ")
+        ),
+        f"loads[{count}].link is {number}; it must be {allowed}",
+        f"counterweights[{count}].link is {number}; it must be {allowed}",
+        f"springs[{count}].between[1].link is {number}; it must be 1, {allowed}",
+        f"dampers[{count}].between[1].link is {number}; it must be 1, {allowed}",
+    ]
+
+
+LEG = next(row for row in MECHANISMS if row.word == "stephenson-3")
+PRESS = next(row for row in MECHANISMS if row.word == "stephenson-3" and row.slides)
+JOINTS = "[1, 2], [2, 3], [3, 4], [1, 4], [3, 5], [5, 6] or [1, 6]"
+ROWS = ((0, 1), (360, 1))
+
+
+@pytest.mark.parametrize(
+    ("kind", "spec", "line"),
+    [
+        (
+            LEG,
+            DynamicsSpec(friction=FrictionSpec(viscous=(1, 2, 3, 4))),
+            "friction.viscous is [1.0, 2.0, 3.0, 4.0]; it must be a number, or seven: in O2, A, B, O4, C, "
+            "E, D",
+        ),
+        (
+            LEG,
+            DynamicsSpec(torsion_springs=(TorsionSpringSpec((4, 5), 1.0),)),
+            f"torsion_springs[0].between is [4, 5]; it must be two links of a joint: {JOINTS}",
+        ),
+        (
+            LEG,
+            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="travel"),)),
+            "loads[0].over is 'travel'; a stephenson-3 has no slide, so it must be theta2, theta4, theta6 "
+            "or time",
+        ),
+        (
+            LEG,
+            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="theta5"),)),
+            "loads[0].over is 'theta5'; it must be theta2, theta4, theta6, travel or time",
+        ),
+        (
+            PRESS,
+            DynamicsSpec(loads=(LoadSpec(6, values=ROWS, over="theta6"),)),
+            "loads[0].over is 'theta6'; the slider of a stephenson-3 does not turn, so it must be theta2, "
+            "theta4, travel or time",
+        ),
+        (
+            PRESS,
+            DynamicsSpec(torsion_springs=(TorsionSpringSpec((6, 1), 1.0),)),
+            "torsion_springs[0].between is [1, 6]; a stephenson-3 has a slide there, so it must be at a pin",
+        ),
+        (
+            PRESS,
+            DynamicsSpec(friction=FrictionSpec(moment=(0, 0, 0, 0, 0, 0, 3))),
+            "friction.moment[6] is 3, in D; a stephenson-3 has a slide there, so it must be 0 (slide_force "
+            "is for slides)",
+        ),
+        (
+            LEG,
+            DynamicsSpec(section=SectionSpec(width=[1, 2, 3], height=1)),
+            "section.width has 3 entries; it must be a number with mechanism stephenson-3",
+        ),
+        (
+            LEG,
+            DynamicsSpec(section=SectionSpec(1, 1), strength=StrengthSpec(1e8, pin_diameter=[1, 1, 1, 2])),
+            "strength.pin_diameter has 4 entries; it must be a number with mechanism stephenson-3",
+        ),
+        (
+            MECHANISMS[0],
+            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="theta6"),)),
+            "loads[0].over is 'theta6'; it must be theta2, theta4, travel or time",
+        ),
+        (
+            MECHANISMS[0],
+            DynamicsSpec(torsion_springs=(TorsionSpringSpec((3, 5), 1.0),)),
+            "torsion_springs[0].between is [3, 5]; it must be two links of a joint: [1, 2], [2, 3], [3, 4] "
+            "or [1, 4]",
+        ),
+        (
+            MECHANISMS[0],
+            DynamicsSpec(masses=(1, 2, 3), inertias=(1, 2, 3), centres=((1, 2), (3, 4))),
+            "dynamics.centres is ((1, 2), (3, 4)); it must be three places [u, v], of links 2, 3 and 4",
+        ),
+    ],
+)
+def test_what_a_row_has_not_is_told_in_one_line(kind: Mechanism, spec: DynamicsSpec, line: str) -> None:
+    assert misplaced(spec, kind) == [line]
+
+
+@pytest.mark.parametrize("link", ["2", 2.5, None, True, [2]])
+def test_a_link_is_a_whole_number(link: Any) -> None:
+    for make in (
+        lambda: LoadSpec(link, moment=1.0),
+        lambda: Place(link),
+        lambda: CounterweightSpec(link, 1, (0, 0)),
+    ):
+        with pytest.raises(ProblemError, match=r"^link is .*; it must be the number of a link"):
+            make()
+
+
+def test_a_torsion_spring_given_the_other_way_round_has_the_other_sign() -> None:
+    assert TorsionSpringSpec((6, 5), 1.0, 30) == TorsionSpringSpec((5, 6), 1.0, -30)
+
+
+def test_lists_of_sections_and_pins_are_of_one_loop() -> None:
+    section = SectionSpec(width=[1, 2, 3], height=1)
+    spec = DynamicsSpec(section=section, strength=StrengthSpec(1e8, pin_diameter=[1, 1, 1, 2]))
+    for row in MECHANISMS:
+        assert len(misplaced(spec, row)) == (0 if len(row.dyads) == 1 else 2)

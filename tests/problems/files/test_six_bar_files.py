@@ -1,0 +1,396 @@
+"""Linkage files and lists of six-bars: what they state comes back, and what is wrong is one clear line."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof.problems import Linkage, LinkageSpec, ProblemError, SixBar, load_linkage, load_linkage_spec
+from grashof.problems.files.linkage_schema import as_document, linkage_from
+from grashof.problems.files.problem_writing import _value as toml
+from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
+from grashof.problems.values.linkages.mechanisms import linkage_of
+
+ROWS = [row for row in MECHANISMS if len(row.dyads) > 1]
+FOUR_BAR = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"
+DYAD = "[dyad]\nc = [5, 1]\nd = [6, 2]\nr5 = 3\nr6 = 2\n"
+SLIDE = '[dyad]\nkind = "RRP"\nc = [5, 1]\nr5 = 3\n'
+PLAIN = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), d=(6, 2), r5=3, r6=2, hosts=(3, 1))
+
+
+def named(row: Mechanism) -> str:
+    return f"{row.word}-{row.dyads[1].kind}-{row.dyads[1].hosts}"
+
+
+def any_six_bar(row: Mechanism, point_link: int = 5) -> Linkage:
+    """One of a row, with numbers of which no digit may be lost."""
+    rng = np.random.default_rng(7)
+    sizes = {each.name: rng.uniform(0.5, 2.0, 2 if each.paired else ()) for each in row.parameters}
+    signs = {each.name: -1 for each in row.parameters if each.kind == "sign"}
+    choices = {"hosts": row.dyads[1].hosts, "point_link": point_link}
+    return linkage_of(row.word, sizes | signs | choices)
+
+
+def text_of(linkage: Linkage) -> str:
+    """A linkage as its file."""
+    document = as_document(linkage.stated)
+    document["body_angle_deg"] = float(np.degrees(document.pop("body_angle")))
+    dyad = document.pop("dyad")
+    if "slide_angle_deg" in dyad:
+        dyad["slide_angle_deg"] = float(np.degrees(dyad["slide_angle_deg"]))
+    keys, inner = ([f"{key} = {toml(value)}" for key, value in table.items()] for table in (document, dyad))
+    return "\n".join([f'mechanism = "{linkage.mechanism.word}"', *keys, "[dyad]", *inner, ""])
+
+
+def read(text: str, word: str = "stephenson-3") -> LinkageSpec:
+    head = "" if "mechanism =" in text else f'mechanism = "{word}"\nlength_unit = "m"\n'
+    return linkage_from(tomllib.loads(head + text), "mine")
+
+
+def refused(text: str, word: str = "stephenson-3") -> list[str]:
+    with pytest.raises(ProblemError) as told:
+        read(text, word)
+    return str(told.value).splitlines()
+
+
+@pytest.mark.parametrize("point_link", [2, 3, 4, 5, 6])
+@pytest.mark.parametrize("row", ROWS, ids=named)
+def test_what_a_file_says_is_what_it_states(row: Mechanism, point_link: int) -> None:
+    wanted = any_six_bar(row, point_link)
+    found = read(text_of(wanted)).linkage
+    assert found.mechanism == wanted.mechanism == Mechanism(row.word, row.dyads, point_link)
+    for each, one, other in zip(row.parameters, wanted.parameters, found.parameters, strict=True):
+        np.testing.assert_allclose(one, other, rtol=4e-16 if each.kind == "angle" else 0)
+
+
+def test_what_is_not_said_is_usual() -> None:
+    assert read(FOUR_BAR + DYAD).linkage == PLAIN
+    slider = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=3, slide_angle_2=0, hosts=(3, 1))
+    assert read(FOUR_BAR + SLIDE).linkage == slider
+    assert read(FOUR_BAR.replace("o4 = [4, 0]", "r1 = 4") + DYAD).linkage == PLAIN
+
+
+@pytest.mark.parametrize("row", ROWS, ids=named)
+def test_hosts_are_needed_where_there_are_several(row: Mechanism) -> None:
+    text = SLIDE if row.dyads[1].slides else DYAD
+    alone = [each for each in ROWS if (each.word, each.dyads[1].kind) == (row.word, row.dyads[1].kind)] == [
+        row
+    ]
+    if alone:
+        assert read(FOUR_BAR + text, row.word).linkage.mechanism == row
+    else:
+        told = {"watt-1": "[2, 3] or [3, 4]", "watt-2": "[2, 1] or [4, 1]"}[row.word]
+        line = f"dyad.hosts is missing; it must be {told} with mechanism {row.word}"
+        assert refused(FOUR_BAR + text, row.word) == [line]
+
+
+HUGE = "a whole number of about 6021 digits"
+ONLY = "only stephenson-3 and stephenson-1 and watt-1 and watt-2 have it"
+BAD = [
+    ("stephenson-3", FOUR_BAR, "dyad is missing"),
+    ("four-bar", FOUR_BAR + DYAD, f"dyad does not go with mechanism four-bar; {ONLY}"),
+    ("slider-crank", f"r2 = 1\nr3 = 4\n{DYAD}", f"dyad does not go with mechanism slider-crank; {ONLY}"),
+    ("four-bar", f"{FOUR_BAR}point_link = 3", f"point_link does not go with mechanism four-bar; {ONLY}"),
+    ("stephenson-2", FOUR_BAR + DYAD, "mechanism is 'stephenson-2'; did you mean stephenson-3?"),
+    ("watt1", FOUR_BAR + DYAD, "mechanism is 'watt1'; did you mean watt-1?"),
+    ("watt-1", f"{FOUR_BAR}dyad = 3", "dyad is 3; it must be a table"),
+    ("watt-1", f"{FOUR_BAR}dyad = []", "dyad is []; it must be a table"),
+    ("stephenson-3", FOUR_BAR + DYAD + 'kind = "RPR"', "dyad.kind is 'RPR'; it must be RRR or RRP"),
+    ("stephenson-3", FOUR_BAR + DYAD + "kind = 3", "dyad.kind is 3; it must be a string"),
+    (
+        "watt-1",
+        FOUR_BAR + SLIDE,
+        "dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism watt-1",
+    ),
+    (
+        "stephenson-1",
+        FOUR_BAR + SLIDE + "hosts = [2, 4]",
+        "dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism stephenson-1",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + SLIDE + "hosts = [3, 4]",
+        "dyad.hosts is [3, 4]; a slide lies on the ground, so it must be [3, 1] with mechanism stephenson-3",
+    ),
+    (
+        "watt-1",
+        FOUR_BAR + DYAD + "hosts = [3, 1]",
+        "dyad.hosts is [3, 1], which makes a stephenson-3; it must be [2, 3] or [3, 4] with mechanism watt-1",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD + "hosts = [1, 3]",
+        "dyad.hosts is [1, 3]; it must be [3, 1] with mechanism stephenson-3",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD + f"hosts = [3, 0x1{'0' * 5000}]",
+        f"dyad.hosts is [3, {HUGE}]; it must be [3, 1] with mechanism stephenson-3",
+    ),
+    ("watt-2", FOUR_BAR + DYAD + "hosts = 4", "dyad.hosts is 4; it must be two numbers of links"),
+    ("watt-2", FOUR_BAR + DYAD + "hosts = [4]", "dyad.hosts is [4]; it must be two numbers of links"),
+    ("watt-2", FOUR_BAR + DYAD + "hosts = [4, true]", "dyad.hosts[1] is true; it must be a whole number"),
+    ("watt-2", FOUR_BAR + DYAD + "hosts = [4, 1.0]", "dyad.hosts[1] is 1.0; it must be a whole number"),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("r6 = 2\n", ""), "dyad.r6 is missing"),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("r5 = 3\n", ""), "dyad.r5 is missing"),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("d = [6, 2]\n", ""), "dyad.d is missing"),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("[5, 1]", "[5]"), "dyad.c is [5]; it must be [u, v]"),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("[6, 2]", "6"), "dyad.d is 6; it must be [u, v]"),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD.replace("[6, 2]", "[6, nan]"),
+        "dyad.d is [6.0, nan]; all numbers must be finite",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD.replace("[6, 2]", "[6, 1e21]"),
+        "dyad.d is 1e+21; it must be from -1e+20 to 1e+20",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD.replace("r5 = 3", "r5 = 0"),
+        "dyad.r5 is 0.0; it must be greater than zero",
+    ),
+    ("stephenson-3", FOUR_BAR + DYAD.replace("r6 = 2", "r6 = 'x'"), "dyad.r6 is 'x'; it must be a number"),
+    ("stephenson-3", FOUR_BAR + DYAD + "assembly = 2", "dyad.assembly is 2; it must be +1 or -1"),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD + "offset = 1",
+        "dyad.offset does not go with kind RRR; only RRP has it",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR + DYAD + "slide_angle_deg = 1",
+        "dyad.slide_angle_deg does not go with kind RRR; only RRP has it",
+    ),
+    ("stephenson-3", FOUR_BAR + SLIDE + "r6 = 1", "dyad.r6 does not go with kind RRP; only RRR has it"),
+    ("stephenson-3", FOUR_BAR + SLIDE + "d = [1, 2]", "dyad.d does not go with kind RRP; only RRR has it"),
+    (
+        "stephenson-3",
+        FOUR_BAR + SLIDE + "slide_angle_deg = 36001",
+        "dyad.slide_angle_deg is 36001; it must be from -36000 to 36000",
+    ),
+    ("stephenson-3", FOUR_BAR + SLIDE + "offset = inf", "dyad.offset is inf; all numbers must be finite"),
+    ("stephenson-3", f"{FOUR_BAR}r5 = 3\n{DYAD}", "r5 is unknown; did you mean dyad.r5?"),
+    ("stephenson-3", f"{FOUR_BAR}offset = 3\n{SLIDE}", "offset is unknown; did you mean dyad.offset?"),
+    ("stephenson-3", f"{FOUR_BAR}hosts = [3, 1]\n{DYAD}", "hosts is unknown; did you mean dyad.hosts?"),
+    ("stephenson-3", f"{FOUR_BAR}{DYAD}host = [3, 1]", "dyad.host is unknown; did you mean hosts?"),
+    ("stephenson-3", f"{FOUR_BAR}{DYAD}r4 = 3", "dyad.r4 is unknown; did you mean r4?"),
+    (
+        "stephenson-3",
+        f"{FOUR_BAR}output_arm = 3\n{DYAD}",
+        "output_arm does not go with mechanism stephenson-3; only four-bar and inverted-slider-crank have it",
+    ),
+    (
+        "stephenson-3",
+        f"{FOUR_BAR}{DYAD}[pumping_unit]\nrod_load = 2",
+        "pumping_unit does not go with mechanism stephenson-3; only four-bar has it",
+    ),
+    *(
+        (
+            "stephenson-3",
+            f"{FOUR_BAR}point_link = {link}\n{DYAD}",
+            f"point_link is {link}; it must be the number of a moving link, 2 to 6",
+        )
+        for link in (1, 7, -5)
+    ),
+    (
+        "stephenson-3",
+        f"{FOUR_BAR}point_link = true\n{DYAD}",
+        "point_link is true; it must be a whole number",
+    ),
+    ("stephenson-3", FOUR_BAR.replace("r4 = 3\n", "") + DYAD, "r4 is missing"),
+    (
+        "stephenson-3",
+        FOUR_BAR.replace("o4 = [4, 0]\n", "") + DYAD,
+        "o4 is missing; give it, or r1 with ground_angle_deg",
+    ),
+    (
+        "stephenson-3",
+        FOUR_BAR.replace("[4, 0]", "[0, 0]") + DYAD,
+        "o4 is where o2 is; the ground pivots must be distinct",
+    ),
+]
+
+
+@pytest.mark.parametrize(("word", "text", "line"), BAD)
+def test_what_a_file_may_not_say(word: str, text: str, line: str) -> None:
+    assert refused(text, word) == [line]
+
+
+def test_all_that_is_wrong_is_told() -> None:
+    text = FOUR_BAR.replace("r2 = 1", "r2 = -1") + DYAD.replace("r5 = 3", "r5 = -3") + "assembly = 0"
+    assert refused("output_arm = 1\n" + text) == [
+        "output_arm does not go with mechanism stephenson-3; only four-bar and inverted-slider-crank have it",
+        "r2 is -1.0; it must be greater than zero",
+        "dyad.r5 is -3.0; it must be greater than zero",
+        "dyad.assembly is 0; it must be +1 or -1",
+    ]
+    assert refused(FOUR_BAR + SLIDE.replace("r5 = 3", "r5 = 3\nr6 = 2\nd = [1, 2]")) == [
+        "dyad.d does not go with kind RRP; only RRR has it",
+        "dyad.r6 does not go with kind RRP; only RRR has it",
+    ]
+
+
+def listed(linkage: Linkage, **changes: Any) -> str:
+    design = {"rank": 3, "id": "d0", "mechanism": linkage.mechanism.word, "direction": -1}
+    design["linkage"] = linkage.stated | changes
+    return json.dumps({"problem": "p", "title": "", "length_unit": "mm", "designs": [design]})
+
+
+@pytest.mark.parametrize("point_link", [3, 5, 6])
+@pytest.mark.parametrize("row", ROWS, ids=named)
+def test_a_list_gives_every_digit_back(tmp_path: Path, row: Mechanism, point_link: int) -> None:
+    path, wanted = tmp_path / "candidates.json", any_six_bar(row, point_link)
+    path.write_text(listed(wanted))
+    found = load_linkage_spec(f"{path}#3")
+    assert found.linkage == wanted
+    assert found.dynamics is not None
+    assert found.dynamics.speed_rpm < 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"r5": "x"}, "#3: dyad.r5 is 'x'; it must be a number"),
+        ({"hosts": [2, 4]}, "#3: dyad.hosts is [2, 4], which makes a stephenson-1; it must be [3, 1] with"),
+        ({"hosts": 3}, "#3: dyad.hosts is 3; it must be two numbers of links"),
+        ({"point_link": 1}, "#3: point_link is 1; it must be the number of a moving link, 2 to 6"),
+        ({"d": None}, "#3: dyad.d is missing"),
+        ({"body_angle": None}, "#3: body_angle is None; it must be a finite number"),
+        ({"mechanism": "watt-1"}, "#3: dyad.hosts is [3, 1], which makes a stephenson-3; it must be [2, 3]"),
+    ],
+)
+def test_lists_changed_by_hand(tmp_path: Path, changes: dict[str, Any], said: str) -> None:
+    path, content = tmp_path / "candidates.json", json.loads(listed(PLAIN))
+    (content["designs"][0] if "mechanism" in changes else content["designs"][0]["linkage"]).update(changes)
+    path.write_text(json.dumps(content))
+    with pytest.raises(ProblemError) as told:
+        load_linkage(f"{path}#3")
+    assert said in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+def test_a_list_without_a_part_of_a_six_bar_says_what_belongs_there(tmp_path: Path) -> None:
+    path = tmp_path / "candidates.json"
+    for absent in ("hosts", "r6", "point_link", "assembly_2"):
+        content = json.loads(listed(PLAIN))
+        del content["designs"][0]["linkage"][absent]
+        path.write_text(json.dumps(content))
+        with pytest.raises(
+            ProblemError, match=r"states no linkage and direction; the keys are o2, .*hosts, poi"
+        ):
+            load_linkage(f"{path}#3")
+
+
+ACTING = """
+[dynamics]
+masses = [1, 2, 3, 4, 5]
+inertias = [1, 2, 3, 4, 5]
+centres = [[0, 0], [1, 0], [1, 0], [1, 0], [1, 0]]
+[[loads]]
+link = 6
+at = [1, 0]
+force = [0, -9]
+[[loads]]
+link = 5
+over = "theta6"
+table = "load.csv"
+[[springs]]
+between = [{ link = 1, at = [0, 2] }, { link = 5 }]
+stiffness = 500
+[[torsion_springs]]
+between = [5, 3]
+stiffness = 7
+free_angle_deg = 30
+[friction]
+viscous = [1, 2, 3, 4, 5, 6, 7]
+"""
+
+
+def test_what_acts_on_every_link_is_read(tmp_path: Path) -> None:
+    (tmp_path / "load.csv").write_text("theta6_deg,moment_nm\n0,1\n90,2\n360,1\n", encoding="utf-8")
+    head = 'mechanism = "stephenson-3"\nlength_unit = "m"\n'
+    (tmp_path / "mine.toml").write_text(head + FOUR_BAR + DYAD + ACTING, encoding="utf-8")
+    found = load_linkage_spec(tmp_path / "mine.toml").dynamics
+    assert found is not None
+    assert found.masses == (1, 2, 3, 4, 5)
+    assert found.centres == ((0, 0), *[(1, 0)] * 4)
+    assert found.loads[1].values == ((0, 1), (90, 2), (360, 1))
+    assert found.springs[0].between[1].link == 5
+    assert (found.torsion_springs[0].between, found.torsion_springs[0].free_angle_deg) == ((3, 5), -30)
+    assert found.friction is not None
+    assert found.friction.viscous == (1, 2, 3, 4, 5, 6, 7)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            "[dynamics]\nmasses = [1, 2, 3]\ninertias = [1, 2, 3, 4, 5]",
+            "dynamics.masses has 3 entries; it must have 5 numbers",
+        ),
+        ("[[loads]]\nlink = 7\nmoment = 1", "loads[0].link is 7; it must be 2, 3, 4, 5 or 6"),
+        ("[[loads]]\nlink = 1\nmoment = 1", "loads[0].link is 1; it must be 2, 3, 4, 5 or 6"),
+        (
+            "[[dampers]]\nbetween = [{ link = 2 }, { link = 9 }]\ndamping = 1",
+            "dampers[0].between[1].link is 9; it must be 1, 2, 3, 4, 5 or 6",
+        ),
+        (
+            "[friction]\nviscous = [1, 2]",
+            "friction.viscous is [1, 2]; it must be a number, or seven: in O2, A, B, O4, C, E, D",
+        ),
+    ],
+)
+def test_what_acts_where_there_is_nothing_is_refused(text: str, line: str) -> None:
+    assert refused(FOUR_BAR + DYAD + text) == [line]
+
+
+def meeting(p: Any, r: float, q: Any, s: float, side: int) -> Any:
+    """The point at r from p and at s from q, on the left of p -> q (+1) or on its right."""
+    way = q - p
+    along = (abs(way) ** 2 + r**2 - s**2) / (2 * abs(way))
+    return p + (along + 1j * side * np.sqrt(r**2 - along**2)) * way / abs(way)
+
+
+TURN = np.exp(2j * np.pi * np.arange(3600) / 3600)
+
+
+def carried_point(linkage: Linkage) -> tuple[Any, Any, Any]:
+    """C, E and P of a Stephenson III of the catalogue over a turn, by two meetings of circles."""
+    assert isinstance(linkage, SixBar)
+    o2, o4, c, d, p = (complex(*getattr(linkage, x)) for x in ("o2", "o4", "c", "d", "coupler_point"))
+    a = o2 + float(linkage.r2) * TURN
+    b = meeting(a, float(linkage.r3), o4, float(linkage.r4), int(linkage.assembly))
+    at_c = a + c * (b - a) / float(linkage.r3)
+    e = meeting(at_c, float(linkage.r5), d, float(linkage.r6), int(linkage.assembly_2))
+    return at_c, e, at_c + p * (e - at_c) / float(linkage.r5)
+
+
+def test_klanns_leg_is_that_of_the_patent() -> None:
+    leg = load_linkage("klann")
+    assert isinstance(leg, SixBar)
+    r3, c, foot = float(leg.r3), complex(*leg.c), complex(*leg.coupler_point)
+    assert [abs(c), abs(c - r3)] == pytest.approx([1.1051, 0.5221], rel=1e-12)  # 35 from 29 and from 27
+    assert [abs(foot), abs(foot - float(leg.r5))] == pytest.approx([0.8966, 1.732], rel=1e-12)
+    _, _, way = carried_point(leg)
+    assert np.ptp(way.real) == pytest.approx(1.0087, abs=5e-5)
+    assert np.ptp(way.imag) == pytest.approx(0.5273, abs=5e-5)
+    assert np.mean(way.imag < way.imag.min() + 0.02 * np.ptp(way.imag)) == pytest.approx(0.085, abs=1e-3)
+
+
+def test_the_dwell_of_the_course_project() -> None:
+    linkage = load_linkage("dwell-six-bar")
+    assert abs(complex(*linkage.c)) == pytest.approx(62.89)  # type: ignore[attr-defined]
+    assert np.degrees(np.angle(complex(*linkage.c))) == pytest.approx(21.89)  # type: ignore[attr-defined]
+    _, e, _ = carried_point(linkage)
+    theta6 = np.degrees(np.unwrap(np.angle(e - complex(*linkage.d))))  # type: ignore[attr-defined]
+    assert np.ptp(theta6) == pytest.approx(15.83, abs=5e-3)
+    turns = np.concatenate([theta6, theta6])
+    spans = np.lib.stride_tricks.sliding_window_view(turns, 1386)  # steps of 0.1 deg, 138.5 deg long
+    assert 0.498 < np.ptp(spans, axis=1).min() < 0.5
