@@ -101,7 +101,8 @@ function partsIn(dyads, links) {
     const { style, points } = links[number];
     const plate = points.length > 2;
     const corners = (_, state) => around(points.map((name) => state[name]));
-    return { name: style, style: plate && number !== 3 ? `${style} plate` : style, closed: plate, corners };
+    const look = number === 3 ? !plate && " rod" : plate && " plate";
+    return { name: style, style: `${style}${look || ""}`, closed: plate, corners };
   };
   const blocks = [];
   const bars = [];
