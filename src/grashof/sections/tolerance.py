@@ -16,6 +16,7 @@ from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
 
+_SAME = 1e-12  # share by which rounding may tell equal moves apart
 _ALL = {"worst": "worst senses", "rms": "root of the sum of squares"}
 
 
@@ -92,7 +93,7 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
             if name == "worst":
                 at = degrees(float(places[2 * k]))
                 yield Fact(f"tolerance_{key}_worst_theta2_deg", f"{label}, at theta2", at, "deg")
-    most = int(np.argmax(values[4:]))
+    most = int(np.argmax(values[4:] >= (1 - _SAME) * values[4:].max()))  # of equals the first
     label = "dimension that moves P most"
     yield Fact("tolerance_dimension", label, study.linkage.mechanism.dimensions[most])
     yield Fact("tolerance_dimension_move", f"{label}: by", float(values[4 + most]), study.spec.unit)

@@ -70,11 +70,9 @@ def test_blocks_sit_on_their_slides_and_rods_pass_them(linkage: Linkage, share: 
 def test_the_guide_covers_the_travel(linkage: Linkage) -> None:
     ax = plot_linkage(linkage, ax=axes())
     theta2 = np.linspace(0, 2 * np.pi, 3601)
-    loops, state = len(linkage.mechanism.dyads), solve_position(linkage, theta2)
-    b = state.point("be"[loops - 1]) @ np.array([1, 1j])
-    angle, offset = (
-        float(getattr(linkage, name + ["", "_2"][loops - 1])) for name in ("slide_angle", "offset")
-    )
+    state, ending = solve_position(linkage, theta2), "_2" if linkage in PRESSES else ""
+    b = state.point("e" if ending else "b") @ np.array([1, 1j])
+    angle, offset = (float(getattr(linkage, f"{name}{ending}")) for name in ("slide_angle", "offset"))
     turn = np.exp(1j * angle)
     lines = [np.asarray(line.get_xydata()) @ np.array([1, 1j]) for line in ax.lines]
     straight = [(line - complex(*linkage.o2)) / turn for line in lines if len(line) == 2]

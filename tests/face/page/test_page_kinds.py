@@ -175,11 +175,10 @@ def test_six_bars_play_with_all_their_links(shown: Callable[[str], Page], name: 
         page.keyboard.press(key)
         state = page.evaluate("grashof.state()")
         there = solve_position(linkage, state["theta2"])
-        at = {point: page.locator(f"#stage .joint.{point}") for point in linkage.mechanism.points}
-        drawn = np.array(
-            [[float(dot.get_attribute(f"c{axis}") or "nan") for axis in "xy"] for dot in at.values()]
-        )
-        true = np.array([there.point(point) for point in at]) * [1, -1]
+        points = linkage.mechanism.points
+        dots = [page.locator(f"#stage .joint.{point}") for point in points]
+        drawn = np.array([[float(dot.get_attribute(f"c{axis}") or "nan") for axis in "xy"] for dot in dots])
+        true = np.array([there.point(point) for point in points]) * [1, -1]
         # One scale for all: distances on the screen are those of the linkage.
         apart, truly = drawn - drawn[0], true - true[0]
         scale = np.abs(apart).max() / np.abs(truly).max()
