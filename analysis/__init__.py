@@ -80,13 +80,13 @@ from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
-from grashof.analysis.loops.loop import GrashofClass
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.mechanism.driver import DriverMotion, driver_motion
 from grashof.analysis.mechanism.driver_law import DriverLaw
 from grashof.analysis.mechanism.driver_samples import driver_samples
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes
+from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
 from grashof.analysis.mechanism.mobility import (
     branch_index,

@@ -137,14 +137,19 @@ class Loop(NamedTuple):
         return reach * self.closed.cos3, reach * self.closed.sin3
 
     @property
+    def width(self) -> FloatArray:
+        """Of the gap between C and D."""
+        return self.dyad.sizes.width(self.d.x - self.c.x, self.d.y - self.c.y)
+
+    @property
     def travel(self) -> FloatArray:
         """How far its slide has gone; NaN without a slide."""
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
 
 
-def first_dyad(linkage: Linkage) -> DyadSizes:
-    """The dyad of the first loop."""
-    return next(_hosted_dyads(linkage.mechanism, operands_of(linkage))).sizes
+def dyad_of(linkage: Linkage, loop: int = 1) -> DyadSizes:
+    """The dyad of the first loop or of another one."""
+    return list(_hosted_dyads(linkage.mechanism, operands_of(linkage)))[loop - 1].sizes
 
 
 def close(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.loops.kinds import first_loop
+from grashof.analysis.mechanism.first_loop import first_loop
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from grashof.analysis import rotatability, transmission_angle
-from grashof.analysis.loops.loop import CHANGE
+from grashof.analysis.mechanism.first_loop import CHANGE
 from grashof.analysis.mechanism.transmission import quality
 from grashof.analysis.numerics.quadrature import Curve, held
 from grashof.problems import Linkage
