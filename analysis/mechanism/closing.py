@@ -142,9 +142,14 @@ class Loop(NamedTuple):
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
 
 
+def dyads_of(linkage: Linkage) -> list[HostedDyad]:
+    """The dyads of a linkage."""
+    return list(_hosted_dyads(linkage.mechanism, operands_of(linkage)))
+
+
 def first_dyad(linkage: Linkage) -> DyadSizes:
     """The dyad of the first loop."""
-    return next(_hosted_dyads(linkage.mechanism, operands_of(linkage))).sizes
+    return dyads_of(linkage)[0].sizes
 
 
 def close(
