@@ -42,6 +42,8 @@ class Quantity:
         It follows from the position alone, and stays finite towards a dead position.
     never_negative : bool
         It is the size of something.
+    mu_of : int, optional
+        It is the transmission angle of this loop.
     """
 
     key: str
@@ -51,6 +53,7 @@ class Quantity:
     period: float | None = None
     position: bool = False
     never_negative: bool = False
+    mu_of: int | None = None
 
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
@@ -61,7 +64,7 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
         for n, name in driven.items()
     ]
-    found.append(Quantity("mu_deg", "transmission angle mu", "deg", _mu, position=True))
+    found += [_transmission(loop) for loop in range(1, len(kind.dyads) + 1)]
     found += [
         Quantity(f"{key}{n}", f"angular {rate} of {n}", per, attrgetter(f"{key}{n}"))
         for key, rate, per in (("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s2"))
@@ -161,9 +164,16 @@ def _degrees(angle: str) -> Curve:
     return lambda s: np.degrees(getattr(s, angle))
 
 
-def _mu(state: Kinematics) -> FloatArray:
-    mu = transmission_angle(state.linkage, state.theta2)
-    return np.degrees(np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu))
+def _transmission(loop: int) -> Quantity:
+    """The transmission angle of a loop."""
+    ending, where = ("", "") if loop == 1 else (f"_{loop}", f" of loop {loop}")
+
+    def values(state: Kinematics) -> FloatArray:
+        mu = transmission_angle(state.linkage, state.theta2, loop)
+        return np.degrees(np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu))
+
+    label = f"transmission angle mu{where}"
+    return Quantity(f"mu{ending}_deg", label, "deg", values, position=True, mu_of=loop)
 
 
 def _ratio(state: Kinematics) -> FloatArray:

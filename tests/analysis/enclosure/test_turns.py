@@ -135,7 +135,9 @@ def test_places_hold_dense_samples_of_points(batch: Linkage) -> None:
 
 def test_two_loops_are_refused_in_one_line() -> None:
     two = six_bars("pins 3 1", 2, np.random.default_rng(1))
-    with pytest.raises(ProblemError, match=r"a stephenson-3 has two loops; it cannot be proven by intervals$"):
+    with pytest.raises(
+        ProblemError, match=r"a stephenson-3 has two loops; it cannot be proven by intervals$"
+    ):
         least_transmission(two, np.zeros(2), np.ones(2))
 
 
