@@ -60,7 +60,7 @@ def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: flo
     matrix = (system.matrix * arms + 0.0).reshape(-1, 9)
     columns: dict[str, object] = {
         "theta2_deg": np.repeat(np.round(theta2_deg, 12), 9),
-        "equation": list(system.EQUATIONS) * count,
+        "equation": list(system.equations) * count,
     }
     columns |= {name: matrix[:, index] for index, name in enumerate(system.unknowns)}
     columns["right_side"] = (system.right_side * np.where(moment, metre**2, metre)).ravel()
