@@ -19,7 +19,7 @@ from grashof.analysis import (
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.kinds import forces_of, turning
+from grashof.study.kinds import force_key, forces_of, turning
 from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
@@ -119,14 +119,18 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
     def of(name: str) -> Curve:
         return _part_of(solved, name)
 
+    def force(joint: int) -> Curve:
+        return lambda s: np.asarray(solved(s).forces[joint])
+
     def moment(key: str, label: str, unit: str) -> Quantity:
         return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
 
     found = [moment("torque", "drive torque", "N m"), moment("power", "drive power", "W")]
     kind = study.linkage.mechanism
+    numbers = {force_key(joint.links): number for number, joint in enumerate(kind.every_joint)}
     for key, joint in forces_of(kind).items():
         labels = (f"force {key.upper()} in {joint}", f"joint force in {joint}")
-        found += _vector((key, key), labels, "N", of(key), metre)
+        found += _vector((key, key), labels, "N", force(numbers[key]), metre)
     if kind.slides:
         across = of("slide_force")
         found.append(Quantity("slide_force", "force across the slide", "N", lambda s: across(s) * metre))
