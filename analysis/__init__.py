@@ -101,7 +101,7 @@ from grashof.analysis.mechanism.mobility import (
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.reach import reach_box
 from grashof.analysis.mechanism.sensitivity import sensitivity
-from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
+from grashof.analysis.mechanism.stroke import LinkStroke, OutputStroke, link_stroke, output_stroke
 from grashof.analysis.mechanism.transmission import (
     transmission_angle,
     worst_transmission,
@@ -157,6 +157,7 @@ __all__ = [
     "InstantCentres",
     "Joint",
     "Kinematics",
+    "LinkStroke",
     "Loads",
     "MadeMoves",
     "Masses",
@@ -236,6 +237,7 @@ __all__ = [
     "holding",
     "instant_centres",
     "inverse_dynamics",
+    "link_stroke",
     "made_moves",
     "mechanical_energy",
     "motor_torque",

@@ -11,6 +11,8 @@ import scipy
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
 from grashof.analysis.forces.mass import Body, Masses
+from grashof.analysis.mechanism.closing import dyad_of
+from grashof.analysis.mechanism.dyad import Block, Pins
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.extremes import extremes_of
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
@@ -18,7 +20,7 @@ from grashof.analysis.mechanism.means import mean_over
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import Curve
-from grashof.problems import AssemblyError, FourBar, InvertedSliderCrank, ProblemError, SolverError
+from grashof.problems import AssemblyError, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
@@ -83,7 +85,7 @@ def balance_force(
     Raises
     ------
     ProblemError
-        A slider-crank, which such weights cannot balance.
+        A slider-crank or a six-bar, which such weights cannot balance.
 
     Notes
     -----
@@ -97,6 +99,7 @@ def balance_force(
     --------
     >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
     >>> from grashof.analysis.forces.mass import system_centre, uniform_bars
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> balanced = balance_force(jack, uniform_bars(jack, 300.0))
     >>> centre = system_centre(balanced.masses, solve_kinematics(jack, np.linspace(0, 6, 7)))
@@ -105,9 +108,10 @@ def balance_force(
     """
     crank, output = _unbalanced(linkage, masses)
     crank_weight = _counterweight(-crank, linkage.r2 if crank_radius is None else crank_radius)
-    default = linkage.r4 if isinstance(linkage, FourBar) else linkage.r2
+    sizes = dyad_of(linkage)
+    default = sizes.n if isinstance(sizes, Pins) else linkage.r2
     output_weight = _counterweight(-output, default if output_radius is None else output_radius)
-    whole = Masses(masses.crank + crank_weight, masses.coupler, masses.output + output_weight)
+    whole = masses.with_body(2, crank_weight).with_body(4, output_weight)
     return ForceBalance(crank_weight, output_weight, whole)
 
 
@@ -116,14 +120,21 @@ def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, Complex
     crank = masses.crank.mass * _complex(masses.crank.centre)
     output = masses.output.mass * _complex(masses.output.centre)
     own = _complex(masses.coupler.centre)
-    if isinstance(linkage, FourBar):
-        share = own / linkage.r3
+    kind = linkage.mechanism
+    if len(kind.dyads) > 1:
+        raise ProblemError(
+            f"a {kind.word} has two loops, so counterweights on links 2 and 4 cannot keep its centre of mass "
+            "at rest"
+        )
+    sizes = dyad_of(linkage)
+    if isinstance(sizes, Pins):
+        share = own / sizes.m
         crank = crank + masses.coupler.mass * linkage.r2 * (1 - share)
-        return crank, output + masses.coupler.mass * linkage.r4 * share
-    if isinstance(linkage, InvertedSliderCrank):  # theta3 is theta4 less a right angle
+        return crank, output + masses.coupler.mass * sizes.n * share
+    if isinstance(sizes, Block):  # theta3 is theta4 less a right angle
         return crank + masses.coupler.mass * linkage.r2, output - 1j * masses.coupler.mass * own
     raise ProblemError(
-        f"a {linkage.mechanism.word} has no link 4 that turns about the ground, so counterweights on links 2 "
+        f"a {kind.word} has no link 4 that turns about the ground, so counterweights on links 2 "
         "and 4 cannot keep its centre of mass at rest; balance_reciprocating makes its shaking force less"
     )
 
@@ -212,6 +223,7 @@ def balance_turn(
     Examples
     --------
     >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars, weight = uniform_bars(jack, (312, 312, 314)), Loads(gravity=(0, -9.81))
     >>> found = balance_turn(jack, bars, 2 * np.pi / 3, weight, radius=1.0, measure="peak")
@@ -254,7 +266,7 @@ def _balanced(
     state: Kinematics, masses: Masses, loads: Loads, moment: FloatArray, radius: float
 ) -> TorqueBalance:
     weight = _counterweight(moment[0] + 1j * moment[1], radius)
-    whole = Masses(masses.crank + weight, masses.coupler, masses.output)
+    whole = masses.with_body(2, weight)
     before, after = (inverse_dynamics(state, each, loads).torque for each in (masses, whole))
     return TorqueBalance(weight, whole, before, after)
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
+from grashof.analysis.mechanism.closing import dyad_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanism import DyadKind
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,19 +52,22 @@ def bars_of(linkage: Linkage) -> dict[int, Bar]:
 
     Examples
     --------
+    >>> from grashof.problems import InvertedSliderCrank
     >>> shaper = InvertedSliderCrank(o2=(0, 0), o4=(0, -2), r2=1, coupler_point=(4.5, 0.2))
     >>> {link: float(bar.reach) for link, bar in bars_of(shaper).items()}
     {2: 1.0, 3: 4.5}
     """
-    if isinstance(linkage, InvertedSliderCrank):
-        farthest = linkage.assembly * longest_travel(linkage)
-        ends = (np.zeros_like(farthest), farthest, linkage.coupler_point[..., 0])
-        return {2: _from_origin(linkage.r2), 3: Bar(np.minimum.reduce(ends), np.maximum.reduce(ends))}
-    if isinstance(linkage, SliderCrank):
-        return {2: _from_origin(linkage.r2), 3: _from_origin(linkage.r3)}
-    if isinstance(linkage, FourBar):
-        return {link: _from_origin(getattr(linkage, f"r{link}")) for link in (2, 3, 4)}
-    raise TypeError(f"{type(linkage).__name__} is no kind of linkage whose bars are known")
+    found = {2: _from_origin(linkage.r2)}
+    for loop, dyad in enumerate(linkage.mechanism.dyads):
+        first = 2 * loop + 3
+        if dyad.kind is DyadKind.RPR:
+            farthest = linkage.assembly * longest_travel(linkage)
+            ends = (np.zeros_like(farthest), farthest, linkage.coupler_point[..., 0])
+            found[first] = Bar(np.minimum.reduce(ends), np.maximum.reduce(ends))
+            continue
+        for link in (first, first + 1) if dyad.kind is DyadKind.RRR else (first,):
+            found[link] = _from_origin(getattr(linkage, f"r{link}"))
+    return found
 
 
 def bar_lengths(linkage: Linkage) -> dict[int, float]:
@@ -72,10 +76,11 @@ def bar_lengths(linkage: Linkage) -> dict[int, float]:
     That of a rod which slides through a block is `longest_travel`, at which it buckles most easily.
     """
     found = {link: float(bar.reach) for link, bar in bars_of(linkage).items()}
-    return found | ({3: float(longest_travel(linkage))} if isinstance(linkage, InvertedSliderCrank) else {})
+    is_rod = linkage.mechanism.dyads[0].kind is DyadKind.RPR
+    return found | ({3: float(longest_travel(linkage))} if is_rod else {})
 
 
-def longest_travel(linkage: InvertedSliderCrank) -> FloatArray:
+def longest_travel(linkage: Linkage) -> FloatArray:
     """Greatest distance between A and B on the rod of an inverted slider-crank, shape (...), length.
 
     Notes
@@ -83,8 +88,8 @@ def longest_travel(linkage: InvertedSliderCrank) -> FloatArray:
     sqrt(s^2 - offset^2) with the greatest distance s = r1 + r2 of A from O4, which the driver reaches
     whether it turns or swings; 0 where the linkage never closes.
     """
-    farthest, beside = linkage.r1 + linkage.r2, np.abs(linkage.offset)
-    return np.sqrt(np.maximum((farthest - beside) * (farthest + beside), 0.0))
+    farthest = linkage.r1 + linkage.r2
+    return np.nan_to_num(np.abs(dyad_of(linkage).place(farthest, np.zeros_like(farthest)).reach))
 
 
 def _from_origin(length: FloatArray) -> Bar:

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from grashof.analysis.forces.closing import closing, direction
-from grashof.analysis.forces.joints import (
-    Joint,
-    joint_motion,
-    slide_normal,
-    slide_of,
-)
-from grashof.analysis.forces.loads import Loads, Wrench, cross, known_joint_moments, turned, wrenches
-from grashof.analysis.forces.mass import Masses
+from grashof.analysis.forces.joint_forces import Frames, JointForces, Need, frames_of, joint_forces
+from grashof.analysis.forces.joints import Joint, joint_motion, joints_of
+from grashof.analysis.forces.loads import Loads, Wrench, known_joint_moments, wrenches
+from grashof.analysis.forces.mass import Body, Masses
+from grashof.analysis.mechanism.dyad import Vector
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.errors import wrong_value
 
 _MOST_ROUNDS = 200
 _SETTLED = 1e-14
@@ -31,12 +27,14 @@ class Dynamics:
     ----------
     torque : ndarray, shape (...), N length
         Of the drive, on link 2.
-    f12, f32, f43, f14 : ndarray, shape (..., 2), N
-        Joint forces: on link 2 by the ground at O2, on 2 by 3 at A, on 3 by 4 at B, on 4 by the
-        ground at O4, or at B where it is a slider.
-    joint_moments : ndarray, shape (4, ...), N length
-        Of friction and torsion springs in O2, A, B, O4, on the second link of each (2, 3, 4, 4). In a
-        slide its friction instead, N: the force on link 4 along the slide.
+    forces : ndarray, shape (J, ..., 2), N
+        In the joints, in the order of `Joint`: on the first link of each by the second, on the second where
+        the first is the ground. f12, f32, f43 and f14 are those of the first loop: on link 2 by the ground
+        at O2, on 2 by 3 at A, on 3 by 4 at B, on 4 by the ground at O4, or at B where it is a slider; those
+        of a six-bar in C and E follow, on their host and on 5, and in D on 6 by the ground or on its host.
+    joint_moments : ndarray, shape (J, ...), N length
+        Of friction and torsion springs, on the second link of each joint: in O2, A, B, O4 on 2, 3, 4, 4. In
+        a slide its friction instead, N: the force on that link along the slide.
     shaking_force : ndarray, shape (..., 2), N
         On the ground by everything that is fixed to it.
     shaking_moment : ndarray, shape (...), N length
@@ -44,18 +42,15 @@ class Dynamics:
     power : ndarray, shape (...), N length/s
         Of the drive.
     slide_force : ndarray, shape (...), N
-        Of the slide on link 4, at B and across it, positive to the left of the slide (of the rod): by the
-        ground on a slider, by the rod on a block. NaN without a slide.
+        Of the first slide, on link 4 at B (of a six-bar on 6 at E) and across it, positive to the left of the
+        slide (of the rod): by the ground on a slider, by the rod on a block. NaN without a slide.
     slide_moment : ndarray, shape (...), N length
-        Of the slide on link 4, about B; the guide bears it where loads do not pass through B. NaN
+        Of the slide on that link, about B (E); the guide bears it where loads do not pass through B. NaN
         without a slide.
     """
 
     torque: FloatArray
-    f12: FloatArray
-    f32: FloatArray
-    f43: FloatArray
-    f14: FloatArray
+    forces: FloatArray
     joint_moments: FloatArray
     shaking_force: FloatArray
     shaking_moment: FloatArray
@@ -63,10 +58,33 @@ class Dynamics:
     slide_force: FloatArray
     slide_moment: FloatArray
 
+    @property
+    def f12(self) -> FloatArray:
+        """On link 2 by the ground, shape (..., 2), N."""
+        return np.asarray(self.forces[Joint.O2])
+
+    @property
+    def f32(self) -> FloatArray:
+        """On link 2 by link 3, shape (..., 2), N."""
+        return np.asarray(self.forces[Joint.A])
+
+    @property
+    def f43(self) -> FloatArray:
+        """On link 3 by link 4, shape (..., 2), N."""
+        return np.asarray(self.forces[Joint.B])
+
+    @property
+    def f14(self) -> FloatArray:
+        """On link 4 by the ground, shape (..., 2), N."""
+        return np.asarray(self.forces[Joint.O4])
+
     def joint_force(self, joint: Joint) -> FloatArray:
         """Magnitude of the force in a joint, shape (...), N; in a slide with its friction."""
-        force = (self.f12, self.f32, self.f43, self.f14)[joint]
-        return np.hypot(force[..., 0], force[..., 1])
+        if joint >= len(self.forces):
+            raise wrong_value(
+                "joint", joint.name, f"one of {', '.join(Joint(k).name for k in range(len(self.forces)))}"
+            )
+        return np.asarray(np.hypot(self.forces[joint, ..., 0], self.forces[joint, ..., 1]))[()]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -83,7 +101,7 @@ def inverse_dynamics(
         Of all links, the payload with the coupler (`Masses.with_payload`).
     loads : Loads, optional
         Gravity, forces, springs, friction; none by default.
-    senses : ndarray, shape (4,), optional
+    senses : ndarray, shape (J,), optional
         +1 or -1: in which friction takes the joints to turn, or to slide; by default as they do.
 
     Returns
@@ -94,10 +112,11 @@ def inverse_dynamics(
 
     Notes
     -----
-    Moments of link 3 about A and of link 4 about O4 give the force at B, two equations with the
-    determinant sin(theta4 - theta3); the other forces and the torque follow one by one (the same
-    nine equations as Norton, *Design of Machinery*, sec. 11.4, and 11.5 of slider-cranks, solved in
-    order; see `closing`). Friction that depends on the forces is found by repeating this.
+    Of the last loop moments of its links about its joints with other links give the force between the
+    two, two equations with the determinant sin(theta4 - theta3) in a four-bar; forces on other links
+    follow, then those of the loop before, and last the torque (the same nine equations of a four-bar as
+    Norton, *Design of Machinery*, sec. 11.4, and 11.5 of slider-cranks, solved in order). Friction that
+    depends on the forces is found by repeating this.
 
     Examples
     --------
@@ -111,32 +130,27 @@ def inverse_dynamics(
     np.float64(5507.711124)
     """
     loads = Loads() if loads is None else loads
+    bodies, frames = masses.by_link(state.linkage), frames_of(state)
     outside, gravity = wrenches(state, loads), loads.gravity_vector()
-    demands = {link: _demand(state, masses, link, outside[link], gravity) for link in (2, 3, 4)}
+    needs = {link: _need(state, frames, link, body, outside[link], gravity) for link, body in bodies.items()}
     moments = known_joint_moments(state, loads, senses)
     radius = loads.friction.of(state.linkage, "radius")
-    forces = _joint_forces(state, demands, moments)
+    found = joint_forces(frames, needs, moments)
     if radius.any():
         turning = _turning(state, radius, senses)
-        moments, forces = _with_friction(state, demands, moments, turning, loads.friction.slide_length)
-    f12, f32, f43, f14, slide_moment = forces
-    a = np.asarray(state.linkage.r2)[..., None] * direction(state.theta2)
-    torque = demands[2].moment - cross(a, f32) - moments[0] + moments[1]
-    ground, on_slider = outside[1], slide_of(state.linkage) is Joint.O4
-    base = state.origin(4).position - state.linkage.o2
-    guided = moments[3] if not on_slider else slide_moment
+        moments, found = _with_friction(frames, needs, moments, turning, loads.friction.slide_length)
+    shaking = _shaking(frames, outside[1], moments, found)
+    none = np.full(state.shape, np.nan)
+    across, moment = next((found.slides[joint] for joint in sorted(found.slides)), (none, none))
     return Dynamics(
-        torque=torque[()],
-        f12=f12,
-        f32=f32,
-        f43=f43,
-        f14=f14,
+        torque=found.torque[()],
+        forces=_stacked(found.forces),
         joint_moments=moments,
-        shaking_force=ground.force - f12 - f14,
-        shaking_moment=(ground.moment - cross(base, f14) - torque - moments[0] - guided)[()],
-        power=(torque * state.omega2)[()],
-        slide_force=_across(state, forces)[()],
-        slide_moment=slide_moment[()],
+        shaking_force=shaking.force,
+        shaking_moment=shaking.moment[()],
+        power=(found.torque * state.omega2)[()],
+        slide_force=across[()],
+        slide_moment=(moment + np.zeros(state.shape))[()],
     )
 
 
@@ -149,7 +163,7 @@ def virtual_work_torque(
     ----------
     state, masses, loads
         As for `inverse_dynamics`.
-    joint_moments : ndarray, shape (4, ...)
+    joint_moments : ndarray, shape (J, ...)
         Of friction and torsion springs.
 
     Returns
@@ -164,87 +178,84 @@ def virtual_work_torque(
     per_turn = solve_kinematics(state.linkage, state.theta2)  # velocities for 1 rad/s
     outside, gravity = wrenches(state, loads), loads.gravity_vector()
     torque = np.zeros(state.shape)
-    for link in (2, 3, 4):
-        body = masses.of(link)
+    for link, body in masses.by_link(state.linkage).items():
         rate, moving = per_turn.angular(link)[1], per_turn.origin(link).velocity
         moved, push = per_turn.point(link, body.centre), state.point(link, body.centre).acceleration
         inertia = np.asarray(body.mass) * ((push - gravity) * moved.velocity).sum(axis=-1)
         torque = torque + inertia + body.inertia * state.angular(link)[2] * rate
         torque = torque - (outside[link].force * moving).sum(axis=-1) - outside[link].moment * rate
-    for joint in Joint:
+    for joint in joints_of(state.linkage):
         torque = torque - joint_moments[joint] * joint_motion(per_turn, joint)[1]
     return torque[()]
 
 
-def _demand(state: Kinematics, masses: Masses, link: int, outside: Wrench, gravity: FloatArray) -> Wrench:
-    """Force, and moment about the link's origin, that joints and drive must still exert."""
-    body, theta, alpha = masses.of(link), state.frame_angle(link), state.angular(link)[2]
-    inertia = np.asarray(body.mass)[..., None] * (state.point(link, body.centre).acceleration - gravity)
-    turning = body.inertia * alpha + cross(turned(body.centre, theta), inertia)
-    return Wrench(inertia - outside.force, turning - outside.moment)
+def _need(
+    state: Kinematics, frames: Frames, link: int, body: Body, outside: Wrench, gravity: FloatArray
+) -> Need:
+    """What inertia asks of the joints and the drive of a link, less what loads do."""
+    push, mass = state.point(link, body.centre).acceleration, np.asarray(body.mass)
+    x, y = mass * (push[..., 0] - gravity[0]), mass * (push[..., 1] - gravity[1])
+    arm_x, arm_y = frames.arm(link, (body.centre[..., 0], body.centre[..., 1]))
+    turning = body.inertia * state.angular(link).alpha + (arm_x * y - arm_y * x)
+    return Need(x - outside.force[..., 0], y - outside.force[..., 1], turning - outside.moment)
 
 
-class _JointForces(NamedTuple):
-    """The four joint forces, and the moment of a slide, for given moments in the joints."""
-
-    f12: FloatArray
-    f32: FloatArray
-    f43: FloatArray
-    f14: FloatArray
-    slide_moment: FloatArray
-
-
-def _joint_forces(state: Kinematics, demands: dict[int, Wrench], moments: FloatArray) -> _JointForces:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        f43, slide_moment = closing(state, demands, moments)
-    f14 = demands[4].force + f43
-    f32 = f43 - demands[3].force
-    return _JointForces(demands[2].force - f32, f32, f43, f14, slide_moment)
+def _shaking(frames: Frames, ground: Wrench, moments: FloatArray, found: JointForces) -> Wrench:
+    """What all that is fixed to the ground does to it: force, and moment about O2."""
+    x, y = found.forces[0]
+    force_x, force_y = ground.force[..., 0] - x, ground.force[..., 1] - y
+    turning = ground.moment - found.torque - moments[0]
+    for loop, (dyad, _, (_, (arm_x, arm_y))) in enumerate(frames.dyads):
+        if dyad.row.hosts[1] != 1:
+            continue
+        joint = 3 * loop + 3
+        x, y = found.forces[joint]
+        guided = found.slides[joint][1] if joint in found.slides else moments[joint]
+        force_x, force_y = force_x - x, force_y - y
+        turning = turning - (arm_x * y - arm_y * x) - guided
+    return Wrench(np.stack(np.broadcast_arrays(force_x, force_y), axis=-1), turning)
 
 
-def _across(state: Kinematics, forces: _JointForces) -> FloatArray:
-    """Force of the slide on link 4 across it, shape (...); NaN without a slide."""
-    slide = slide_of(state.linkage)
-    if slide is None:
-        return np.full(state.shape, np.nan)
-    on_output = forces.f14 if slide is Joint.O4 else -forces.f43
-    return np.asarray((on_output * slide_normal(state)).sum(axis=-1))
+def _stacked(forces: list[Vector]) -> FloatArray:
+    """Shape (J, ..., 2)."""
+    shape = np.broadcast_shapes(*(np.shape(part) for force in forces for part in force))
+    stacked = np.empty((len(forces), *shape, 2))
+    for row, (x, y) in zip(stacked, forces, strict=True):
+        row[..., 0], row[..., 1] = x, y
+    return stacked
 
 
-def _pressing(state: Kinematics, forces: _JointForces, slide_length: float) -> FloatArray:
-    """What friction in the joints grows with: the forces, in a slide that across it; shape (4, ...), N."""
-    sizes = np.stack([np.hypot(force[..., 0], force[..., 1]) for force in forces[:4]])
-    if (slide := slide_of(state.linkage)) is not None:
-        sizes[slide] = np.abs(_across(state, forces))
+def _pressing(found: JointForces, slide_length: float) -> FloatArray:
+    """What friction in the joints grows with: the forces, in a slide that across it; shape (J, ...), N."""
+    sizes = [np.hypot(x, y) for x, y in found.forces]
+    for joint, (across, moment) in found.slides.items():
+        sizes[joint] = np.abs(across)
         if slide_length:
-            sizes[slide] = np.maximum(sizes[slide], 2 * np.abs(forces.slide_moment) / slide_length)
-    return sizes
+            sizes[joint] = np.maximum(sizes[joint], 2 * np.abs(moment) / slide_length)
+    return np.stack(np.broadcast_arrays(*sizes))
 
 
 def _turning(state: Kinematics, radius: FloatArray, senses: FloatArray | None) -> FloatArray:
-    """Radii of the friction circles, with the signs in which the joints turn; shape (4, ...)."""
+    """Radii of the friction circles, with the signs in which the joints turn; shape (J, ...)."""
+    joints = joints_of(state.linkage)
     if senses is None:
-        return np.stack([radius[joint] * np.sign(joint_motion(state, joint)[1]) for joint in Joint])
-    return np.stack([np.full(state.shape, radius[joint] * senses[joint]) for joint in Joint])
+        return np.stack([radius[joint] * np.sign(joint_motion(state, joint)[1]) for joint in joints])
+    return np.stack([np.full(state.shape, radius[joint] * senses[joint]) for joint in joints])
 
 
 def _with_friction(
-    state: Kinematics,
-    demands: dict[int, Wrench],
-    known: FloatArray,
-    turning: FloatArray,
-    slide_length: float,
-) -> tuple[FloatArray, _JointForces]:
+    frames: Frames, needs: dict[int, Need], known: FloatArray, turning: FloatArray, slide_length: float
+) -> tuple[FloatArray, JointForces]:
     """Joint moments with friction in proportion to the joint forces, and those forces."""
-    forces = _joint_forces(state, demands, known)
-    settled = np.zeros(state.shape, dtype=bool)
+    found = joint_forces(frames, needs, known)
+    settled = np.zeros(known.shape[1:], dtype=bool)
     for _ in range(_MOST_ROUNDS):
-        sizes = _pressing(state, forces, slide_length)
+        sizes = _pressing(found, slide_length)
         moments = known - turning * sizes
-        forces = _joint_forces(state, demands, moments)
-        again = _pressing(state, forces, slide_length)
+        found = joint_forces(frames, needs, moments)
+        again = _pressing(found, slide_length)
         settled = ~(np.abs(again - sizes) > _SETTLED * again.max(axis=0)).any(axis=0)
         if settled.all():
             break
     moments = np.where(settled, moments, np.nan)
-    return moments, _joint_forces(state, demands, moments)
+    return moments, joint_forces(frames, needs, moments)

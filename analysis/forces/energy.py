@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import Joint, joint_motion
+from grashof.analysis.forces.joints import joint_motion, joints_of
 from grashof.analysis.forces.loads import Friction, Loads, spring_ends, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
@@ -21,8 +21,8 @@ class Energies:
 
     Parameters
     ----------
-    kinetic : ndarray, shape (3, ...)
-        Of links 2, 3 and 4.
+    kinetic : ndarray, shape (N, ...)
+        Of links 2, 3 and 4, of a six-bar to 6.
     weight : ndarray, shape (...)
         Of weights, from the origin of the global frame.
     springs : ndarray, shape (...)
@@ -82,8 +82,8 @@ def energies(state: Kinematics, masses: Masses, loads: Loads | None = None) -> E
     loads = Loads() if loads is None else loads
     gravity = loads.gravity_vector()
     kinetic, weight, springs = [], np.zeros(state.shape), np.zeros(state.shape)
-    for link in (2, 3, 4):
-        body, omega = masses.of(link), state.angular(link)[1]
+    for link, body in masses.by_link(state.linkage).items():
+        omega = state.angular(link)[1]
         centre = state.point(link, body.centre)
         moving = body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
         kinetic.append(moving / 2 + np.zeros(state.shape))
@@ -120,7 +120,9 @@ def powers(state: Kinematics, masses: Masses, loads: Loads | None = None) -> Pow
     outside = replace(loads, friction=Friction(), torsion_springs=())
     given = load_power(state, state, outside) - load_power(state, state, Loads(springs=lossless))
     rubbing = found.joint_moments - torsion_moments(state, loads)
-    lost = sum((rubbing[joint] * joint_motion(state, joint)[1] for joint in Joint), np.zeros(state.shape))
+    lost = np.zeros(state.shape)
+    for joint in joints_of(state.linkage):
+        lost = lost + rubbing[joint] * joint_motion(state, joint)[1]
     return Powers(found.power, given[()], lost[()])
 
 

@@ -122,8 +122,8 @@ def _work(linkage: Linkage, masses: Masses, loads: Loads, places: FloatArray) ->
     virtual, rest = virtual_motion(linkage, places)
     gravity = float(np.hypot(*loads.gravity_vector()))
     parts = [
-        masses.of(link).mass * gravity * virtual.point(link, masses.of(link).centre).speed
-        for link in (2, 3, 4)
+        body.mass * gravity * virtual.point(link, body.centre).speed
+        for link, body in masses.by_link(linkage).items()
     ]
     alone = [
         *(Loads(forces=(each,)) for each in loads.forces),

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.energy import mechanical_energy
-from grashof.analysis.forces.joints import Joint, joint_motion
+from grashof.analysis.forces.joints import joint_motion, joints_of
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
@@ -24,7 +24,7 @@ from grashof.problems.values.linkages.linkage import Linkage
 
 Drive = float | Callable[[float, float, float], float]
 
-# `margin` at which a motion towards a dead position ends: beyond it the driver angle no
+# Margin of a loop at which a motion towards a dead position ends: beyond it the driver angle no
 # longer shows how the linkage moves on.
 _DEAD_END = 1e-3
 _AHEAD = 1e-6  # rad of the driver: so far ahead it is seen in which sense a joint is about to turn
@@ -189,16 +189,17 @@ class _Rubbing:
     joints: tuple[int, ...]
 
     def senses(self, theta2: float, sense: int) -> FloatArray:
-        """In which the joints are about to turn where the driver turns in a sense, shape (4,)."""
+        """In which the joints are about to turn where the driver turns in a sense, shape (J,)."""
         unit = solve_kinematics(self.linkage, np.array([theta2 + sense * _AHEAD]))
-        return np.array([sense * np.sign(joint_motion(unit, joint)[1][0]) for joint in Joint])
+        joints = joints_of(self.linkage)
+        return np.array([sense * np.sign(joint_motion(unit, joint)[1][0]) for joint in joints])
 
     def events(self, sense: int, senses: FloatArray | None) -> Events:
         """What ends a part of the motion: a dead position near, rest, a joint that turns back."""
 
         def values(theta2: FloatArray, omega2: FloatArray) -> FloatArray:
             unit = solve_kinematics(self.linkage, theta2)
-            left = self.linkage.assembly * unit.margins[0] - _DEAD_END
+            left = np.min(np.abs(unit.margins), axis=0) - _DEAD_END
             found = [np.where(np.isfinite(left), left, -1.0)]
             if senses is not None:
                 found.append(sense * omega2)
@@ -276,8 +277,8 @@ def _equation_of_motion(
     gravity = loads.gravity_vector()
     inertia = np.zeros(omega2.shape)
     still = -load_power(unit, state, replace(loads, friction=Friction()))
-    for link in (2, 3, 4):
-        body, (_, omega, alpha, _) = masses.of(link), unit.angular(link)
+    for link, body in masses.by_link(unit.linkage).items():
+        _, omega, alpha, _ = unit.angular(link)
         centre = unit.point(link, body.centre)
         inertia = inertia + body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
         push = (omega2**2)[:, None] * centre.acceleration - gravity
@@ -288,7 +289,7 @@ def _equation_of_motion(
     else:
         rubbing = known_joint_moments(state, loads, senses)
     rubbing = rubbing - torsion_moments(state, loads)
-    for joint in Joint:
+    for joint in joints_of(unit.linkage):
         if rubbing[joint].any():
             still = still - rubbing[joint] * joint_motion(unit, joint)[1]
     return inertia, still
@@ -311,15 +312,16 @@ def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinemat
 
 def _check_start(linkage: Linkage, masses: Masses, theta2: float) -> None:
     start = solve_kinematics(linkage, theta2)  # names an angle at which the linkage cannot close
-    if not abs(start.margins[0]) > _DEAD_END:
+    if not min(map(abs, start.margins)) > _DEAD_END:
         raise AssemblyError(
             f"the linkage stands in a dead position at driver angle {np.degrees(theta2):.6g} deg"
         )
-    if not any(np.any(masses.of(link).mass > 0) or np.any(masses.of(link).inertia > 0) for link in (2, 3, 4)):
+    bodies = masses.by_link(linkage).values()
+    if not any(np.any(body.mass > 0) or np.any(body.inertia > 0) for body in bodies):
         raise ProblemError("the links have no inertia, so no torque gives them a motion")
 
 
 def _rubbing(linkage: Linkage, loads: Loads) -> tuple[int, ...]:
     """The joints whose friction does not vanish with their speed."""
     coulomb, radius = (loads.friction.of(linkage, name) for name in ("coulomb", "radius"))
-    return tuple(joint for joint in Joint if coulomb[joint] or radius[joint])
+    return tuple(joint for joint in joints_of(linkage) if coulomb[joint] or radius[joint])

@@ -1,4 +1,4 @@
-"""The joints of each kind of linkage: pins or a slide, how they move, and where the frames of links begin."""
+"""The joints of a linkage: pins or slides, how they move, and where the frames of links begin."""
 
 from __future__ import annotations
 
@@ -9,39 +9,49 @@ import numpy as np
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanism import DyadKind
 
 
 class Joint(IntEnum):
-    """The four joints, in the order of arrays that have an axis for them.
+    """The joints, in the order of arrays that have an axis for them; linkages of one loop have four.
 
     One of those at B and O4 is a slide in slider kinds: the ground guides the slider of a slider-crank,
     which has no O4; the block of an inverted one, which turns about O4, guides the rod, so that B is no pin.
+    The slider of a six-bar has its slide at D.
     """
 
     O2 = 0
     A = 1
     B = 2
     O4 = 3
+    C = 4
+    E = 5
+    D = 6
 
 
-# Which links a joint joins; motions in it are those of the second relative to the first.
-JOINED = ((1, 2), (2, 3), (3, 4), (1, 4))
+def joints_of(linkage: Linkage) -> tuple[Joint, ...]:
+    """The joints that a linkage has."""
+    return tuple(map(Joint, range(len(linkage.mechanism.every_joint))))
 
 
-def slide_of(linkage: Linkage) -> Joint | None:
-    """The joint that is a slide; None where all are pins."""
-    return Joint(JOINED.index(linkage.mechanism.slides[0])) if linkage.mechanism.slides else None
+def joined(linkage: Linkage, joint: int) -> tuple[int, int]:
+    """The links that a joint joins; motions in it are those of the second relative to the first."""
+    return linkage.mechanism.every_joint[joint].links
+
+
+def slides_of(linkage: Linkage) -> tuple[Joint, ...]:
+    """The joints that are slides."""
+    return tuple(Joint(k) for k, joint in enumerate(linkage.mechanism.every_joint) if joint.slides)
 
 
 def pins_of(linkage: Linkage) -> tuple[Joint, ...]:
     """The joints that are pins."""
-    slide = slide_of(linkage)
-    return tuple(joint for joint in Joint if joint is not slide)
+    return tuple(Joint(k) for k, joint in enumerate(linkage.mechanism.every_joint) if not joint.slides)
 
 
 def joint_name(linkage: Linkage, joint: Joint) -> str:
-    """What a joint is called in tables and messages: O2, A, B, O4, or slide."""
-    return "slide" if joint is slide_of(linkage) else joint.name
+    """What a joint is called in tables and messages: O2, A, ..., or slide."""
+    return "slide" if joint in slides_of(linkage) else joint.name
 
 
 def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]:
@@ -50,11 +60,14 @@ def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]
     Returns
     -------
     ndarray, shape (...), rad and rad/s; or length and length/s
-        The travel of B from the foot of O2 on the line of the slide, or from A along the rod.
+        The travel of the slider's pin from the foot of O2 on the line of the slide, or of B from A along
+        the rod.
     """
-    if joint == slide_of(state.linkage) and state.slide is not None:
-        return state.slide.travel, state.slide.velocity
-    first, second = JOINED[joint]
+    row = state.linkage.mechanism.every_joint[joint]
+    first, second = row.links
+    slide = state.slides[(second - 3) // 2] if row.slides else None
+    if slide is not None:
+        return slide.travel, slide.velocity
     angle, rate = state.angular(second)[:2]
     if first == 1:
         return angle, rate
@@ -62,20 +75,24 @@ def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]
     return angle - before, rate - rate_before
 
 
-def slide_direction(state: Kinematics) -> FloatArray:
-    """Unit vector along the slide, or the rod in its block, shape (..., 2): link 4 less a right angle."""
-    return np.stack([np.sin(state.theta4), -np.cos(state.theta4)], axis=-1)
+def slide_direction(state: Kinematics, link: int = 4) -> FloatArray:
+    """Unit vector along a slide, or a rod in its block, shape (..., 2): its slider or block less 90 deg."""
+    theta = state.angular(link).theta
+    return np.stack([np.sin(theta), -np.cos(theta)], axis=-1)
 
 
-def slide_normal(state: Kinematics) -> FloatArray:
-    """Unit vector across the slide, to its left, shape (..., 2)."""
-    return np.stack([np.cos(state.theta4), np.sin(state.theta4)], axis=-1)
+def slide_normal(state: Kinematics, link: int = 4) -> FloatArray:
+    """Unit vector across a slide, to its left, shape (..., 2)."""
+    theta = state.angular(link).theta
+    return np.stack([np.cos(theta), np.sin(theta)], axis=-1)
 
 
 def output_rate(state: Kinematics) -> FloatArray:
-    """Angular velocity of link 4, rad/s; of a slider its velocity along the slide, length/s."""
-    slide = slide_of(state.linkage)
-    return joint_motion(state, slide)[1] if slide is Joint.O4 else state.omega4
+    """Angular velocity of the last link, rad/s; of a slider its velocity along the slide, length/s."""
+    slide = state.slides[-1]
+    if slide is not None and state.linkage.mechanism.dyads[-1].kind is DyadKind.RRP:
+        return slide.velocity
+    return state.turning[-1].omega
 
 
 def moving_origins(linkage: Linkage) -> tuple[int, ...]:

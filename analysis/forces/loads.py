@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.forces.joints import (
-    JOINED,
     Joint,
+    joined,
     joint_motion,
     joint_name,
-    slide_of,
+    joints_of,
+    slides_of,
 )
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
@@ -33,9 +34,9 @@ class AppliedForce:
     Parameters
     ----------
     link : int
-        2, 3 or 4.
+        2, 3 or 4; of a six-bar 2 to 6.
     at : pair of float, length
-        (u, v) in the link's frame; of a slider from B, u along the slide.
+        (u, v) in the link's frame; of a slider from B or E, u along the slide.
     force : array_like, shape (..., 2), N; or callable
         Constant, or a function of the `Kinematics`: ``lambda state: ... state.theta2 ...``.
     turning : bool
@@ -55,11 +56,11 @@ class AppliedMoment:
     Parameters
     ----------
     link : int
-        2, 3 or 4. One on link 2 adds to the drive torque.
+        2, 3 or 4; of a six-bar 2 to 6. One on link 2 adds to the drive torque.
     moment : array_like, shape (...), N length; or callable
     at : pair of float, length, optional
         Where it enters the link, (u, v) in its frame, which matters to section forces alone. By default
-        the shaft, O2 or O4, of links 2 and 4, and P of link 3.
+        P on the link that carries it, the origin of the frame (such as the shaft, O2 or O4) on others.
     """
 
     link: int
@@ -74,7 +75,7 @@ class Spring:
     Parameters
     ----------
     first_link, second_link : int
-        1 (the ground, whose frame is the global one) to 4.
+        1 (the ground, whose frame is the global one) to 4; of a six-bar to 6.
     first_at, second_at : pair of float, length
     stiffness : float, N/length
     free_length : float, length
@@ -100,7 +101,8 @@ class TorsionSpring:
     stiffness : float, N length/rad
     free_angle : float, rad
         Angle of the second link less that of the first where it is slack (the ground's is 0: O2
-        joins links 1 and 2, A 2 and 3, B 3 and 4, O4 1 and 4). It is wound by less than half a turn.
+        joins links 1 and 2, A 2 and 3, B 3 and 4, O4 1 and 4; C a host and 5, E 5 and 6, D a host and 6). It
+        is wound by less than half a turn.
     """
 
     joint: Joint
@@ -115,15 +117,15 @@ class TorsionSpring:
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction in the joints O2, A, B, O4; a single number is meant for each.
+    """Friction in the joints O2, A, B, O4, of six-bars C, E, D, too; a single number is meant for each.
 
     Parameters
     ----------
-    viscous : float or sequence of 4, N length s/rad
+    viscous : float or sequence of 4 or 7, N length s/rad
         Moment for each unit of relative angular velocity.
-    coulomb : float or sequence of 4, N length
+    coulomb : float or sequence of 4 or 7, N length
         Moment of constant size against the relative rotation.
-    radius : float or sequence of 4, length
+    radius : float or sequence of 4 or 7, length
         Radius of the friction circle, coefficient times pin radius: moment for each unit of the
         joint's force.
     slide_viscous : float, N s/length
@@ -145,12 +147,15 @@ class Friction:
     slide_mu: float = 0.0
     slide_length: float = 0.0
 
-    def each(self, name: str) -> FloatArray:
-        """One of the three for every joint, shape (4,)."""
+    def each(self, name: str, count: int | None = None) -> FloatArray:
+        """One of the three for every joint, shape (count,); by default as many as are given, or four."""
         values = np.asarray(getattr(self, name), dtype=np.float64)
-        if values.shape not in ((), (4,)) or not np.isfinite(values).all() or np.any(values < 0):
-            raise ProblemError(f"{name} friction is {values}; it must be one or four numbers from zero")
-        return np.broadcast_to(values, 4)
+        counts = tuple(_COUNTS) if count is None else (count,)
+        fits = values.shape in ((), *((each,) for each in counts))
+        if not fits or not np.isfinite(values).all() or np.any(values < 0):
+            words = " or ".join(("one", *(_COUNTS[each] for each in counts)))
+            raise ProblemError(f"{name} friction is {values}; it must be {words} numbers from zero")
+        return np.broadcast_to(values, values.shape or counts[0])
 
     def of(self, linkage: Linkage, name: str) -> FloatArray:
         """The same for the joints of a linkage: where one is a slide, that of slides is in its place.
@@ -160,25 +165,28 @@ class Friction:
         ProblemError
             A slide that the linkage has not, or friction of a pin where it has one.
         """
-        each, slide = self.each(name), slide_of(linkage)
+        kind, slides = linkage.mechanism, slides_of(linkage)
+        each = self.each(name, len(kind.every_joint))
         given = getattr(self, _OF_SLIDES[name])
         if not np.isfinite(given) or given < 0:
             raise wrong_value(_OF_SLIDES[name], given, "a number from zero")
-        if slide is None:
+        if not slides:
             if given:
-                raise ProblemError(f"{_OF_SLIDES[name]} friction is {given}; a four-bar has no slide")
+                raise ProblemError(f"{_OF_SLIDES[name]} friction is {given}; a {kind.word} has no slide")
             return each
-        if np.ndim(getattr(self, name)) and each[slide]:
-            raise ProblemError(
-                f"{name} friction in {slide.name} is {each[slide]:g}; that joint of a "
-                f"{linkage.mechanism.word} is a slide, so it must be 0, and {_OF_SLIDES[name]} states that of"
-                " slides"
-            )
+        for slide in slides:
+            if np.ndim(getattr(self, name)) and each[slide]:
+                raise ProblemError(
+                    f"{name} friction in {slide.name} is {each[slide]:g}; that joint of a {kind.word} is a "
+                    f"slide, so it must be 0, and {_OF_SLIDES[name]} states that of slides"
+                )
         found = each.copy()
-        found[slide] = given
+        found[list(slides)] = given
         return found
 
 
+# How many joints linkages have.
+_COUNTS = {4: "four", 7: "seven"}
 # By the name of what pins have.
 _OF_SLIDES = {"viscous": "slide_viscous", "coulomb": "slide_coulomb", "radius": "slide_mu"}
 
@@ -240,7 +248,7 @@ class PlacedLoad:
     Parameters
     ----------
     link : int
-        1 to 4.
+        1 to 4; of a six-bar to 6.
     at : array_like, shape (..., 2), length
         (u, v) in the link's frame, the ground's being the global one.
     force : ndarray, shape (..., 2), N
@@ -268,8 +276,8 @@ def turned(at: FloatArray, theta: FloatArray) -> FloatArray:
 
 
 def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
-    """All forces, moments and springs that act on the links, 1 to 4, at their places."""
-    nothing, still = np.zeros(()), np.zeros(2)
+    """All forces, moments and springs that act on the links, the ground with them, at their places."""
+    nothing, still, kind = np.zeros(()), np.zeros(2), state.linkage.mechanism
     for force in loads.forces:
         theta, value = state.frame_angle(force.link), _value(force.force, state)
         if force.turning:
@@ -277,7 +285,7 @@ def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
         yield PlacedLoad(force.link, force.at, value, nothing)
     for moment in loads.moments:
         state.angular(moment.link)  # raises for a link that the linkage has not
-        entry = state.linkage.coupler_point if moment.link == 3 else (0.0, 0.0)
+        entry = state.linkage.coupler_point if moment.link == kind.carries else (0.0, 0.0)
         at = entry if moment.at is None else moment.at
         yield PlacedLoad(moment.link, at, still, _value(moment.moment, state))
     for spring in loads.springs:
@@ -287,8 +295,8 @@ def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
 
 
 def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
-    """What every link, 1 to 4, feels from forces, moments and springs; weight is left to the masses."""
-    found = {link: Wrench(np.zeros(2), np.zeros(())) for link in (1, 2, 3, 4)}
+    """What every link, 1 to 4, of a six-bar to 6, feels from forces, moments and springs, not from weight."""
+    found = {link.number: Wrench(np.zeros(2), np.zeros(())) for link in state.linkage.mechanism.links}
     for load in placed_loads(state, loads):
         wrench = found[load.link]
         if load.force.any():
@@ -327,17 +335,17 @@ def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | No
     ----------
     state : Kinematics
     loads : Loads
-    senses : ndarray, shape (4,), optional
+    senses : ndarray, shape (J,), optional
         In which friction takes the joints to turn, or to slide; by default as they do.
 
     Returns
     -------
-    ndarray, shape (4, ...), N length
+    ndarray, shape (J, ...), N length
         In a slide the force along it, N.
     """
     moments = torsion_moments(state, loads)
     viscous, coulomb = (loads.friction.of(state.linkage, name) for name in ("viscous", "coulomb"))
-    for joint in Joint:
+    for joint in joints_of(state.linkage):
         if viscous[joint] or coulomb[joint]:
             _, rate = joint_motion(state, joint)
             sense = np.sign(rate) if senses is None else senses[joint]
@@ -353,12 +361,16 @@ def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
     ProblemError
         One of them is at a slide, in which links do not turn against each other.
     """
-    moments = np.zeros((4, *state.shape))
+    linkage = state.linkage
+    moments = np.zeros((len(joints_of(linkage)), *state.shape))
     for spring in loads.torsion_springs:
-        if spring.joint == slide_of(state.linkage):
-            where = joint_name(state.linkage, spring.joint)
+        if spring.joint >= len(moments):
+            names = ", ".join(each.name for each in joints_of(linkage))
+            raise wrong_value("joint of a torsion spring", spring.joint.name, f"one of {names}")
+        if spring.joint in slides_of(linkage):
+            where, links = joint_name(linkage, spring.joint), joined(linkage, spring.joint)
             raise ProblemError(
-                f"a torsion spring is at the {where} between links {JOINED[spring.joint]}, which do not turn "
+                f"a torsion spring is at the {where} between links {links}, which do not turn "
                 "against each other; it must be at a pin"
             )
         angle, _ = joint_motion(state, spring.joint)

@@ -27,8 +27,8 @@ class Body(ReadOnly):
     inertia : array_like, shape (...), kg length^2
         About the centre of mass.
     centre : array_like, shape (..., 2), length
-        Centre of mass (u, v): origin O2, A or O4, u towards A, B or B, v to its left; of a slider from
-        B, u along the slide.
+        Centre of mass (u, v): origin O2, A, O4, C or D, u towards A, B, B, E or E, v to its left; of a
+        slider from B or E, u along the slide.
     parts : tuple of Body
         That it was put together from, whose places section forces depend on; none of a single one.
     """
@@ -75,37 +75,81 @@ class Body(ReadOnly):
         return self.parts or (self,)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, init=False, eq=False)
 class Masses:
-    """The moving links as bodies; what hangs at P belongs to the coupler.
+    """The moving links as bodies; what hangs at P belongs to the link that carries it.
 
     Parameters
     ----------
     crank, coupler, output : Body
         Links 2, 3 and 4.
+    *others : Body
+        Links 5 and 6 of a six-bar.
+
+    Examples
+    --------
+    >>> Masses(Body(1.0), Body(2.0), Body(3.0), Body(0.5), Body(0.0)).of(5).mass
+    array(0.5)
     """
 
-    crank: Body
-    coupler: Body
-    output: Body
+    bodies: tuple[Body, ...]
+
+    def __init__(self, crank: Body, coupler: Body, output: Body, *others: Body) -> None:
+        object.__setattr__(self, "bodies", (crank, coupler, output, *others))
+
+    @property
+    def crank(self) -> Body:
+        """Link 2."""
+        return self.bodies[0]
+
+    @property
+    def coupler(self) -> Body:
+        """Link 3."""
+        return self.bodies[1]
+
+    @property
+    def output(self) -> Body:
+        """Link 4."""
+        return self.bodies[2]
 
     def of(self, link: int) -> Body:
-        """The body of link 2, 3 or 4."""
-        return (self.crank, self.coupler, self.output)[link - 2]
+        """The body of a moving link: 2, 3, ..."""
+        return self.bodies[link - 2]
+
+    def by_link(self, linkage: Linkage) -> dict[int, Body]:
+        """The bodies of the moving links of a linkage, by their numbers.
+
+        Raises
+        ------
+        ProblemError
+            There are fewer bodies than moving links, or a body with a mass belongs to none.
+        """
+        numbers = [link.number for link in linkage.mechanism.links[1:]]
+        beyond = [np.any(body.mass) or np.any(body.inertia) for body in self.bodies[len(numbers) :]]
+        if len(self.bodies) < len(numbers) or any(beyond):
+            wanted = f"{len(numbers)} for a {linkage.mechanism.word}: links {_listed(numbers)}"
+            raise ProblemError(f"masses has {len(self.bodies)} bodies; it must have {wanted}")
+        return dict(zip(numbers, self.bodies, strict=False))
 
     @property
     def total(self) -> FloatArray:
         """Mass of all moving links, shape (...), kg."""
-        total: FloatArray = self.crank.mass + self.coupler.mass + self.output.mass
-        return total
+        first, *others = self.bodies
+        return np.asarray(sum((body.mass for body in others), first.mass))
 
-    def with_payload(self, mass: npt.ArrayLike, at: npt.ArrayLike) -> Masses:
-        """The same with a point mass on the coupler, as at ``linkage.coupler_point``."""
-        return Masses(self.crank, self.coupler + Body(mass, 0.0, at), self.output)
+    def with_body(self, link: int, body: Body) -> Masses:
+        """The same with one more body fixed to a link."""
+        bodies = list(self.bodies)
+        bodies[link - 2] = bodies[link - 2] + body
+        return Masses(*bodies)
+
+    def with_payload(self, mass: npt.ArrayLike, at: npt.ArrayLike, link: int = 3) -> Masses:
+        """The same with a point mass, as at ``linkage.coupler_point``: on the coupler, or another link."""
+        return self.with_body(link, Body(mass, 0.0, at))
 
 
 #: Links that have no mass.
-WEIGHTLESS = Masses(Body(0.0), Body(0.0), Body(0.0))
+WEIGHTLESS = Masses(*[Body(0.0)] * 5)
 
 
 def uniform_bar(length: npt.ArrayLike, mass_per_length: npt.ArrayLike, width: npt.ArrayLike = 0.0) -> Body:
@@ -176,20 +220,27 @@ def uniform_bars(
     Parameters
     ----------
     linkage : Linkage
-    mass_per_length : array_like, shape () or (3,), kg/length
-        One for all, or one each for links 2, 3 and 4.
+    mass_per_length : array_like, shape () or (N,), kg/length
+        One for all, or one each for links 2, 3, 4, of a six-bar to 6.
     payload : array_like, shape (...), kg
-    widths : array_like, shape () or (3,), length
+    widths : array_like, shape () or (N,), length
         In the plane of motion; none for slender bars.
     """
+    links = [link.number for link in linkage.mechanism.links[1:]]
     each, wide = (
-        np.broadcast_to(np.asarray(given, dtype=np.float64), 3) for given in (mass_per_length, widths)
+        np.broadcast_to(np.asarray(given, dtype=np.float64), len(links))
+        for given in (mass_per_length, widths)
     )
-    bodies = dict.fromkeys((2, 3, 4), Body(0.0))
+    bodies = dict.fromkeys(links, Body(0.0))
     for link, bar in bars_of(linkage).items():
         bodies[link] = _along(bar, uniform_bar(bar.reach, each[link - 2], wide[link - 2]))
     bars = Masses(*bodies.values())
-    return bars.with_payload(payload, linkage.coupler_point) if np.any(np.asarray(payload) != 0) else bars
+    return loaded(bars, linkage, payload) if np.any(np.asarray(payload) != 0) else bars
+
+
+def loaded(masses: Masses, linkage: Linkage, payload: npt.ArrayLike) -> Masses:
+    """The same with a payload at P."""
+    return masses.with_payload(payload, linkage.coupler_point, linkage.mechanism.carries)
 
 
 def given_masses(
@@ -203,19 +254,29 @@ def given_masses(
     Parameters
     ----------
     linkage : Linkage
-    masses, inertias : sequence of 3 floats, kg and kg length^2
-        For links 2, 3 and 4; inertias about the centres of mass.
-    centres : sequence of 3 pairs, length, optional
+    masses, inertias : sequence of float, kg and kg length^2
+        Three for links 2, 3 and 4, five of a six-bar; inertias about the centres of mass.
+    centres : sequence of pairs, length, optional
         In the links' frames; by default halfway between the joints of a bar, halfway along the rod of an
-        inverted slider-crank (see `bars_of`), at B of a slider and at O4 of a block.
+        inverted slider-crank (see `bars_of`), at B or E of a slider and at O4 of a block.
     """
+    links = [link.number for link in linkage.mechanism.links[1:]]
     for name, values in (("masses", masses), ("inertias", inertias), ("centres", centres)):
-        if values is not None and len(values) != 3:
-            raise ProblemError(f"{name} has {len(values)} entries; it must have three, for links 2, 3 and 4")
+        if values is not None and len(values) != len(links):
+            wanted = f"{_WORDS[len(links)]}, for links {_listed(links)}"
+            raise ProblemError(f"{name} has {len(values)} entries; it must have {wanted}")
     bars, pinned = bars_of(linkage), np.zeros(2)
-    halfway = [bars[link].middle if link in bars else pinned for link in (2, 3, 4)]
+    halfway = [bars[link].middle if link in bars else pinned for link in links]
     places = halfway if centres is None else [np.asarray(centre, dtype=np.float64) for centre in centres]
     return Masses(*(Body(*each) for each in zip(masses, inertias, places, strict=True)))
+
+
+_WORDS = {3: "three", 5: "five"}
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    *most, last = map(str, numbers)
+    return f"{', '.join(most)} and {last}"
 
 
 def _along(bar: Bar, body: Body) -> Body:
@@ -249,8 +310,7 @@ def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
     if not np.all(total > 0):
         raise ProblemError("the links have no mass, so no centre of mass")
     moments: list[FloatArray] = []
-    for link in (2, 3, 4):
-        body = masses.of(link)
+    for link, body in masses.by_link(state.linkage).items():
         centre, share = state.point(link, body.centre), np.asarray(body.mass / total)[..., None]
         parts = (centre.position, centre.velocity, centre.acceleration, centre.jerk)
         moments = [share * part for part in parts] if not moments else [

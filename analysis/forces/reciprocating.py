@@ -90,8 +90,9 @@ def balance_reciprocating(
     with np.errstate(invalid="ignore", divide="ignore"):
         way = np.where(size[..., None] > 0, moment / size[..., None], np.array([1.0, 0.0]))
     weight = Body(size / distance, 0.0, distance[..., None] * way)
-    whole = Masses(masses.crank + weight, masses.coupler, masses.output)
-    return ReciprocatingBalance(weight, whole, np.asarray(rotating), np.asarray(reciprocating))
+    return ReciprocatingBalance(
+        weight, masses.with_body(2, weight), np.asarray(rotating), np.asarray(reciprocating)
+    )
 
 
 def shaking_harmonics(linkage: SliderCrank, masses: Masses, omega2: float, orders: int = 2) -> ComplexArray:

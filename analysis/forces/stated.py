@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from grashof.analysis.forces.curve_through import curve_through
-from grashof.analysis.forces.joints import JOINED, Joint, joint_motion, slide_of
+from grashof.analysis.forces.joints import Joint, joint_motion, slides_of
 from grashof.analysis.forces.loads import (
     AppliedForce,
     AppliedMoment,
@@ -16,13 +16,18 @@ from grashof.analysis.forces.loads import (
     Spring,
     TorsionSpring,
 )
-from grashof.analysis.forces.mass import Body, Masses, given_masses, uniform_bars
+from grashof.analysis.forces.mass import Body, Masses, given_masses, loaded, uniform_bars
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import DynamicsSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.acting import TURNING, LoadSpec, Place
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanism import MECHANISMS
+from grashof.problems.values.specs.dynamics_of_kind import without_place
 
+# Joints by their links, which tell them apart in whatever kind of linkage.
+_JOINTS = {joint.links: Joint(k) for row in MECHANISMS for k, joint in enumerate(row.every_joint)}
 TRAVEL_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
 
 
@@ -42,21 +47,25 @@ def stated_masses(linkage: Linkage, spec: DynamicsSpec, metre: float = 1.0) -> M
     spec : DynamicsSpec
     metre : float
         The length unit in metres; a density needs it.
+
+    Raises
+    ------
+    ProblemError
+        Masses, sections or counterweights of links that the linkage has not.
     """
+    refuse(without_place(spec, linkage.mechanism))
     if spec.masses is not None and spec.inertias is not None:
         found = given_masses(linkage, spec.masses, spec.inertias, spec.centres)
     elif spec.density is not None and spec.section is not None:
         per_area = spec.density * metre**3  # kg for each length^3
-        found = uniform_bars(
-            linkage, per_area * np.array(spec.section.areas), widths=np.array(spec.section.widths)
-        )
+        links = [link.number for link in linkage.mechanism.links[1:]]
+        areas = [spec.section.of(link).area for link in links]
+        found = uniform_bars(linkage, per_area * np.array(areas), widths=spec.section.width or 0.0)
     else:
         found = uniform_bars(linkage, np.float64(spec.mass_per_length or 0.0))
-    links = [found.crank, found.coupler, found.output]
     for weight in spec.counterweights:
-        links[weight.link - 2] = links[weight.link - 2] + Body(weight.mass, 0.0, weight.at)
-    found = Masses(*links)
-    return found.with_payload(spec.payload, linkage.coupler_point) if spec.payload else found
+        found = found.with_body(weight.link, Body(weight.mass, 0.0, weight.at))
+    return loaded(found, linkage, spec.payload) if spec.payload else found
 
 
 def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -> Loads:
@@ -101,9 +110,7 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
             *(Spring(*_ends(each.between), 0.0, 0.0, each.damping) for each in spec.dampers),
         ),
         torsion_springs=tuple(
-            TorsionSpring(
-                Joint(JOINED.index(each.between)), each.stiffness / metre**2, np.radians(each.free_angle_deg)
-            )
+            TorsionSpring(_JOINTS[each.between], each.stiffness / metre**2, np.radians(each.free_angle_deg))
             for each in spec.torsion_springs
         ),
         friction=friction,
@@ -123,7 +130,7 @@ def _ends(between: tuple[Place, Place]) -> tuple[int, tuple[float, float], int, 
 
 def _each(values: tuple[float, ...]) -> FloatArray:
     """One for each joint, or one that is meant for all pins."""
-    return np.array(values if len(values) == 4 else values[0])
+    return np.array(values if len(values) > 1 else values[0])
 
 
 def _varying(
@@ -146,14 +153,18 @@ def _varying(
 
 def _place(state: Kinematics, load: LoadSpec) -> FloatArray:
     """Where in its rows a load is: an angle in deg, or the travel of the slide."""
-    slide = slide_of(state.linkage)
-    if load.over == "theta4" and slide is Joint.O4:
-        raise ProblemError("a load is over theta4, but a slider does not turn; it must be over travel")
+    slides, kind = slides_of(state.linkage), state.linkage.mechanism
     if load.over in TURNING:
-        return np.degrees(state.theta2 if load.over == "theta2" else state.theta4)
-    if slide is None:
-        raise ProblemError("a load is over travel, but a four-bar has no slide; it must be over theta4")
-    travel, _ = joint_motion(state, slide)
+        link = int(load.over.removeprefix("theta"))
+        if (1, link) in kind.slides:
+            raise ProblemError(
+                f"a load is over {load.over}, but a slider does not turn; it must be over travel"
+            )
+        return np.degrees(state.angular(link).theta)
+    if not slides:
+        last = f"theta{kind.links[-1].number}"
+        raise ProblemError(f"a load is over travel, but a {kind.word} has no slide; it must be over {last}")
+    travel, _ = joint_motion(state, slides[0])
     return _within(travel, load)
 
 

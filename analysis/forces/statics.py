@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import Joint, joint_motion, moving_origins, output_rate
+from grashof.analysis.forces.joints import joint_motion, joints_of, moving_origins, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
@@ -23,11 +23,11 @@ class Advantage:
     Parameters
     ----------
     velocity_ratio : ndarray
-        omega4 / omega2; infinite in a dead position of the driver. Of a slider-crank the slider's velocity
-        over omega2, length/rad.
+        omega4 / omega2, of a six-bar that of link 6; infinite in a dead position of the driver. Of a slider
+        its velocity over omega2, length/rad.
     torque_ratio : ndarray
-        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 stands. Of a
-        slider-crank the force on the slider along its slide for a unit of torque, rad/length.
+        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 (6) stands. Of a slider
+        the force on it along its slide for a unit of torque, rad/length.
     way : ndarray, length/rad
         Of P for each radian of the driver.
     force_ratio : ndarray
@@ -49,7 +49,7 @@ class Holding:
     torque : ndarray, shape (...), N length
         On link 2, counter-clockwise; the other two are for a free driver.
     moment : ndarray, shape (...), N length
-        On link 4, counter-clockwise; of a slider-crank the force on the slider along its slide, N.
+        On link 4, of a six-bar on link 6, counter-clockwise; of a slider the force on it along its slide, N.
     force : ndarray, shape (...), N
         At P, along `direction`.
     direction : ndarray, shape (..., 2)
@@ -100,7 +100,7 @@ def advantage(linkage: Linkage, theta2: npt.ArrayLike) -> Advantage:
 
 
 def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
-    """What keeps a linkage at rest at given driver angles: a torque, a moment on link 4, a force at P.
+    """What keeps a linkage at rest at given driver angles: a torque, a moment on the last link, a force at P.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Load
     -------
     Holding
         NaN where the linkage cannot close. Infinite where what is to hold it cannot: a torque in a
-        dead position of the driver, a moment on link 4 where this stands.
+        dead position of the driver, a moment on the last link where this stands.
 
     Notes
     -----
@@ -149,8 +149,7 @@ def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads:
     """Power of weights and loads of a state in velocities that the linkage allows, shape (...)."""
     gravity = loads.gravity_vector()
     power = load_power(virtual, state, loads)
-    for link in (2, 3, 4):
-        body = masses.of(link)
+    for link, body in masses.by_link(state.linkage).items():
         if np.any(body.mass > 0) and gravity.any():
             power = power + body.mass * (virtual.point(link, body.centre).velocity * gravity).sum(axis=-1)
     return power
@@ -159,13 +158,13 @@ def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads:
 def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
     """The same of forces, moments, springs and what is known of friction alone, without weights."""
     outside, power = wrenches(state, loads), np.zeros(state.shape)
-    for link in (2, 3, 4):
+    for link in range(2, len(outside) + 1):
         power = power + outside[link].moment * virtual.angular(link)[1]
     for link in moving_origins(state.linkage):
         if outside[link].force.any():
             power = power + (outside[link].force * virtual.origin(link).velocity).sum(axis=-1)
     moments = known_joint_moments(state, loads)
-    for joint in Joint:
+    for joint in joints_of(state.linkage):
         if moments[joint].any():
             power = power + moments[joint] * joint_motion(virtual, joint)[1]
     return power

@@ -1,52 +1,52 @@
-"""The nine equations of inverse dynamics as one linear system: a second way, beside solving them in order."""
+"""The equations of inverse dynamics as one linear system: a second way, beside solving them in order."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, slide_direction, slide_normal, slide_of
+from grashof.analysis.forces.joints import Joint, joints_of, slide_direction, slide_normal
 from grashof.analysis.forces.loads import Loads, cross, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 
-# Each link with its joints: the columns of the force in it, and +1 or -1 as the link feels it.
-_FELT = {2: ((0, 1), (2, 1)), 3: ((2, -1), (4, 1)), 4: ((4, -1), (6, 1))}
 _FORCES = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T12")
-# Instead of the two components of the force in a slide: that across it, and its moment on link 4.
-_IN_SLIDE = {Joint.B: (4, ("F43n", "M34")), Joint.O4: (6, ("F14n", "M14"))}
+_PARTS = ("x", "y", "moment")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SystemOfEquations:
-    """Newton's and Euler's equations of links 2, 3 and 4, three each, moments about the centres of mass.
+    """Newton's and Euler's equations of the moving links, three each, moments about the centres of mass.
 
     Parameters
     ----------
-    matrix : ndarray, shape (..., 9, 9)
-        Rows as `EQUATIONS`, columns as `unknowns`: 1 and -1 of forces (cosines of forces across a slide),
-        arms (length) of moments.
-    right_side : ndarray, shape (..., 9), N and N length
+    matrix : ndarray, shape (..., N, N)
+        Rows as `equations`, columns as `unknowns`: 1 and -1 of forces (cosines of forces across a slide),
+        arms (length) of moments. Nine of each; of a six-bar fifteen.
+    right_side : ndarray, shape (..., N), N and N length
         Inertia less all that is known: weight, outer forces, springs, friction.
     unknowns : tuple of str
-        Forces and the drive torque, `UNKNOWNS`; of a slide the force across it (n, to its left) and the
-        moment on link 4, M14 or M34, instead of two components.
+        Forces and the drive torque, `UNKNOWNS` of a linkage of one loop; of a slide the force across it (n,
+        to its left) and the moment on the slider or block, M14 or M34, instead of two components.
+    equations : tuple of str
+        `EQUATIONS` of a linkage of one loop.
     """
 
     UNKNOWNS: ClassVar = _FORCES
-    EQUATIONS: ClassVar = tuple(f"link {link}, {what}" for link in _FELT for what in ("x", "y", "moment"))
+    EQUATIONS: ClassVar = tuple(f"link {link}, {what}" for link in (2, 3, 4) for what in _PARTS)
 
     matrix: FloatArray
     right_side: FloatArray
-    unknowns: tuple[str, ...] = _FORCES
+    unknowns: tuple[str, ...]
+    equations: tuple[str, ...]
 
     @property
     def solution(self) -> FloatArray:
-        """The unknowns, shape (..., 9), N and N length; NaN where the linkage is open or dead."""
+        """The unknowns, shape (..., N), N and N length; NaN where the linkage is open or dead."""
         known = np.asarray(np.isfinite(self.matrix).all(axis=(-2, -1)) & np.isfinite(self.right_side).all(-1))
         matrix = np.where(known[..., None, None], self.matrix, np.eye(len(self.unknowns)))
         right_side = np.where(known[..., None], self.right_side, np.nan)
@@ -66,7 +66,7 @@ def system_of_equations(
     masses : Masses
     loads : Loads, optional
         None by default.
-    joint_moments : ndarray, shape (4, ...), N length, optional
+    joint_moments : ndarray, shape (J, ...), N length, optional
         Of friction and torsion springs, on the second link of each joint (in a slide the force along it),
         as `Dynamics` has them. By
         default those of the loads; friction that grows with the joint forces, which would make the
@@ -95,50 +95,66 @@ def system_of_equations(
     loads = Loads() if loads is None else loads
     if joint_moments is None:
         joint_moments = _moments_in_joints(state, masses, loads)
-    linkage, gravity = state.linkage, loads.gravity_vector()
-    outside = wrenches(state, loads)
-    a, b = state.a.position, state.b.position
-    slide, along = slide_of(linkage), slide_direction(state)
-    on_ground = b if slide is Joint.O4 else state.origin(4).position
-    joints = {2: (linkage.o2, a), 3: (a, b), 4: (b, on_ground)}
-    turning, rubbing = joint_moments.copy(), np.zeros((*state.shape, 9))
-    if slide is not None:  # its friction is a force, known, on link 4 along the slide
-        column = _IN_SLIDE[slide][0]
-        sign = 1.0 if slide is Joint.O4 else -1.0
-        rubbing[..., column : column + 2] = sign * joint_moments[slide][..., None] * along
-        turning[slide] = 0.0
-    couples = {2: turning[0] - turning[1], 3: turning[1] - turning[2], 4: turning[2] + turning[3]}
-    matrix, right_side = np.zeros((*state.shape, 9, 9)), np.zeros((*state.shape, 9))
-    for row, (link, felt) in zip((0, 3, 6), _FELT.items(), strict=True):
-        body, alpha = masses.of(link), state.angular(link)[2]
-        centre = state.point(link, body.centre)
-        for place, (column, sign) in zip(joints[link], felt, strict=True):
-            arm = place - centre.position
-            matrix[..., row, column] = matrix[..., row + 1, column + 1] = sign
-            matrix[..., row + 2, column] = -sign * arm[..., 1]
-            matrix[..., row + 2, column + 1] = sign * arm[..., 0]
-        mass, force = np.asarray(body.mass)[..., None], outside[link].force
+    kind, gravity, outside = state.linkage.mechanism, loads.gravity_vector(), wrenches(state, loads)
+    bodies, columns = (
+        masses.by_link(state.linkage),
+        [_column(state, joint) for joint in joints_of(state.linkage)],
+    )
+    size = 3 * len(bodies)
+    matrix, right_side = np.zeros((*state.shape, size, size)), np.zeros((*state.shape, size))
+    centres = {link: state.point(link, body.centre) for link, body in bodies.items()}
+    for row, (link, body) in zip(range(0, size, 3), bodies.items(), strict=True):
+        centre, force = centres[link], outside[link].force
         known = outside[link].moment - cross(centre.position - state.origin(link).position, force)
+        mass = np.asarray(body.mass)[..., None]
         right_side[..., row : row + 2] = mass * (centre.acceleration - gravity) - force
-        right_side[..., row + 2] = body.inertia * alpha - known - couples[link]
-    matrix[..., 2, 8] = 1
-    if slide is None:
-        return SystemOfEquations(matrix, right_side)
-    return _with_slide(state, matrix, right_side - (matrix @ rubbing[..., None])[..., 0], slide)
+        right_side[..., row + 2] = body.inertia * state.angular(link)[2] - known
+    for number, (joint, column) in enumerate(zip(kind.every_joint, columns, strict=True)):
+        for link in joint.links:
+            if link == 1:
+                continue
+            row = 3 * (link - 2)
+            sign, turn = (1.0 if link == column.on else -1.0), (1.0 if link == joint.links[1] else -1.0)
+            arm = column.place - centres[link].position
+            for offset, (force, moment) in enumerate(column.unknown):
+                at = 2 * number + offset
+                matrix[..., row : row + 2, at] = sign * force
+                matrix[..., row + 2, at] = sign * cross(arm, force) + turn * moment
+            rubbing = joint_moments[number]
+            if column.along is None:
+                right_side[..., row + 2] -= turn * rubbing
+            else:  # the friction of a slide is a force, known, on its second link
+                pull = turn * rubbing[..., None] * column.along
+                right_side[..., row : row + 2] -= pull
+                right_side[..., row + 2] -= cross(arm, pull)
+    matrix[..., 2, -1] = 1
+    names = tuple(name for column in columns for name in column.names)
+    equations = tuple(f"link {link}, {what}" for link in bodies for what in _PARTS)
+    return SystemOfEquations(matrix, right_side, (*names, "T12"), equations)
 
 
-def _with_slide(
-    state: Kinematics, matrix: FloatArray, right_side: FloatArray, slide: Joint
-) -> SystemOfEquations:
-    """The system with the force across the slide and its moment for the components of the force in it."""
-    column, names = _IN_SLIDE[slide]
-    across = slide_normal(state)
-    matrix[..., column] = (matrix[..., column : column + 2] * across[..., None, :]).sum(axis=-1)
-    matrix[..., column + 1] = 0.0
-    matrix[..., 8, column + 1] = 1.0
-    if slide is Joint.B:
-        matrix[..., 5, column + 1] = -1.0
-    return SystemOfEquations(matrix, right_side, (*_FORCES[:column], *names, *_FORCES[column + 2 :]))
+class _Column(NamedTuple):
+    """What is not known of a joint: two unit forces on a link, or one and a moment on the second link."""
+
+    names: tuple[str, str]
+    on: int
+    place: FloatArray
+    unknown: tuple[tuple[FloatArray, float], tuple[FloatArray, float]]
+    along: FloatArray | None  # of a slide
+
+
+def _column(state: Kinematics, joint: Joint) -> _Column:
+    row = state.linkage.mechanism.every_joint[joint]
+    first, second = row.links
+    on, by = (second, first) if first == 1 else (first, second)
+    in_loop = first % 2 == 1 and second == first + 1 and first > 1
+    place = (getattr(state, row.name.lower()) if in_loop else state.origin(second)).position
+    if row.slides:
+        across, none = slide_normal(state, second), np.zeros(2)
+        names = f"F{by}{on}n", f"M{first}{second}"
+        return _Column(names, on, place, ((across, 0.0), (none, 1.0)), slide_direction(state, second))
+    x, y = np.eye(2)
+    return _Column((f"F{by}{on}x", f"F{by}{on}y"), on, place, ((x, 0.0), (y, 0.0)), None)
 
 
 def _moments_in_joints(state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:

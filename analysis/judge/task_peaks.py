@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import Joint
+from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Verdict
@@ -92,7 +92,7 @@ def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverL
 
     def curves(place: FloatArray) -> FloatArray:
         found = inverse_dynamics(solve_kinematics(linkage, *law.at_place(place)), masses, loads)
-        force = np.max([found.joint_force(joint) for joint in Joint], axis=0)
+        force = np.max([found.joint_force(joint) for joint in joints_of(linkage)], axis=0)
         return np.stack([metre**2 * np.abs(found.torque), metre * force])
 
     return curves

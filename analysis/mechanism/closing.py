@@ -147,9 +147,14 @@ class Loop(NamedTuple):
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
 
 
+def dyads_of(linkage: Linkage) -> list[HostedDyad]:
+    """The dyads of a linkage."""
+    return list(_hosted_dyads(linkage.mechanism, operands_of(linkage)))
+
+
 def dyad_of(linkage: Linkage, loop: int = 1) -> DyadSizes:
     """The dyad of the first loop or of another one."""
-    return list(_hosted_dyads(linkage.mechanism, operands_of(linkage)))[loop - 1].sizes
+    return dyads_of(linkage)[loop - 1].sizes
 
 
 def close(

@@ -11,6 +11,7 @@ a second dyad they are links 5 and 6. Each kind has the same methods:
   one of the margin what stays finite in dead positions.
 - `rates`: three derivatives of q from those of the gap.
 - `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
+- `force`: J^T f = demands. The force on link 3 by link 4 in E, and the moment of a slide on link 4 about E.
 - `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
 - `width`: of the gap, as far as the dyad minds it; `limits`: the least and the greatest at which it closes
   with a transmission angle whose cosine is in size at most this one.
@@ -58,6 +59,20 @@ class Solved(NamedTuple):
     turn3: FloatArray
     turn4: FloatArray
     travel: FloatArray
+
+
+class Demands(NamedTuple):
+    """What the joints must exert on links 3 and 4, and what is known of it.
+
+    Moments of link 3 about C, that of joint C taken off, and of link 4 about D, of a slider about E; the
+    force on link 4; what joints E and D exert on link 4: the moment of a pin, the friction along a slide.
+    """
+
+    turn3: FloatArray
+    turn4: FloatArray
+    push: Vector
+    in_e: FloatArray
+    in_d: FloatArray
 
 
 class Pins(NamedTuple):
@@ -139,6 +154,14 @@ class Pins(NamedTuple):
         closing = same * np.sign(first.turn4) * (1 / n - same / m)
         second = Solved(sign * bend3 * size3, sign * bend4 * size4, _NONE)
         return second, Solved(-bend3 * closing * size3, -bend4 * closing * size4, _NONE)
+
+    def force(self, closed: Closed, demands: Demands) -> tuple[Vector, FloatArray]:
+        """Moments of link 3 about C and of link 4 about D (Norton, *Design of Machinery*, sec. 11.4)."""
+        turn3, turn4, _, in_e, in_d = demands
+        along3 = (turn4 - in_e - in_d) / (self.n * closed.margin)
+        along4 = (turn3 + in_e) / (self.m * closed.margin)
+        x, y = along3 * closed.cos3 + along4 * closed.cos4, along3 * closed.sin3 + along4 * closed.sin4
+        return (x, y), np.full(np.shape(x), np.nan)
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
         """-e3 and e4."""
@@ -237,6 +260,13 @@ class Slider(NamedTuple):
         size, side = np.abs(first.turn3), np.sign(self._sine(closed))
         second = Solved(self.sign * side * size, first.turn4, -self.sign * size)
         return second, Solved(first.turn3, first.turn4, -side * first.turn3)
+
+    def force(self, closed: Closed, demands: Demands) -> tuple[Vector, FloatArray]:
+        """Moments of the bar about C, and forces on the slider along its slide (Norton, sec. 11.5)."""
+        turn3, turn4, (x, y), in_e, in_d = demands
+        pull = in_d - (x * self.ex + y * self.ey)
+        across = ((turn3 + in_e) / self.m + pull * self._sine(closed)) / closed.margin
+        return (pull * self.ex - across * self.ey, pull * self.ey + across * self.ex), turn4 - in_e
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
         """-e3 and i e."""
@@ -342,6 +372,13 @@ class Block(NamedTuple):
         turn, size, side = first.turn3, np.abs(first.turn3), np.sign(self.offset)
         bend = self.sign * side * size
         return Solved(bend, bend, -self.sign * size), Solved(turn, turn, -side * turn)
+
+    def force(self, closed: Closed, demands: Demands) -> tuple[Vector, FloatArray]:
+        """Moments of the rod about C and of the block about D; along the rod there is friction alone."""
+        turn3, turn4, _, in_e, in_d = demands
+        moment = turn4 - in_d + in_e * self.offset
+        across = (turn3 + moment) / closed.reach
+        return (-in_e * closed.cos3 - across * closed.sin3, across * closed.cos3 - in_e * closed.sin3), moment
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
         """I e3."""

@@ -11,13 +11,11 @@ import numpy as np
 from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
 from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
-from grashof.analysis.numerics.peaks import greatest
+from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
 _PANELS = 480
-_ROUNDS = 5  # each narrows the place of an extreme eight times
-_HALVINGS = 64
 _TOGETHER = 1e-7  # share of the lengths: what rounding of a first loop's dead position leaves of the width
 SAME = 1e-9  # rad: so far apart two counts of one dead position may be
 
@@ -121,28 +119,8 @@ def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray
         values = curve(motion.theta2(at))
         return np.asarray(values * np.abs(values))
 
-    heights = height(share)
-    finite = np.isfinite(heights)
-    share, heights = share[finite], heights[finite]
-    if len(share) < 3:
-        return share, np.empty(0)
-    before, after = np.roll(heights, 1), np.roll(heights, -1)
-    low, middle, high = np.roll(share, 1), share.copy(), np.roll(share, -1)
-    if whole:  # the last one is the first
-        before[0], after[-1], low[0], high[-1] = heights[-2], heights[1], share[-2] - 1, share[1] + 1
-    else:  # one may lie beside an end
-        before[[0, -1]] = after[[0, -1]] = heights[[0, -1]]
-        low[0], high[-1] = share[0], share[-1]
-        middle[[0, -1]] = (low[[0, -1]] + high[[0, -1]]) / 2
-    top, bottom = (
-        np.flatnonzero((sign * heights >= sign * before) & (sign * heights >= sign * after))
-        for sign in (1, -1)
-    )
-    rows, sign = np.concatenate([top, bottom]), np.repeat([1.0, -1.0], [len(top), len(bottom)])
-    places = np.stack([low[rows], middle[rows], high[rows]], axis=-1)
-    at = greatest(lambda each: sign[:, None] * height(each), places, most=1, rounds=_ROUNDS)[1][0]
-    at = np.unique(at % 1.0 if whole else at[(at > share[0]) & (at < share[-1])])
-    return np.unique(np.concatenate([share[:-1] if whole else share, at])), at
+    finite = np.isfinite(height(share))
+    return with_extremes(height, share[finite], periodic=whole)
 
 
 def _open_runs(closed: BoolArray) -> list[tuple[int, int]]:
@@ -159,7 +137,7 @@ def _ranges(
     change = np.flatnonzero(closed[1:] != closed[:-1])
     inside = np.where(closed[change], theta2[change], theta2[change + 1])
     outside = np.where(closed[change], theta2[change + 1], theta2[change])
-    ends = _last_closed(missed, inside, outside).tolist()
+    ends = last_where(lambda angle: missed(angle) <= 0, inside, outside).tolist()
     dead = [(False, True)] * len(ends)
     if closed[0]:
         ends, dead = [float(theta2[0]), *ends], [(not whole, both[0]), *dead]
@@ -168,19 +146,6 @@ def _ranges(
     ranges = np.array(ends).reshape(-1, 2)
     turns = np.round(ranges.mean(axis=-1, keepdims=True) / TURN)
     return ranges - TURN * turns, np.array(dead, dtype=bool).reshape(-1, 2, 2)
-
-
-def _last_closed(missed: Curve, inside: FloatArray, outside: FloatArray) -> FloatArray:
-    """Driver angles at which a loop closes last on the way to others at which it is open."""
-    if not len(inside):
-        return inside
-    for _ in range(_HALVINGS):
-        middle = (inside + outside) / 2
-        if ((middle == inside) | (middle == outside)).all():
-            break
-        closes = missed(middle) <= 0
-        inside, outside = np.where(closes, middle, inside), np.where(closes, outside, middle)
-    return inside
 
 
 @lru_cache(maxsize=64)

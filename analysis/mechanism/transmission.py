@@ -91,9 +91,8 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     crossed = last - first
     even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0))
     odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1))
-    worst = np.minimum(
-        quality(transmission_angle(linkage, low + linkage.theta1)),
-        quality(transmission_angle(linkage, high + linkage.theta1)),
+    worst: FloatArray = quality(transmission_angle(linkage, np.stack([low, high]) + linkage.theta1)).min(
+        axis=0
     )
     folded, stretched = ground_line_transmission(linkage)
     worst = np.where(even, np.minimum(worst, quality(folded)), worst)

@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.forces.bars import bars_of
-from grashof.analysis.forces.joints import Joint, joint_motion, slide_of
 from grashof.analysis.forces.loads import turned
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
@@ -36,9 +35,9 @@ class BarFrame(NamedTuple):
 def bar_frame(state: Kinematics, link: int) -> BarFrame:
     """The frame of the bar of a link in some states."""
     bar, theta, ahead = bars_of(state.linkage)[link], state.angular(link)[0], np.ones(())
-    if link == 3 and slide_of(state.linkage) is Joint.B:
-        travel, _ = joint_motion(state, Joint.B)
-        sign = np.where(travel < 0, -1.0, 1.0)
+    slide = state.slides[(link - 3) // 2] if (link, link + 1) in state.linkage.mechanism.slides else None
+    if slide is not None:
+        sign = np.where(slide.travel < 0, -1.0, 1.0)
         ends = bar.low * sign, bar.high * sign
-        return BarFrame(theta, sign, np.abs(travel), np.minimum(*ends), np.maximum(*ends))
+        return BarFrame(theta, sign, np.abs(slide.travel), np.minimum(*ends), np.maximum(*ends))
     return BarFrame(theta, ahead, np.asarray(bar.high), np.asarray(bar.low), np.asarray(bar.high))

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, slide_of
 from grashof.analysis.forces.loads import Loads, cross, placed_loads
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
@@ -48,12 +47,12 @@ class BarForces:
     Parameters
     ----------
     link : int
-        2, 3 or 4.
+        2, 3 or 4; of a six-bar to 6.
     length : ndarray, shape (...), length
         Between its joints; of the rod of an inverted slider-crank from A to where B is then.
     stations : ndarray, shape (..., K), length
-        Distances from the link's origin (O2, A, O4) towards its other joint at which loads begin, end or
-        act, ascending. They cover both joints and all loads, so that the bar may reach beyond its joints.
+        Distances from the link's origin (O2, A, O4, C, D) towards its other joint at which loads begin, end
+        or act, ascending. They cover both joints and all loads, so that the bar may reach beyond its joints.
     normal, shear : ndarray, shape (..., K - 1, 3), N over length^0 to length^2
         Coefficients of the polynomials, constant first, in the distance from the station before.
     moment : ndarray, shape (..., K - 1, 4), N length over length^0 to length^3
@@ -254,21 +253,25 @@ def _hung(
 
 
 def _joint_loads(state: Kinematics, found: Dynamics, link: int) -> Iterator[_Point]:
-    """What the joints at the origin and at the end of a link exert on it, the drive with them."""
-    moments, origin = found.joint_moments, np.zeros(())
-    first, second = {
-        2: ((found.f12, found.torque + moments[0]), (found.f32, -moments[1])),
-        3: ((-found.f32, moments[1]), (found.f43, -_in_b(state, found))),
-        4: ((found.f14, moments[3]), (-found.f43, moments[2])),
-    }[link]
-    bar = bar_frame(state, link)
-    yield _Point(origin, bar.turned(first[0]), first[1])
-    yield _Point(bar.length, bar.turned(second[0]), second[1])
-
-
-def _in_b(state: Kinematics, found: Dynamics) -> FloatArray:
-    """Moment on link 4 in B: of the pin, or of the block's slide."""
-    return found.slide_moment if slide_of(state.linkage) is Joint.B else found.joint_moments[Joint.B]
+    """What the joints of a link exert on it, the drive with them."""
+    linkage, bar = state.linkage, bar_frame(state, link)
+    points = linkage.mechanism.links[link - 1].points
+    for number, joint in enumerate(linkage.mechanism.every_joint):
+        if link not in joint.links:
+            continue
+        first, second = joint.links
+        force = found.forces[number] if link == first or first == 1 else -found.forces[number]
+        between = (first, second) in linkage.mechanism.slides and first != 1
+        moment = found.slide_moment if between else found.joint_moments[number]
+        couple = moment if link == second else -moment
+        if number == 0:
+            couple = couple + found.torque
+        name = joint.name.lower()
+        if name in points[2:]:
+            yield _hung(state, link, getattr(linkage, name), force, couple)
+        else:
+            at = np.zeros(()) if name == points[0] else bar.length
+            yield _Point(at, bar.turned(force), couple)
 
 
 def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _Spread:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, pins_of
+from grashof.analysis.forces.joints import Joint, joined, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.strength.along_bar import (
     Along,
@@ -23,6 +23,7 @@ from grashof.analysis.strength.stress import von_mises
 from grashof.analysis.strength.structure import UNITS, Structure
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.section import CrossSection
+from grashof.problems.values.linkages.linkage import Linkage
 
 _ROUNDING = 1e-12  # share of the greatest force in a bar below which other forces are none
 
@@ -78,6 +79,7 @@ def strength_at(
     |N| / A + |M| c / I, shear stress the section's factor times |V| / A, equivalent stress that of von
     Mises (see `von_mises`).
     """
+    structure.check(state.linkage)
     found = inverse_dynamics(state, structure.masses, structure.loads) if found is None else found
     forces = section_forces(state, structure.masses, structure.loads, found, links)
     bars = {
@@ -88,7 +90,10 @@ def strength_at(
         for link, bar in forces.items()
     }
     return StrengthHistory(
-        bars, pin_measures({joint: found.joint_force(joint) for joint in pins_of(state.linkage)}, structure)
+        bars,
+        pin_measures(
+            state.linkage, {joint: found.joint_force(joint) for joint in pins_of(state.linkage)}, structure
+        ),
     )
 
 
@@ -98,12 +103,15 @@ def most_telling(keys: Container[str]) -> str:
 
 
 def pin_measures(
-    forces: Mapping[Joint, FloatArray], structure: Structure
+    linkage: Linkage, forces: Mapping[Joint, FloatArray], structure: Structure
 ) -> dict[Joint, dict[str, FloatArray]]:
     """What pins bear, in the units of `PIN_MEASURES`, of forces in kg, s and the length unit."""
     return {
         joint: {"pin_force": force * structure.in_si("N")}
-        | {key: force / area * structure.in_si("Pa") for key, area in structure.pin_areas(joint).items()}
+        | {
+            key: force / area * structure.in_si("Pa")
+            for key, area in structure.pin_areas(joint, joined(linkage, joint)).items()
+        }
         for joint, force in forces.items()
     }
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis.forces.bars import bar_lengths
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import Joint, pins_of
+from grashof.analysis.forces.joints import pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.analysis.strength.along_bar import Along
@@ -154,7 +154,7 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
         linkage = _closing(motion, stretches)
         lengths, pins = bar_lengths(linkage), pins_of(linkage)
         found = [peak for link in lengths for peak in _bar_peaks(structure, motion, stretches, link)]
-        found += _pin_peaks(structure, motion, stretches, pins)
+        found += _pin_peaks(structure, motion, stretches, linkage)
     by_part = {(peak.part, peak.key): peak for peak in found}
     factors = []
     for limit in limits_of(structure, lengths, pins):
@@ -170,8 +170,9 @@ def _closing(motion: Motion, stretches: Sequence[FloatArray]) -> Linkage:
     """The linkage, which has to close all the way; at the very ends rounding may open it."""
     for samples in stretches:
         state = motion(samples[1:-1])
-        if np.isnan(state.theta3).any():
-            open_at = np.degrees(np.broadcast_to(state.theta2, state.shape)[np.isnan(state.theta3)][0])
+        is_open = np.isnan(state.turning[-1].theta)
+        if is_open.any():
+            open_at = np.degrees(np.broadcast_to(state.theta2, state.shape)[is_open][0])
             raise AssemblyError(f"the linkage cannot close at driver angle {open_at:.6g} deg")
     return state.linkage
 
@@ -194,14 +195,16 @@ def _bar_peaks(
 
 
 def _pin_peaks(
-    structure: Structure, motion: Motion, stretches: Sequence[FloatArray], joints: Sequence[Joint]
+    structure: Structure, motion: Motion, stretches: Sequence[FloatArray], linkage: Linkage
 ) -> list[StrengthPeak]:
+    joints = pins_of(linkage)
+
     def values(places: FloatArray) -> FloatArray:
         found = inverse_dynamics(motion(places), structure.masses, structure.loads)
         return np.stack([found.joint_force(joint) for joint in joints])
 
     greatest, places = peaks(values, stretches)
-    pins = pin_measures(dict(zip(joints, greatest, strict=True)), structure)
+    pins = pin_measures(linkage, dict(zip(joints, greatest, strict=True)), structure)
     return [
         _peak(key, joint.name, float(value), places[row], np.nan)
         for row, (joint, measures) in enumerate(pins.items())

@@ -8,12 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import JOINED, Joint
+from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.checks import refuse
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.section import OneOrEach, SectionSpec
 from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.mechanism import MECHANISMS
+from grashof.problems.values.specs.dynamics_of_kind import without_place
 
 _BUCKLING = {
     "buckling": "buckling in the plane of motion",
@@ -121,8 +126,24 @@ class Structure:
                 found[key] = np.where(2 * euler < crushing, euler, johnson) * self.in_si("N")
         return found
 
-    def pin_areas(self, joint: Joint) -> dict[str, float]:
+    def check(self, linkage: Linkage) -> None:
+        """Refuse sections and pins, a list each, that are not those of a linkage.
+
+        Raises
+        ------
+        ProblemError
+        """
+        given = DynamicsSpec(mass_per_length=1.0, section=self.section, strength=self.strength)
+        refuse(without_place(given, linkage.mechanism))
+
+    def pin_areas(self, joint: Joint, links: tuple[int, int] | None = None) -> dict[str, float]:
         """Areas that share a joint's force, length^2, by key of `PIN_MEASURES`; none without diameters.
+
+        Parameters
+        ----------
+        joint : Joint
+        links : pair of int, optional
+            That it joins; by default in a linkage of one loop.
 
         Notes
         -----
@@ -130,17 +151,26 @@ class Structure:
         stress and pressure: Shigley, sec. 8-12; Norton, *Machine Design*, sec. 4.8).
         """
         strength = self.strength
-        diameters = None if strength is None else strength.diameters()
-        if strength is None or diameters is None:
+        if strength is None or strength.pin_diameter is None:
             return {}
-        thicknesses = strength.thicknesses(self.section)
-        own = [thicknesses[link - 2] for link in JOINED[joint] if link != 1]
+        links = MECHANISMS[0].every_joint[joint].links if links is None else links
+        own = [self._thickness(strength, link) for link in links if link != 1]
         sections = 2 if strength.double_shear else 1
-        diameter = diameters[joint]
+        diameter = _one_of(strength.pin_diameter, joint)
         return {
             "pin_shear": sections * np.pi * diameter**2 / 4,
             "bearing": diameter * min(each for each in own if each is not None),
         }
+
+    def _thickness(self, strength: StrengthSpec, link: int) -> float | None:
+        if strength.pin_thickness is not None:
+            return _one_of(strength.pin_thickness, link - 2)
+        return None if self.section is None else self.section.of(link).height
+
+
+def _one_of(value: OneOrEach, index: int) -> float:
+    """One of a list, or what is meant for each."""
+    return float(value[index] if isinstance(value, Sequence) else value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,9 +196,7 @@ class Limit:
     value: float
 
 
-def limits_of(
-    structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint] = tuple(Joint)
-) -> Iterator[Limit]:
+def limits_of(structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint]) -> Iterator[Limit]:
     """All that the strength limits, by links (of lengths between their joints) and pins in turn."""
     strength = structure.strength
     if strength is None:

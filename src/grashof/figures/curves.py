@@ -24,11 +24,12 @@ AxesArray = npt.NDArray[np.object_]
 # all kinds of linkages together.
 Panel = tuple[str, Mapping[str, str]]
 _MOVING = tuple(dict.fromkeys(name for row in MECHANISMS for name in row.moving))
+_MU = {"mu_deg": "transmission angle mu", "mu_2_deg": "mu of loop 2"}
 _TURNING = tuple(dict.fromkeys(number for row in MECHANISMS for number in turning(row)))
 KINEMATICS: Mapping[str, Panel] = {
     "angle": (
         "angle (deg)",
-        {**{f"theta{n}_deg": f"theta{n}" for n in _TURNING}, "mu_deg": "transmission angle mu"},
+        {**{f"theta{n}_deg": f"theta{n}" for n in _TURNING}, **_MU},
     ),
     "angular velocity": ("angular velocity (rad/s)", {f"omega{n}": f"omega{n}" for n in _TURNING}),
     "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in _MOVING}),

@@ -12,6 +12,7 @@ from grashof.study.kinds import forces_of, turning
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
 
+_MU = {"mu_deg": "μ", "mu_2_deg": "μ of loop 2"}
 # Of a plot: key, title, unit, and the columns with their labels.
 Panel = tuple[str, str, str, Mapping[str, str]]
 
@@ -62,7 +63,7 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
     *others, last = points.values()
     every, links = ", ".join(points.values()), turning(kind)
     motion: list[Panel] = [
-        ("angles", "angles", "deg", {f"theta{n}_deg": f"θ{n}" for n in links} | {"mu_deg": "μ"}),
+        ("angles", "angles", "deg", {f"theta{n}_deg": f"θ{n}" for n in links} | _MU),
         ("angular-velocity", "angular velocity", "rad/s", {f"omega{n}": f"ω{n}" for n in links}),
         ("angular-acceleration", "angular acceleration", "rad/s²", {f"alpha{n}": f"α{n}" for n in links}),
         ("slide", "travel of the slide", unit, {"slide_travel": "travel"}),

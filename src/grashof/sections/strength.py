@@ -10,7 +10,6 @@ import pandas as pd
 from grashof.analysis import (
     BAR_MEASURES,
     PIN_MEASURES,
-    Joint,
     Kinematics,
     StrengthSummary,
     Structure,
@@ -18,6 +17,7 @@ from grashof.analysis import (
     strength_at,
     strength_over,
 )
+from grashof.analysis.forces.joints import joints_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
@@ -64,7 +64,7 @@ def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
             BAR_MEASURES,
             {str(link.number): f"link {link.number}" for link in study.linkage.mechanism.links[1:]},
         ),
-        (PIN_MEASURES, {joint.name.lower(): joint.name for joint in Joint}),
+        (PIN_MEASURES, {joint.name.lower(): joint.name for joint in joints_of(study.linkage)}),
     ):
         for measure in measures:
             labels = {label: f"{measure.key}_{part}" for part, label in parts.items()}

@@ -23,14 +23,8 @@ LIMIT_POSITIONS = {
 }
 
 
-def joints_with_forces(kind: Mechanism) -> dict[str, tuple[int, int]]:
-    """The joints in which links press on each other, slides among them, with the numbers of the links."""
-    pins = {name.upper(): links for name, links in kind.joints.items()}
-    return pins | ({"slide": kind.slides[0]} if kind.slides else {})
-
-
 def forces_of(kind: Mechanism) -> dict[str, str]:
-    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
+    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in, slides last.
 
     Examples
     --------
@@ -40,10 +34,14 @@ def forces_of(kind: Mechanism) -> dict[str, str]:
     >>> forces_of(SliderCrank.mechanism)
     {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'slide'}
     """
-    return {
-        f"f1{other}" if one == 1 else f"f{other}{one}": joint
-        for joint, (one, other) in joints_with_forces(kind).items()
-    }
+    every = sorted(kind.every_joint, key=lambda joint: joint.slides)
+    return {force_key(joint.links): "slide" if joint.slides else joint.name for joint in every}
+
+
+def force_key(links: tuple[int, int]) -> str:
+    """Key of the force in the joint of two links: on the first by the second, on this by the ground."""
+    one, other = links
+    return f"f1{other}" if one == 1 else f"f{other}{one}"
 
 
 def plain(kind: Mechanism) -> bool:

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import (
-    Joint,
     Kinematics,
     Loads,
     Verdict,
@@ -22,6 +21,7 @@ from grashof.analysis import (
     stated_masses,
     verify,
 )
+from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
 from grashof.analysis.judge.sampled_motion import motion_ends
@@ -52,7 +52,7 @@ def dense(linkage: FourBar, spec: DynamicsSpec, start: float, end: float) -> dic
         "point_acceleration_max": float(state.p.acceleration_magnitude.max()),
         "torque_peak": float(np.abs(found.torque).max()),
         "torque_rms": float(np.sqrt((square.sum() - (square[0] + square[-1]) / 2) / 20_000)),
-        "joint_force_peak": max(float(found.joint_force(joint).max()) for joint in Joint),
+        "joint_force_peak": max(float(found.joint_force(joint).max()) for joint in joints_of(linkage)),
     }
 
 

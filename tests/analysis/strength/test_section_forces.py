@@ -192,7 +192,7 @@ def random_loads(rng: np.random.Generator, linkage: FourBar, pins: bool) -> Load
             Spring(2, at(), 3, at(), 1.0, 0.1),
             Spring(4, at(), 3, at(), 1.0, 0.1, 0.2),
         ),
-        torsion_springs=tuple(TorsionSpring(joint, 2.0, 0.3) for joint in Joint),
+        torsion_springs=tuple(TorsionSpring(Joint(k), 2.0, 0.3) for k in range(4)),
         friction=Friction(
             rng.random(4), rng.random(4), 0.003 * float(linkage.lengths.min()) if pins else 0.0
         ),

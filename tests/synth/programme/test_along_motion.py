@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from grashof import load, synthesize
-from grashof.analysis import Joint, Loads, inverse_dynamics, over_task, solve_kinematics
+from grashof.analysis import Loads, inverse_dynamics, over_task, solve_kinematics
+from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.analysis.judge.sampled_motion import driver_law
@@ -181,7 +182,8 @@ def curves(problem: Problem, linkage: Linkage, share: FloatArray) -> dict[str, F
         "point_speed_max": state.p.speed,
         "point_acceleration_max": state.p.acceleration_magnitude,
         "torque_peak": np.abs(dynamics.torque) * metre**2,
-        "joint_force_peak": np.max([dynamics.joint_force(joint) for joint in Joint], axis=0) * metre,
+        "joint_force_peak": np.max([dynamics.joint_force(joint) for joint in joints_of(linkage)], axis=0)
+        * metre,
     }
 
 
