@@ -80,13 +80,13 @@ from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.tolerance import Robustness, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
-from grashof.analysis.loops.loop import GrashofClass
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.mechanism.driver import DriverMotion, driver_motion
 from grashof.analysis.mechanism.driver_law import DriverLaw
 from grashof.analysis.mechanism.driver_samples import driver_samples
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes
+from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
 from grashof.analysis.mechanism.mobility import (
     branch_index,
@@ -101,7 +101,7 @@ from grashof.analysis.mechanism.mobility import (
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.reach import reach_box
 from grashof.analysis.mechanism.sensitivity import sensitivity
-from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
+from grashof.analysis.mechanism.stroke import LinkStroke, OutputStroke, link_stroke, output_stroke
 from grashof.analysis.mechanism.transmission import (
     transmission_angle,
     worst_transmission,
@@ -157,6 +157,7 @@ __all__ = [
     "InstantCentres",
     "Joint",
     "Kinematics",
+    "LinkStroke",
     "Loads",
     "MadeMoves",
     "Masses",
@@ -236,6 +237,7 @@ __all__ = [
     "holding",
     "instant_centres",
     "inverse_dynamics",
+    "link_stroke",
     "made_moves",
     "mechanical_energy",
     "motor_torque",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
-from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
+from grashof.analysis.mechanism.mobility import driver_ranges, range_index, whole_turn
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage
@@ -137,7 +137,7 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
     """
     own = int(linkage.assembly)
     signs = np.array([own] if same_branch else [own, -own])
-    if (rotatability(linkage) >= 0).all():
+    if whole_turn(linkage):
         return [_turn(linkage, pieces, signs)]
     ends = driver_ranges(linkage)
     single = [_swing(linkage, low, high, pieces, signs) for low, high in ends if high > low]
@@ -159,7 +159,7 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
 
     Infinite for a driver that turns fully.
     """
-    if (rotatability(linkage) >= 0).all():
+    if whole_turn(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)
     if index < 0:

@@ -1,6 +1,6 @@
-"""How each kind of linkage closes, over intervals of the driver angle: its only formulas here.
+"""How each kind of dyad closes, over intervals of the driver angle: its only formulas here.
 
-Derivatives come from those of the operations, so a kind states its closure alone.
+Derivatives come from those of the operations, so a dyad states its closure alone.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from grashof.analysis.enclosure.interval import Centred, Interval, Vector, unit
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import DyadKind
 
 
 class Margins(NamedTuple):
@@ -104,11 +105,25 @@ def _rpr_rod(linkage: InvertedSliderCrank, driver: Vector, root: Centred) -> Rod
     return Rod(_to_o4(linkage, driver).times(root / square, driver.x.constant(linkage.offset) / square), root)
 
 
-CLOSURES: dict[type[Linkage], Closure] = {
-    FourBar: Closure(_rrr_margins, _rrr_rod, lambda x: (x.r1 + x.r2 + x.r3 + x.r4) ** 2),
-    SliderCrank: Closure(_rrp_margins, _rrp_rod, lambda x: x.r2 + x.r3 + np.abs(x.offset)),
-    InvertedSliderCrank: Closure(_rpr_margins, _rpr_rod, lambda x: x.r1 + x.r2 + np.abs(x.offset)),
+_CLOSURES = {
+    DyadKind.RRR: Closure(_rrr_margins, _rrr_rod, lambda x: (x.r1 + x.r2 + x.r3 + x.r4) ** 2),
+    DyadKind.RRP: Closure(_rrp_margins, _rrp_rod, lambda x: x.r2 + x.r3 + np.abs(x.offset)),
+    DyadKind.RPR: Closure(_rpr_margins, _rpr_rod, lambda x: x.r1 + x.r2 + np.abs(x.offset)),
 }
+
+
+def closure_of(linkage: Linkage) -> Closure:
+    """How the dyad of a linkage closes.
+
+    Raises
+    ------
+    ProblemError
+        A linkage of two loops: intervals are known of one.
+    """
+    kind = linkage.mechanism
+    if len(kind.dyads) > 1:
+        raise ProblemError(f"a {kind.word} has two loops; it cannot be proven by intervals")
+    return _CLOSURES[kind.dyads[0].kind]
 
 
 class Places(NamedTuple):
@@ -122,7 +137,7 @@ class Places(NamedTuple):
 
 def places(linkage: Linkage, sign: FloatArray, driver: Vector) -> Places:
     """Where a linkage is, on the assembly of a sign, for each interval of the driver; batch axes alike."""
-    closure = CLOSURES[type(linkage)]
+    closure = closure_of(linkage)
     margins = closure.margins(linkage, driver)
     root = (margins.near * margins.far).root() * sign
     rod = closure.rod(linkage, driver, root)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.enclosure.closure import CLOSURES, Margins
+from grashof.analysis.enclosure.closure import Margins, closure_of
 from grashof.analysis.enclosure.interval import EPS, Interval, crank
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -99,7 +99,7 @@ def least_transmission(
     rows = len(start)
     lo, hi, gap = np.full(rows, np.inf), np.full(rows, np.pi / 2), np.full(rows, np.inf)
     pieces, count = Pieces.covering(start, end), np.zeros(rows, dtype=np.int64)
-    reach = CLOSURES[type(linkages)].reach(linkages)
+    reach = closure_of(linkages).reach(linkages)
     required = np.full(rows, -np.inf) if required is None else required
     for turn in range(_ROUNDS):
         if not len(pieces.row):
@@ -120,7 +120,7 @@ def least_transmission(
 
 
 def _margins(linkages: Linkage, pieces: Pieces) -> Margins:
-    return CLOSURES[type(linkages)].margins(linkages[pieces.row], crank(pieces.middle, pieces.half))
+    return closure_of(linkages).margins(linkages[pieces.row], crank(pieces.middle, pieces.half))
 
 
 def _angle(near: Interval, far: Interval) -> Interval:

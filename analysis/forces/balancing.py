@@ -11,7 +11,7 @@ import scipy
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
 from grashof.analysis.forces.mass import Body, Masses
-from grashof.analysis.mechanism.closing import first_dyad
+from grashof.analysis.mechanism.closing import dyad_of
 from grashof.analysis.mechanism.dyad import Block, Pins
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.extremes import extremes_of
@@ -108,7 +108,7 @@ def balance_force(
     """
     crank, output = _unbalanced(linkage, masses)
     crank_weight = _counterweight(-crank, linkage.r2 if crank_radius is None else crank_radius)
-    sizes = first_dyad(linkage)
+    sizes = dyad_of(linkage)
     default = sizes.n if isinstance(sizes, Pins) else linkage.r2
     output_weight = _counterweight(-output, default if output_radius is None else output_radius)
     whole = masses.with_body(2, crank_weight).with_body(4, output_weight)
@@ -126,7 +126,7 @@ def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, Complex
             f"a {kind.word} has two loops, so counterweights on links 2 and 4 cannot keep its centre of mass "
             "at rest"
         )
-    sizes = first_dyad(linkage)
+    sizes = dyad_of(linkage)
     if isinstance(sizes, Pins):
         share = own / sizes.m
         crank = crank + masses.coupler.mass * linkage.r2 * (1 - share)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.mechanism.closing import first_dyad
+from grashof.analysis.mechanism.closing import dyad_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import DyadKind
@@ -89,7 +89,7 @@ def longest_travel(linkage: Linkage) -> FloatArray:
     whether it turns or swings; 0 where the linkage never closes.
     """
     farthest = linkage.r1 + linkage.r2
-    return np.nan_to_num(np.abs(first_dyad(linkage).place(farthest, np.zeros_like(farthest)).reach))
+    return np.nan_to_num(np.abs(dyad_of(linkage).place(farthest, np.zeros_like(farthest)).reach))
 
 
 def _from_origin(length: FloatArray) -> Bar:

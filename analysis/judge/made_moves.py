@@ -15,14 +15,14 @@ from grashof.problems.values.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MadeMoves:
-    """How far P and link 4 are off, linearised, where dimensions are off by a tolerance.
+    """How far P and the output link are off, linearised, where dimensions are off by a tolerance.
 
     Parameters
     ----------
     point : ndarray, shape (..., D), length
         Distance of P where one of the `DIMENSIONS` is off.
     theta4 : ndarray, shape (..., D), rad
-        The same of the angle of link 4, signed.
+        The same of the angle of the output link, signed: of link 4, of a six-bar link 6.
     point_worst, theta4_worst : ndarray, shape (...), length and rad
         All dimensions off, in the worst combination of senses.
     point_rms, theta4_rms : ndarray, shape (...), length and rad
@@ -39,7 +39,7 @@ class MadeMoves:
 
 
 def made_moves(linkage: Linkage, theta2: npt.ArrayLike, tolerance: float) -> MadeMoves:
-    """Moves of P and of link 4 at held driver angles, where dimensions are off by a tolerance.
+    """Moves of P and of the output link at held driver angles, where dimensions are off by a tolerance.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def made_moves(linkage: Linkage, theta2: npt.ArrayLike, tolerance: float) -> Mad
     (0.1, 0.1)
     """
     slope = sensitivity(linkage, theta2) * tolerance
-    turns = output_sensitivity(linkage, theta2) * tolerance
+    turns = turn_sensitivity(linkage, theta2, linkage.mechanism.links[-1].number) * tolerance
     senses = np.array(list(product((1.0, -1.0), repeat=len(linkage.mechanism.dimensions) - 1)))
     senses = np.concatenate([np.ones((len(senses), 1)), senses], axis=1)  # the others are their opposites
     with np.errstate(invalid="ignore", over="ignore"):

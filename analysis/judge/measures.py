@@ -19,7 +19,7 @@ from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
-from grashof.problems import Cylinder, FourBar, Linkage, Problem, SliderCrank
+from grashof.problems import Cylinder, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.requirements.quantities import Needs
@@ -257,15 +257,20 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
 def _arms(values: Values) -> dict[str, FloatArray]:
     arm = complex(*values.linkage.coupler_point)
     arms = {"A-P": np.abs([arm])}
-    if isinstance(values.linkage, FourBar | SliderCrank):
+    if _has_b(values.linkage):
         arms["B-P"] = np.abs([arm - complex(values.linkage.r3)])
     return arms
+
+
+def _has_b(linkage: Linkage) -> bool:
+    """Whether the coupler has a point B, at r3 from A."""
+    return "r3" in linkage.mechanism.lengths
 
 
 def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
     """A or B in the frame of the body, whose origin is P."""
     linkage = values.linkage
-    length = linkage.r3 if not of_a and isinstance(linkage, FourBar | SliderCrank) else 0.0
+    length = linkage.r3 if not of_a and _has_b(linkage) else 0.0
     arm = length - complex(*linkage.coupler_point)
     place = arm * np.exp(-1j * linkage.body_angle)
     return {"x": np.array([place.real]), "y": np.array([place.imag])}

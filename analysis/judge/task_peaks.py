@@ -19,6 +19,7 @@ from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.linkages.linkage import by_kind
 
 _TOGETHER = 32  # more at a time are no faster
 
@@ -120,10 +121,9 @@ def _loads(some: Sequence[_Motion], spec: DynamicsSpec, metre: float, rows: int)
 
 def _groups(motions: Mapping[int, _Motion]) -> Iterator[list[int]]:
     """Those of a kind, so many at a time; each by itself where the driver is not steady."""
-    kinds: dict[object, list[int]] = {}
-    for k, motion in motions.items():
-        kinds.setdefault(motion.linkage.mechanism if motion.law.motor.steady else k, []).append(k)
-    for group in kinds.values():
+    steady = [k for k, motion in motions.items() if motion.law.motor.steady]
+    groups = [[steady[row] for row in rows] for rows in by_kind([motions[k].linkage for k in steady])]
+    for group in (*groups, *([k] for k in motions if k not in set(steady))):
         for first in range(0, len(group), _TOGETHER):
             yield group[first : first + _TOGETHER]
 

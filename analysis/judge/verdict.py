@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.analysis.loops.loop import GrashofClass
+from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
 

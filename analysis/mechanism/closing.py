@@ -137,6 +137,11 @@ class Loop(NamedTuple):
         return reach * self.closed.cos3, reach * self.closed.sin3
 
     @property
+    def width(self) -> FloatArray:
+        """Of the gap between C and D."""
+        return self.dyad.sizes.width(self.d.x - self.c.x, self.d.y - self.c.y)
+
+    @property
     def travel(self) -> FloatArray:
         """How far its slide has gone; NaN without a slide."""
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
@@ -147,9 +152,9 @@ def dyads_of(linkage: Linkage) -> list[HostedDyad]:
     return list(_hosted_dyads(linkage.mechanism, operands_of(linkage)))
 
 
-def first_dyad(linkage: Linkage) -> DyadSizes:
-    """The dyad of the first loop."""
-    return dyads_of(linkage)[0].sizes
+def dyad_of(linkage: Linkage, loop: int = 1) -> DyadSizes:
+    """The dyad of the first loop or of another one."""
+    return dyads_of(linkage)[loop - 1].sizes
 
 
 def close(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from grashof.analysis.mechanism.second_loop import cut, lifted
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
@@ -25,7 +26,8 @@ def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:
     -------
     ndarray, shape (N,), rad
         Ascending. With O2A along the ground line the diagonal A-O4 is shortest or longest, so that the
-        linkage comes closest to a dead position there; elsewhere it does at the ends of its motion.
+        linkage comes closest to a dead position there; elsewhere it does at the ends of its motion. A second
+        loop does where the width of its gap has an extreme.
 
     Examples
     --------
@@ -41,5 +43,7 @@ def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:
     aligned = theta1 + np.pi * np.arange(
         np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
     )
+    if len(linkage.mechanism.dyads) > 1:
+        aligned = np.concatenate([aligned, lifted(cut(linkage).extremes, low, high)])
     near = (aligned[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
     return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))

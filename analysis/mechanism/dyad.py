@@ -13,7 +13,9 @@ a second dyad they are links 5 and 6. Each kind has the same methods:
 - `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
 - `force`: J^T f = demands. The force on link 3 by link 4 in E, and the moment of a slide on link 4 about E.
 - `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
-- `transmission`: the angle in [0, pi] at a gap; NaN where the dyad is open.
+- `width`: of the gap, as far as the dyad minds it; `limits`: the least and the greatest at which it closes
+  with a transmission angle whose cosine is in size at most this one.
+- `transmission_at`: the transmission angle in [0, pi] at a width; NaN where the dyad is open.
 """
 
 from __future__ import annotations
@@ -165,12 +167,17 @@ class Pins(NamedTuple):
         """-e3 and e4."""
         return {"m": (-closed.cos3, -closed.sin3), "n": (closed.cos4, closed.sin4)}
 
-    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Law of cosines in C-E-D in its half-angle form, which keeps its digits near 0 and pi."""
-        return self.transmission_at(np.hypot(x, y))
+    def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Distance of C from D."""
+        return np.hypot(x, y)
+
+    def limits(self, cosine: float = 1.0) -> Vector:
+        """Third sides of triangles C-E-D."""
+        bent = 2 * self.m * self.n * (1 - cosine)
+        return np.sqrt((self.m - self.n) ** 2 + bent), np.sqrt((self.m + self.n) ** 2 - bent)
 
     def transmission_at(self, apart: FloatArray) -> FloatArray:
-        """The same at a distance of C from D."""
+        """Law of cosines in C-E-D in its half-angle form, which keeps its digits near 0 and pi."""
         least, most = np.abs(self.m - self.n), self.m + self.n
         rounding = ROUNDING * (apart + most)
         with np.errstate(invalid="ignore"):
@@ -197,7 +204,7 @@ class Slider(NamedTuple):
         The cosine comes from the product (m - h)(m + h), which keeps its digits near the dead positions.
         """
         m, _, ex, ey, sign, rounding = self
-        h = self._height(x, y)
+        h = self.width(x, y)
         product = (m - h) * (m + h)
         if np.any(product < 0):
             past = np.abs(h) - m
@@ -265,19 +272,20 @@ class Slider(NamedTuple):
         """-e3 and i e."""
         return {"m": (-closed.cos3, -closed.sin3), "offset": (-self.ey, self.ex)}
 
-    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Between the bar and the normal of the slide to its left, where D would be at infinity."""
-        return self.transmission_at(self._height(x, y))
+    def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """From C to the slide, positive to its left."""
+        return np.asarray(self.offset + (y * self.ex - x * self.ey))
+
+    def limits(self, cosine: float = 1.0) -> Vector:
+        """The bar's length to either side."""
+        return -self.m * cosine, self.m * cosine
 
     def transmission_at(self, apart: FloatArray) -> FloatArray:
-        """The same where the slide is so far from C, to its left."""
+        """Between the bar and the normal of the slide to its left, where D would be at infinity."""
         rounding = ROUNDING * (np.abs(apart) + self.m)
         with np.errstate(invalid="ignore"):
             near, far = _from_zero(self.m + apart, rounding), _from_zero(self.m - apart, rounding)
             return 2 * np.arctan2(np.sqrt(near), np.sqrt(far))
-
-    def _height(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        return np.asarray(self.offset + (y * self.ex - x * self.ey))
 
     def _still(self, closed: Closed) -> FloatArray:
         """The turn of a slider: none, NaN where the dyad is open."""
@@ -376,12 +384,17 @@ class Block(NamedTuple):
         """I e3."""
         return {"offset": (-closed.sin3, closed.cos3)}
 
-    def transmission(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Up to pi/2: its sine is l over the width of the gap, by its half angle."""
-        return self.transmission_at(np.hypot(x, y))
+    def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Distance of C from D."""
+        return np.hypot(x, y)
+
+    def limits(self, cosine: float = 1.0) -> Vector:
+        """The offset; nothing limits the width above."""
+        away = np.abs(self.offset) / cosine
+        return away, np.full_like(away, np.inf)
 
     def transmission_at(self, apart: FloatArray) -> FloatArray:
-        """The same at a distance of C from D."""
+        """Up to pi/2: its sine is l over the width of the gap, by its half angle."""
         away = np.abs(self.offset)
         with np.errstate(invalid="ignore"):
             near = _from_zero(apart - away, ROUNDING * (apart + away))

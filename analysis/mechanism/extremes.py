@@ -10,11 +10,10 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 
-from grashof.analysis.loops.loop import CHANGE
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation, rotatability
-from grashof.analysis.mechanism.transmission import ground_line_transmission, quality, transmission_angle
+from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation
+from grashof.analysis.mechanism.transmission import quality, transmission_at_extremes
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
@@ -108,7 +107,7 @@ def extremes(
     return Extremes(found.low, found.high, at_low, at_high)
 
 
-def transmission_extremes(linkage: Linkage, start: float, end: float) -> Extremes:
+def transmission_extremes(linkage: Linkage, start: float, end: float, loop: int | None = None) -> Extremes:
     """Least and largest transmission angle between two driver angles, in closed form.
 
     Parameters
@@ -117,6 +116,8 @@ def transmission_extremes(linkage: Linkage, start: float, end: float) -> Extreme
         A single linkage that closes all the way.
     start, end : float, rad
         In either order.
+    loop : int, optional
+        1 or 2; of a six-bar both by default, the least and the largest of all.
 
     Returns
     -------
@@ -135,13 +136,9 @@ def transmission_extremes(linkage: Linkage, start: float, end: float) -> Extreme
     >>> np.degrees([found.low, found.high]).round(4).tolist()
     [41.4096, 180.0]
     """
-    theta1, (low, high) = float(linkage.theta1), sorted((start, end))
-    along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
-    at = np.concatenate([[start, end], theta1 + np.pi * along])
-    ground = np.stack(ground_line_transmission(linkage))
-    change = np.abs(rotatability(linkage)[::-1]) <= CHANGE
-    ground = np.where(change, [0.0, np.pi], ground)
-    mu = np.concatenate([transmission_angle(linkage, at[:2]), ground[along.astype(np.int64) % 2]])
+    loops = range(1, len(linkage.mechanism.dyads) + 1) if loop is None else [loop]
+    parts = [transmission_at_extremes(linkage, start, end, number) for number in loops]
+    at, mu = map(np.concatenate, zip(*parts, strict=True))
     if not full_rotation(linkage):  # what rounding of an end leaves of a dead position
         mu = np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu)
     least, most = int(np.argmin(mu)), int(np.argmax(mu))

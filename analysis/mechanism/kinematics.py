@@ -165,7 +165,7 @@ class Kinematics:
     def frame_angle(self, link: int) -> FloatArray:
         """Direction of the u-axis of a link's frame, shape (...), rad: of a slider along its slide."""
         theta = self.angular(link).theta
-        return theta - np.pi / 2 if _is_slider(self.linkage, link) else theta
+        return theta - np.pi / 2 if is_slider(self.linkage, link) else theta
 
     def point(self, link: int, at: npt.ArrayLike) -> PointMotion:
         """Motion of a point carried by a link.
@@ -260,7 +260,8 @@ def solve_kinematics(
         The driver; by default it turns steadily at 1 rad/s. `driver_motion` finds all four from a
         function of time.
     assembly : array_like, shape (...), optional
-        +1 or -1; the linkage's own by default.
+        +1 or -1; the linkage's own by default. Of a six-bar that of the first loop; the other one of the
+        second is that of ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------
@@ -307,17 +308,24 @@ def solve_kinematics(
         turning += [three, four]
         motions.append(SlideMotion(*(next(rows)[()] for _ in range(4))) if has_slide else None)
         if not shape and np.isnan(three.theta):
-            raise AssemblyError(_cannot_close(linkage, float(theta2)))
+            given = linkage if assembly is None else linkage.changed(assembly=assembly)
+            raise AssemblyError(_cannot_close(given, float(theta2)))
         if dead.any():
-            _warn_of(theta2, dead, _WHY_DEAD[dyad.kind])
+            _warn_of(theta2, dead, _WHY_DEAD[len(motions) - 1][dyad.kind])
     return Kinematics(linkage, tuple(turning), tuple(motions), tuple(margins))
 
 
-_WHY_DEAD = {
-    DyadKind.RRR: "coupler and output lie in one line",
-    DyadKind.RRP: "the rod stands square to the slide",
-    DyadKind.RPR: "the block is at A",
-}
+_WHY_DEAD = (
+    {
+        DyadKind.RRR: "coupler and output lie in one line",
+        DyadKind.RRP: "the rod stands square to the slide",
+        DyadKind.RPR: "the block is at A",
+    },
+    {
+        DyadKind.RRR: "links 5 and 6 lie in one line",
+        DyadKind.RRP: "link 5 stands square to the slide",
+    },
+)
 
 
 def _solution(kind: Mechanism, count: int) -> Callable[..., list[FloatArray]]:
@@ -365,7 +373,7 @@ def _along(length: FloatArray) -> FloatArray:
     return np.stack([length, np.zeros_like(length)], axis=-1)
 
 
-def _is_slider(linkage: Linkage, link: int) -> bool:
+def is_slider(linkage: Linkage, link: int) -> bool:
     """Whether a link is the slider of its dyad."""
     return link % 2 == 0 and link > 2 and linkage.mechanism.dyads[link // 2 - 2].kind is DyadKind.RRP
 

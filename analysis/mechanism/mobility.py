@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import first_loop
-from grashof.analysis.loops.loop import CHANGE, GrashofClass
-from grashof.analysis.mechanism.closing import close, operands_of
-from grashof.problems import FourBar, Linkage
-from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
+from grashof.analysis.mechanism.first_loop import CHANGE, GrashofClass, first_loop, first_ranges
+from grashof.analysis.mechanism.second_loop import branches, cut, lifted
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
 _OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).eps  # rad: rounding of an end
 
 
 def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
-    """Grashof class of a single linkage, or what takes its place with a slide.
+    """Grashof class of a single linkage, or what takes its place with a slide; of its first loop.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
     'crank-rocker'
     """
@@ -51,9 +52,9 @@ def triple_rocker_kind(linkage: Linkage) -> str:
     Barker 1985, *A complete classification of planar four-bar linkages*: the number is that of the
     longest link (ground, driver, coupler, output).
     """
-    if not isinstance(linkage, FourBar) or grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
+    if grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
         return ""
-    return f"RRR{int(np.argmax(linkage.lengths)) + 1}"
+    return f"RRR{int(np.argmax(linkage.lengths[:4])) + 1}"
 
 
 def rotatability(linkage: Linkage) -> FloatArray:
@@ -70,7 +71,8 @@ def rotatability(linkage: Linkage) -> FloatArray:
         (r3 - r2 - offset) and (r3 - r2 + offset), of r2 + r3 + |offset|; of an inverted one 1 and
         (|r1 - r2| - |offset|), of r1 + r2 + |offset|. Both positive: the driver turns fully. Both
         negative: it swings in two separate ranges. Otherwise it swings in one, through
-        theta1 + pi when the first is positive, through theta1 when the second is.
+        theta1 + pi when the first is positive, through theta1 when the second is. Of a six-bar those of its
+        first loop.
 
     Notes
     -----
@@ -86,7 +88,20 @@ def full_rotation(linkage: Linkage) -> BoolArray:
     A linkage with a change point does not: it has one there.
     """
     turns: BoolArray = np.all(rotatability(linkage) > CHANGE, axis=-1)
-    return turns
+    if len(linkage.mechanism.dyads) > 1:
+        turns = np.array(turns)
+        for index in np.argwhere(turns).tolist():
+            single = linkage[tuple(index)]
+            turns[tuple(index)] = whole_turn(single) and not len(cut(single).touched)
+    return turns[()]
+
+
+def whole_turn(linkage: Linkage) -> bool:
+    """Whether a single linkage closes at every driver angle, also where it has change points on the way."""
+    if len(linkage.mechanism.dyads) == 1:
+        return bool((rotatability(linkage) >= 0).all())
+    ranges = cut(linkage).ranges
+    return len(ranges) == 1 and bool(np.ptp(ranges) > TURN - CHANGE)
 
 
 def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
@@ -106,6 +121,7 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
     >>> passes_change_point(parallelogram, 0.1, 3.1), passes_change_point(parallelogram, 3.1, 3.2)
     (False, True)
@@ -113,7 +129,10 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
     low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
     passed = np.arange(np.ceil(low - CHANGE), np.floor(high + CHANGE) + 1)
-    return bool((folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any()))
+    first = (folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any())
+    if len(linkage.mechanism.dyads) == 1:
+        return bool(first)
+    return bool(first) or len(lifted(cut(linkage).touched, min(start, end), max(start, end))) > 0
 
 
 def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
@@ -123,12 +142,13 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     ----------
     linkage : Linkage
     transmission : float, rad
-        Only angles at which min(mu, pi - mu) is at least this; below pi / 2.
+        Only angles at which min(mu, pi - mu) of all loops is at least this; below pi / 2.
 
     Returns
     -------
-    ndarray, shape (..., 2, 2), rad
-        Up to two ranges [low, high] of theta2, NaN for those that do not exist. A driver that
+    ndarray, shape (..., K, 2), rad
+        Ranges [low, high] of theta2, NaN for those that do not exist: up to two of one loop (K = 2), of a
+        six-bar on its own assembly as many as any of the batch has, at least two. A driver that
         turns fully has one range of a whole turn. The middle of each lies within half a turn.
 
     Notes
@@ -137,29 +157,24 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0. Of a four-bar cos(phi) runs between
     (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2); with a limit of the transmission
     angle mu the diagonal A-O4 takes the place of r3 +- r4 at which it is met.
+    The second loop of a six-bar cuts these ranges where the width of its gap meets its limits, which is
+    searched for by dense samples, refined.
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> triple_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     >>> np.degrees(driver_ranges(triple_rocker)[0]).round(3).tolist()
     [-108.21, 108.21]
     """
-    a, more_a, b, more_b, assembled = first_loop(linkage).span(linkage, float(np.cos(transmission)))
-    # Half-angle forms keep their digits near 0 and pi.
-    half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
-    half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))
-    reach, gap = 2 * half_stretched, 2 * half_folded  # pi and 0 where there is no limit
-    through_ground, through_back = half_folded == 0, half_stretched == np.pi / 2
-    low = np.where(through_ground, -reach, gap)
-    high = np.where(through_back & ~through_ground, 2 * np.pi - gap, reach)
-    two = ~through_ground & ~through_back & assembled
-    first = np.stack([np.where(assembled, low, np.nan), np.where(assembled, high, np.nan)], axis=-1)
-    second = np.stack([np.where(two, -reach, np.nan), np.where(two, -gap, np.nan)], axis=-1)
-    ranges = np.stack([first, second], axis=-2)
-    theta1 = linkage.theta1[..., None, None]
-    middle = theta1 + ranges.mean(axis=-1, keepdims=True)
-    counted: FloatArray = theta1 + (ranges - 2 * np.pi * np.round(middle / (2 * np.pi)))
-    return counted
+    if len(linkage.mechanism.dyads) == 1:
+        return first_ranges(linkage, transmission)
+    found = {index: cut(linkage[index], transmission).ranges for index in np.ndindex(linkage.shape)}
+    most = max([2, *map(len, found.values())])
+    ranges = np.full((*linkage.shape, most, 2), np.nan)
+    for index, each in found.items():
+        ranges[(*index, slice(len(each)))] = each
+    return ranges
 
 
 def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
@@ -208,19 +223,32 @@ def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) ->
     theta2 : ndarray, shape (...), rad
         The same angle moved by whole turns into [low, high]; NaN outside all ranges.
     """
-    angle = np.asarray(theta2, dtype=np.float64)
-    index = np.full(angle.shape, -1, dtype=np.int64)
-    inside = np.full(angle.shape, np.nan)
-    for number, (low, high) in enumerate(driver_ranges(linkage)):
+    return _within(driver_ranges(linkage), np.asarray(theta2, dtype=np.float64), slack)
+
+
+def _within(
+    ranges: FloatArray, angle: FloatArray, slack: float = 1e-9, allowed: BoolArray | None = None
+) -> tuple[IntArray, FloatArray]:
+    """The first range that each angle lies in, of those that are allowed to it, shape (K, ...)."""
+    shape = angle.shape if allowed is None else allowed.shape[1:]
+    index, inside = np.full(shape, -1, dtype=np.int64), np.full(shape, np.nan)
+    for number, (low, high) in enumerate(ranges):
         if np.isnan(low):
             continue
-        lifted = low + (angle - low + slack) % (2 * np.pi) - slack
-        hit = (lifted <= high + slack) & (index < 0)
-        index, inside = np.where(hit, number, index), np.where(hit, lifted, inside)
+        moved = low + (angle - low + slack) % (2 * np.pi) - slack
+        hit = (moved <= high + slack) & (index < 0)
+        if allowed is not None:
+            hit &= allowed[number]
+        index, inside = np.where(hit, number, index), np.where(hit, moved, inside)
     return index, inside
 
 
-def circuit_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+def circuit_index(
+    linkage: Linkage,
+    theta2: npt.ArrayLike,
+    assembly: npt.ArrayLike,
+    assembly_2: npt.ArrayLike | None = None,
+) -> IntArray:
     """Circuit that each position lies on: positions on different ones cannot be joined by motion.
 
     Parameters
@@ -230,31 +258,45 @@ def circuit_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLi
     theta2 : array_like, shape (...), rad
     assembly : array_like, shape (...)
         +1 or -1.
+    assembly_2 : array_like, shape (...), optional
+        Of the second loop of a six-bar; the linkage's own by default.
 
     Returns
     -------
     ndarray of int, shape (...)
-        0 or 1; -1 where the linkage cannot be assembled.
+        0 or 1, of a six-bar more; -1 where the linkage cannot be assembled.
 
     Notes
     -----
     With a driver that turns fully each assembly is a circuit. Otherwise each range of the driver
-    is one, its two assemblies meeting in the dead positions at its ends (Chase & Mirth 1993).
+    is one, its two assemblies meeting in the dead positions at its ends (Chase & Mirth 1993). Of a six-bar
+    ranges are joined through the dead positions of the first loop, and the assemblies of the second loop
+    through its own.
     At a change point the circuits meet; they are distinguished as on the nearest Grashof linkage.
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> double_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=3, r3=1, r4=3)
     >>> circuit_index(double_rocker, np.radians([60, -60]), assembly=1).tolist()
     [0, 1]
     """
+    if len(linkage.mechanism.dyads) > 1:
+        index, side = _branch_of(linkage, theta2, assembly, assembly_2)
+        known = branches(linkage).circuits
+        return np.where(index < 0, -1, known[index, side] if len(known) else -1)
     index, _ = range_index(linkage, theta2)
-    if _turns(linkage):
+    if whole_turn(linkage):
         return np.where(index < 0, -1, np.where(np.asarray(assembly) > 0, 0, 1))
     return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
 
 
-def branch_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike) -> IntArray:
+def branch_index(
+    linkage: Linkage,
+    theta2: npt.ArrayLike,
+    assembly: npt.ArrayLike,
+    assembly_2: npt.ArrayLike | None = None,
+) -> IntArray:
     """Branch that each position lies on: between different ones of a circuit lies a dead position.
 
     Parameters and shapes as for `circuit_index`.
@@ -262,11 +304,26 @@ def branch_index(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLik
     Returns
     -------
     ndarray of int, shape (...)
-        0 to 3; -1 where the linkage cannot be assembled.
+        0 to 3, of a six-bar more; -1 where the linkage cannot be assembled.
     """
-    index, _ = range_index(linkage, theta2)
-    return np.where(index < 0, -1, 2 * index + (np.asarray(assembly) < 0))
+    if len(linkage.mechanism.dyads) > 1:
+        index, side = _branch_of(linkage, theta2, assembly, assembly_2)
+    else:
+        index, _ = range_index(linkage, theta2)
+        side = (np.asarray(assembly) < 0).astype(np.int64)
+    return np.where(index < 0, -1, 2 * index + side)
 
 
-def _turns(linkage: Linkage) -> bool:
-    return bool((rotatability(linkage) >= 0).all())
+def _branch_of(
+    linkage: Linkage,
+    theta2: npt.ArrayLike,
+    assembly: npt.ArrayLike,
+    assembly_2: npt.ArrayLike | None,
+) -> tuple[IntArray, IntArray]:
+    """Which of the `branches` of a six-bar each position lies on, and whether its second assembly is -1."""
+    second = dyad_of(linkage, 2).sign if assembly_2 is None else assembly_2
+    found = branches(linkage)
+    angle, first, second = np.broadcast_arrays(np.asarray(theta2, dtype=np.float64), assembly, second)
+    allowed = found.assembly.reshape(-1, *(1,) * first.ndim) * first > 0
+    index, _ = _within(found.ranges, angle, allowed=allowed)
+    return index, (second < 0).astype(np.int64)

@@ -104,7 +104,8 @@ def solve_position(
     theta2 : array_like, shape (...), rad
         Driver angle, global.
     assembly : array_like, shape (...), optional
-        +1 or -1; the linkage's own by default.
+        +1 or -1; the linkage's own by default. Of a six-bar that of the first loop; the other one of the
+        second is that of ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------

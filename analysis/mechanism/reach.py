@@ -15,7 +15,7 @@ _ROUNDS = 2  # at this sampling more of them change nothing
 
 
 def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
-    """Box around O2, O4 and all that A, B and P reach between two driver angles.
+    """Box around the ground's pivots and all that the moving points reach between two driver angles.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
             [np.moveaxis(getattr(state, point), -1, 0) for point in linkage.mechanism.moving]
         )
         both = own(np.concatenate([rows, -rows]))
-        closed = np.isfinite(own(np.broadcast_to(state.theta3, (len(both), *state.theta3.shape))))
+        closed = np.isfinite(own(np.broadcast_to(state.margins[-1], (len(both), *state.theta2.shape))))
         return np.where(closed, both, -np.inf)
 
     furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2, rounds=_ROUNDS)[0].reshape(2, -1, 2)

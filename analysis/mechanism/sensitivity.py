@@ -48,18 +48,17 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     carries = linkage.mechanism.carries
     at = place(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
     turn = varied.turns[carries]
-    moved = varied.moved(at, carries) + varied.columns(varied.along(carries, "u", "v"))
-    shape = np.broadcast_shapes(moved.shape, turn.shape)
-    return np.stack([np.broadcast_to(each, shape) for each in (moved.real, moved.imag, turn)], axis=-2)
+    moved = varied.add(varied.moved(at, carries), varied.along(carries, "u", "v"))
+    return np.moveaxis(np.stack([moved.real, moved.imag, turn]), (0, 1), (-2, -1))
 
 
 def turn_sensitivity(linkage: Linkage, theta2: npt.ArrayLike, link: int) -> FloatArray:
     """Derivatives of the angle of a moving link by the dimensions, shape (..., D), rad/length."""
-    return _Varied(linkage, theta2).turns[link]
+    return np.moveaxis(_Varied(linkage, theta2).turns[link], 0, -1)
 
 
 class _Varied:
-    """A linkage in some positions, and what each of its dimensions turns and moves."""
+    """A linkage in some positions, and what each dimension turns and moves; arrays of shape (D, ...)."""
 
     def __init__(
         self, linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
@@ -68,18 +67,16 @@ class _Varied:
         angle = np.asarray(theta2, dtype=np.float64)
         loops, self.frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
         shape = np.shape(loops[-1].closed.margin)
-        self.turns: dict[int, FloatArray] = {2: np.zeros((*shape, len(self.names)))}
-        self.origins: dict[int, ComplexArray] = {2: np.zeros((*shape, len(self.names)), dtype=complex)}
+        self.turns: dict[int, FloatArray] = {2: np.zeros((len(self.names), *shape))}
+        self.origins: dict[int, ComplexArray] = {2: np.zeros((len(self.names), *shape), dtype=complex)}
         for first, loop in zip((3, 5), loops, strict=False):
             self._vary(first, loop)
 
-    def columns(self, by: dict[str, ComplexArray]) -> ComplexArray:
-        """Derivatives by some dimensions among those by all, shape (..., D)."""
-        shape = self.origins[2].shape
-        found = np.zeros(shape, dtype=complex)
+    def add(self, moved: ComplexArray, by: dict[str, ComplexArray]) -> ComplexArray:
+        """What some dimensions move besides, added in place."""
         for name, value in by.items():
-            found[..., self.names.index(name)] = value
-        return found
+            moved[self.names.index(name)] += value
+        return moved
 
     def along(self, link: int, *names: str) -> dict[str, ComplexArray]:
         """How a point of a link moves with its places along and across the link."""
@@ -91,31 +88,26 @@ class _Varied:
         if link == 1:
             return np.zeros(self.origins[2].shape, dtype=complex)
         _, arm = at.way[-1]
-        carried: ComplexArray = 1j * _complex(arm)[..., None] * self.turns[link]
+        carried: ComplexArray = 1j * _complex(arm) * self.turns[link]
         return self.origins[link] + carried
 
     def _vary(self, first: int, loop: Loop) -> None:
         sizes, closed, row = loop.dyad.sizes, loop.closed, loop.dyad.row
         c, d = (self.moved(at, host) for at, host in zip((loop.c, loop.d), row.hosts, strict=True))
         c_by, d_by = self._own(first, row.hosts, pinned=row.kind is not DyadKind.RRP)
-        c, d = c + self.columns(c_by), d + self.columns(d_by)
+        c, d = self.add(c, c_by), self.add(d, d_by)
         names = {"m": f"r{first}", "n": f"r{first + 1}", "offset": "offset" if first == 3 else "offset_2"}
         lost = {names[name]: _complex(by) for name, by in sizes.sizes(closed).items()}
-        gap = d - c + self.columns(lost)
+        gap = self.add(d - c, lost)
         with np.errstate(divide="ignore", invalid="ignore"):
-            inverse = 1 / closed.margin
-            one, other = (_complex(each)[..., None] for each in sizes.facing(closed))
-            first_part, second_part = (np.moveaxis((gap * each.conj()).real, -1, 0) for each in (one, other))
-            solved = sizes.solve(closed, first_part, second_part, inverse, 1.0)
-        three, four = (
-            np.moveaxis(turn + np.zeros(gap.shape[-1:] + gap.shape[:-1]), 0, -1) for turn in solved[:2]
-        )
-        self.turns |= {first: three, first + 1: four}
+            parts = [(gap * _complex(each).conj()).real for each in sizes.facing(closed)]
+            three, four, _ = sizes.solve(closed, parts[0], parts[1], 1 / closed.margin, 1.0)
+        self.turns |= {first: three, first + 1: four + np.zeros(gap.shape)}
         self.origins |= {first: c, first + 1: d}
         if row.kind is DyadKind.RRP:
             e3 = _complex((closed.cos3, closed.sin3))
-            carried = 1j * (closed.reach * e3)[..., None] * three
-            self.origins[first + 1] = c + carried + self.columns({names["m"]: e3})
+            carried = 1j * closed.reach * e3 * three
+            self.origins[first + 1] = self.add(c + carried, {names["m"]: e3})
 
     def _own(
         self, first: int, hosts: tuple[int, int], *, pinned: bool

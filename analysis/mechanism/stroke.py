@@ -1,4 +1,4 @@
-"""The stroke of the output link: its limit positions, swing and time ratio, in closed form."""
+"""Strokes: limit positions, swing and time ratio, of link 4 in closed form, of any link by its velocity."""
 
 from __future__ import annotations
 
@@ -6,11 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.analysis.loops.kinds import first_loop
+from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.extremes import counted_on, motion_between
+from grashof.analysis.mechanism.first_loop import first_loop
+from grashof.analysis.mechanism.kinematics import is_slider
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.virtual_motion import virtual_motion
+from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
+
+_PANELS = 720
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +54,7 @@ class OutputStroke:
 
 
 def output_stroke(linkage: Linkage) -> OutputStroke:
-    """Limit positions of the output link on the linkage's own assembly.
+    """Limit positions of link 4 on the linkage's own assembly; see `link_stroke` for others.
 
     Parameters
     ----------
@@ -86,3 +93,97 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
         swing=np.abs(turned),
         time_ratio=np.where(full_rotation(linkage), ratio, np.nan)[()],
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinkStroke:
+    """How a link goes to and fro while the driver moves on.
+
+    Parameters
+    ----------
+    theta2 : ndarray, shape (N,), rad
+        Driver angles at which the link turns back, ascending.
+    value : ndarray, shape (N,), rad or length
+        Its direction there, counted on from the beginning of the motion; of a slider its travel.
+    stroke : float, rad or length
+        Greatest less least value over the motion, its ends included; NaN for a link that turns fully.
+    time_ratio : float
+        Time of the slow stroke over that of the quick one, with a steady driver; NaN where the driver does
+        not turn fully or the link does not turn back twice.
+    """
+
+    theta2: FloatArray
+    value: FloatArray
+    stroke: float
+    time_ratio: float
+
+
+def link_stroke(
+    linkage: Linkage, link: int | None = None, start: float | None = None, end: float | None = None
+) -> LinkStroke:
+    """Limit positions of any moving link on the linkage's own assembly, where its velocity changes sign.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    link : int, optional
+        The last one by default: the output of a six-bar.
+    start, end : float, rad, optional
+        Driver angles; by default the whole turn, or the first of `driver_ranges`.
+
+    Returns
+    -------
+    LinkStroke
+
+    Raises
+    ------
+    AssemblyError
+        The linkage cannot close in between.
+
+    Notes
+    -----
+    The velocity, times the sines of the transmission angles, is sampled densely with all its extremes among
+    the samples, so that no two limit positions are missed between two of them.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
+    >>> found = link_stroke(norton)
+    >>> np.degrees([*found.theta2, found.stroke]).round(4).tolist(), round(found.time_ratio, 6)
+    ([24.1468, 231.3178, 73.7818], 1.355573)
+    """
+    start, end, turns = motion_between(linkage, start, end)
+    link = linkage.mechanism.links[-1].number if link is None else link
+    slides, motion = is_slider(linkage, link), even_motion(linkage, start, end)
+
+    def moving(theta2: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Angle or travel, and its velocity times the sines of the transmission angles."""
+        state, _ = virtual_motion(linkage, theta2)
+        slide = state.slides[link // 2 - 2] if slides else None
+        if slide is not None:
+            return slide.travel, slide.velocity
+        turning = state.angular(link)
+        return turning.theta, turning.omega
+
+    share, _ = with_extremes(lambda at: moving(motion.theta2(at))[1], motion.edges(_PANELS), periodic=turns)
+    theta2 = motion.theta2(np.append(share, share[0] + 1) if turns else share)
+    raw, velocity = moving(theta2)
+    value = counted_on(theta2, raw, None if slides else TURN)
+    rises = velocity > 0
+    if not turns:  # of a dead position of another loop the sine vanishes, too
+        rises[0], rises[-1] = rises[1], rises[-2]
+    back = np.flatnonzero(rises[1:] != rises[:-1])
+    first = rises[back]
+    limits = last_where(lambda at: (moving(at)[1] > 0) == first, theta2[back], theta2[back + 1])
+    there = moving(limits)[0]
+    if not slides:
+        there = there + TURN * np.round((value[back] - there) / TURN)
+    between = np.diff(limits)
+    ratio = np.nan
+    if turns and len(limits) == 2:
+        ratio = float(max(between[0] / (TURN - between[0]), (TURN - between[0]) / between[0]))
+    fully = turns and not slides and abs(value[-1] - value[0]) > np.pi
+    every = np.concatenate([value, there])
+    return LinkStroke(limits, there, np.nan if fully else float(np.ptp(every)), ratio)

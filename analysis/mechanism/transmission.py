@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.loops.kinds import first_loop
-from grashof.analysis.mechanism.closing import first_dyad
+from grashof.analysis.mechanism.closing import dyad_of
+from grashof.analysis.mechanism.first_loop import CHANGE, first_loop
+from grashof.analysis.mechanism.mobility import full_rotation, rotatability
+from grashof.analysis.mechanism.second_loop import cut, lifted, width
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.errors import wrong_value
 
 
-def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
+def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike, loop: int = 1) -> FloatArray:
     """Transmission angle mu, of a four-bar between coupler AB and output link O4B.
 
     Of a slider-crank it is that between the rod and the normal of the slide, of an inverted one that with
@@ -23,11 +26,14 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
         Driver angle.
+    loop : int
+        2 for the second loop of a six-bar: the angle between links 5 and 6, or between link 5 and the
+        normal of the slide, on the linkage's own assembly.
 
     Returns
     -------
     ndarray, shape (...), rad
-        In [0, pi]; NaN where the linkage cannot close. The same on both assemblies.
+        In [0, pi]; NaN where the loop cannot close. That of the first loop is the same on both assemblies.
 
     Notes
     -----
@@ -41,8 +47,14 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
     >>> np.degrees(transmission_angle(norton, np.radians([0, 180]))).round(4).tolist()
     [26.3843, 86.4167]
     """
-    apart = first_loop(linkage).apart(linkage, np.subtract(theta2, linkage.theta1))
-    return first_dyad(linkage).transmission_at(apart)
+    loops = len(linkage.mechanism.dyads)
+    if not (isinstance(loop, int) and 1 <= loop <= loops):
+        raise wrong_value("loop", loop, "1" if loops == 1 else "1 or 2")
+    if loop == 2:
+        apart = width(linkage)(np.asarray(theta2, dtype=np.float64))
+    else:
+        apart = first_loop(linkage).apart(linkage, np.subtract(theta2, linkage.theta1))
+    return dyad_of(linkage, loop).transmission_at(apart)
 
 
 def quality(mu: npt.ArrayLike) -> FloatArray:
@@ -53,7 +65,7 @@ def quality(mu: npt.ArrayLike) -> FloatArray:
 
 
 def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> FloatArray:
-    """Least min(mu, pi - mu) over the driver interval from `start` to `end`, exactly.
+    """Least min(mu, pi - mu) of all loops over the driver interval from `start` to `end`, exactly.
 
     Parameters
     ----------
@@ -70,7 +82,8 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     -----
     mu depends on the driver angle only through the diagonal A-O4, or the distance of A from the slide, which
     is monotone between the positions where O2A lies along the ground line, or square to the slide: the
-    extremes are there and at the ends.
+    extremes are there and at the ends. Those of a second loop are where the width of its gap has an extreme,
+    sampled and refined.
     """
     low = np.minimum(start, end) - linkage.theta1
     high = np.maximum(start, end) - linkage.theta1
@@ -78,17 +91,46 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     crossed = last - first
     even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0))
     odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1))
-    worst = np.minimum(
-        quality(transmission_angle(linkage, low + linkage.theta1)),
-        quality(transmission_angle(linkage, high + linkage.theta1)),
+    worst: FloatArray = quality(transmission_angle(linkage, np.stack([low, high]) + linkage.theta1)).min(
+        axis=0
     )
     folded, stretched = ground_line_transmission(linkage)
     worst = np.where(even, np.minimum(worst, quality(folded)), worst)
-    return np.where(odd, np.minimum(worst, quality(stretched)), worst)
+    worst = np.where(odd, np.minimum(worst, quality(stretched)), worst)
+    if len(linkage.mechanism.dyads) == 1:
+        return worst
+    numbers = np.arange(np.prod(linkage.shape, dtype=int)).reshape(linkage.shape)
+    every = np.broadcast_arrays(start, end, numbers)
+    second = np.full(every[0].shape, np.nan)
+    for index in np.ndindex(second.shape):
+        one, other, number = (each[index] for each in every)
+        single = linkage[np.unravel_index(number, linkage.shape)]
+        second[index] = quality(transmission_at_extremes(single, float(one), float(other), 2)[1]).min()
+    least: FloatArray = np.minimum(worst, second)[()]
+    return least
+
+
+def transmission_at_extremes(
+    linkage: Linkage, start: float, end: float, loop: int
+) -> tuple[FloatArray, FloatArray]:
+    """The ends of a motion and where a loop's transmission angle has extremes between, and the angle there.
+
+    Of a single linkage; each of shape (N,).
+    """
+    low, high = min(start, end), max(start, end)
+    if loop != 1:
+        at = np.concatenate([[start, end], lifted(cut(linkage).extremes, low, high)])
+        return at, transmission_angle(linkage, at, loop)
+    theta1 = float(linkage.theta1)
+    along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
+    at = np.concatenate([[start, end], theta1 + np.pi * along])
+    change = np.abs(rotatability(linkage)[::-1]) <= CHANGE
+    ground = np.where(change, [0.0, np.pi], np.stack(ground_line_transmission(linkage)))
+    return at, np.concatenate([transmission_angle(linkage, at[:2]), ground[along.astype(np.int64) % 2]])
 
 
 def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
-    """Least min(mu, pi - mu) over a whole turn of the driver, shape (...), rad; 0 if it cannot turn.
+    """Least min(mu, pi - mu) of all loops over a whole turn, shape (...), rad; 0 if the driver cannot turn.
 
     Examples
     --------
@@ -98,11 +140,14 @@ def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
     26.3843
     """
     folded, stretched = ground_line_transmission(linkage)
-    return np.minimum(quality(folded), quality(stretched))
+    worst = np.minimum(quality(folded), quality(stretched))
+    if len(linkage.mechanism.dyads) == 1:
+        return worst
+    return np.where(full_rotation(linkage), worst_transmission(linkage, 0.0, TURN), 0.0)[()]
 
 
 def ground_line_transmission(linkage: Linkage) -> tuple[FloatArray, FloatArray]:
-    """Mu with O2A along theta1, towards O4 and away from it: the extremes over a turn."""
+    """Mu of the first loop with O2A along theta1, towards O4 and away from it: the extremes over a turn."""
     folded, stretched = first_loop(linkage).apart_on_line(linkage)
-    dyad = first_dyad(linkage)
+    dyad = dyad_of(linkage)
     return dyad.transmission_at(folded), dyad.transmission_at(stretched)

@@ -1,4 +1,4 @@
-"""Greatest values of several curves at once."""
+"""Greatest values of several curves at once, extremes of one, and where a condition ends."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 _MOST = 3
 _POINTS = 17
 _ROUNDS = 4  # each narrows the place of a peak eight times; a parabola does the rest
+
+_CLOSER = 5  # rounds for each extreme of one curve
+_HALVINGS = 64
 
 Curves = Callable[[FloatArray], FloatArray]
 
@@ -106,6 +109,77 @@ def greatest(
     every, where = np.concatenate(heights, axis=-1), np.concatenate(at, axis=-1)
     best = every.argmax(axis=-1)[..., None]
     return _taken(every, best)[..., 0], _taken(where, best)[..., 0]
+
+
+def with_extremes(
+    curve: Callable[[FloatArray], FloatArray], places: FloatArray, *, periodic: bool
+) -> tuple[FloatArray, FloatArray]:
+    """All extremes of a smooth curve, so that it is monotone from each place to the next.
+
+    Parameters
+    ----------
+    curve : callable
+        From places, shape (..., N), to values of the same shape.
+    places : ndarray, shape (N,)
+        Ascending: dense samples from end to end.
+    periodic : bool
+        The curve goes on beyond its ends as it began, and the places are those of a whole period.
+
+    Returns
+    -------
+    every, extremes : ndarray, shape (N + M,) and (M,)
+        The places with the extremes among them, but for the last one of a period; and the extremes alone.
+
+    Examples
+    --------
+    >>> every, extremes = with_extremes(np.sin, np.linspace(0, 6, 20), periodic=False)
+    >>> len(every), (extremes / np.pi).round(9).tolist()
+    (22, [0.5, 1.5])
+    """
+    if len(places) < 3:
+        return places, np.empty(0)
+    heights = curve(places)
+    before, after = np.roll(heights, 1), np.roll(heights, -1)
+    low, middle, high = np.roll(places, 1), places.copy(), np.roll(places, -1)
+    if periodic:  # the last one is the first
+        period = places[-1] - places[0]
+        before[0], after[-1] = heights[-2], heights[1]
+        low[0], high[-1] = places[-2] - period, places[1] + period
+    else:  # one may lie beside an end
+        before[[0, -1]] = after[[0, -1]] = heights[[0, -1]]
+        low[0], high[-1] = places[0], places[-1]
+        middle[[0, -1]] = (low[[0, -1]] + high[[0, -1]]) / 2
+    top, bottom = (
+        np.flatnonzero((sign * heights >= sign * before) & (sign * heights >= sign * after))
+        for sign in (1, -1)
+    )
+    rows, sign = np.concatenate([top, bottom]), np.repeat([1.0, -1.0], [len(top), len(bottom)])
+    near = np.stack([low[rows], middle[rows], high[rows]], axis=-1)
+    at = greatest(lambda each: sign[:, None] * curve(each), near, most=1, rounds=_CLOSER)[1][0]
+    if periodic:
+        at = np.unique(places[0] + (at - places[0]) % period)
+        return np.unique(np.concatenate([places[:-1], at])), at
+    at = np.unique(at[(at > places[0]) & (at < places[-1])])
+    return np.unique(np.concatenate([places, at])), at
+
+
+def last_where(
+    holds: Callable[[FloatArray], BoolArray], inside: FloatArray, outside: FloatArray
+) -> FloatArray:
+    """Where a condition holds last on the way from some places to others, to rounding; shape (N,).
+
+    Examples
+    --------
+    >>> last_where(lambda x: x * x <= 2, np.array([0.0, -1.0]), np.array([2.0, -3.0])).round(12).tolist()
+    [1.414213562373, -1.414213562373]
+    """
+    for _ in range(_HALVINGS):
+        middle = (inside + outside) / 2
+        if ((middle == inside) | (middle == outside)).all():
+            break
+        still = holds(middle)
+        inside, outside = np.where(still, middle, inside), np.where(still, outside, middle)
+    return inside
 
 
 def _taken(values: FloatArray, index: IntArray) -> FloatArray:

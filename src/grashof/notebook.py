@@ -16,7 +16,7 @@ from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
 from grashof.output.terminal import best_rows, heading, units
-from grashof.problems import FunctionTask, LinkageSpec, Problem, ProblemError, SliderCrank
+from grashof.problems import FunctionTask, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
@@ -66,22 +66,22 @@ def _result(result: Result) -> str:
 
 
 def _linkage(linkage: AnyKind) -> dict[str, str]:
+    kind, columns = linkage.mechanism, linkage.columns
+    slides = {row.name: row.key for row in kind.parameters if row.name.startswith("slide")}
+    signs = (row.name for row in kind.parameters if row.kind == "sign")
     return {
-        **{
-            name: f"{float(getattr(linkage, name)):.6g}"
-            for name in linkage.mechanism.dimensions
-            if name not in "uv"
-        },
-        **(
-            {"slide": f"{np.degrees(linkage.slide_angle):.6g} deg"}
-            if isinstance(linkage, SliderCrank)
-            else {}
-        ),
-        **{point.upper(): _pair(getattr(linkage, point)) for point in linkage.mechanism.ground},
+        **{name: f"{columns[name]:.6g}" for name in kind.dimensions if name not in "uv"},
+        **{_words(name.replace("_angle", "")): f"{columns[key]:.6g} deg" for name, key in slides.items()},
+        **{point.upper(): _pair(getattr(linkage, point)) for point in kind.ground},
+        **{_words(name): str(columns[name]) for name in linkage.choices},
         "P (u, v)": _pair(linkage.coupler_point),
-        "assembly": f"{int(linkage.assembly):+d}",
+        **{_words(name): f"{columns[name]:+}" for name in signs},
         "Grashof class": str(grashof_class(linkage)),
     }
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _judged(candidate: Candidate) -> dict[str, str]:

@@ -8,13 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.analysis import solve_position
-from grashof.problems import FourBar, Linkage, Problem, Task
+from grashof.problems import FourBar, Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.problems.values.linkages.linkage import by_kind
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.caution import caution
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
-from grashof.synth.theory.distinct import MIRRORED, apart, signature
+from grashof.synth.theory.distinct import apart, mirrored, signature
 from grashof.synth.theory.symmetry import middle_of, symmetries
 
 ALIKE = 0.05  # share of the largest number of two designs by which they differ at most
@@ -53,11 +55,11 @@ def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
     share one of its dyads and its transmission angle, which that dyad then decides.
     """
     middle, first = middle_of(problem.task), np.arange(len(best_first))
-    for kind in dict.fromkeys(type(candidate.linkage) for candidate in best_first):
-        mine = np.array([k for k, candidate in enumerate(best_first) if type(candidate.linkage) is kind])
+    for alike_in_kind in by_kind([candidate.linkage for candidate in best_first]):
+        mine, kind = np.array(alike_in_kind), best_first[alike_in_kind[0]].linkage.mechanism
         signatures = np.array([signature(best_first[k].linkage, middle) for k in mine])
         alike = best_alike(problem.task, signatures, kind)
-        if kind is FourBar and problem.task.limits_size:
+        if not kind.slides and problem.task.limits_size:
             heads = np.flatnonzero(alike == np.arange(len(mine)))
             akin = _akin([best_first[k] for k in mine[heads]], problem.task.size)
             alike = heads[akin][np.searchsorted(heads, alike)]
@@ -89,7 +91,7 @@ def _dyads(candidate: Candidate) -> FloatArray:
     return np.array([[*pivot, *joint[0]] for pivot, joint in zip(ends, (at.a, at.b), strict=True)])
 
 
-def best_alike(task: Task, signatures: FloatArray, kind: type[Linkage] = FourBar) -> IntArray:
+def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mechanism) -> IntArray:
     """Which design is the best of those like each one, all of one kind.
 
     Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same
@@ -106,10 +108,10 @@ def best_alike(task: Task, signatures: FloatArray, kind: type[Linkage] = FourBar
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        cognates = kind is FourBar and not (task.has_angle.any() or task.has_output.any())
+        cognates = not kind.slides and not (task.has_angle.any() or task.has_output.any())
         curves = same_curve(one, task.is_timed) if cognates else one[None]
         near = left[_alike_in_shape(curves, signatures[left])]
-        images = np.concatenate([each.of(curves, MIRRORED[kind]) for each in maps])
+        images = np.concatenate([each.of(curves, mirrored(kind)) for each in maps])
         best[near[(apart(images, signatures[near]) < ALIKE).any(axis=0)]] = first
         left = left[best[left] != first]
     return best

@@ -107,7 +107,7 @@ class SliderCrankKind(Kind):
         return 1j * along, lengths, (p - a) * np.abs(b - a) / (b - a)
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
-        theta1, r3 = complex(linkage.theta1), float(linkage.r3) / frame.scale  # type: ignore[attr-defined]
+        theta1, r3 = complex(linkage.theta1), float(linkage.r3) / frame.scale
         return complex(b - 1j * r3 * np.exp(1j * theta1))
 
     def theta1_of(self, points: ComplexArray) -> float:

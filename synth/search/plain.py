@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.analysis.judge.verdict import Defect
-from grashof.analysis.loops.loop import GrashofClass
+from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, Objective, Problem, SliderCrank
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme import kinds

@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.linkages.mechanism import Mechanism
 
 # Share of the largest number of two designs by which they differ at least: 1 %, and a quarter more
 # because pivots are measured from the middle of the task, where the largest number is smaller.
@@ -23,24 +24,21 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     user's own origin lies.
     """
     middle = np.zeros(2) if origin is None else origin
-    match linkage:
-        case FourBar():
-            second, lengths = linkage.o4 - middle, (linkage.r2, linkage.r3, linkage.r4)
-        case SliderCrank():
-            direction = np.stack([np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)], axis=-1)
-            second = (linkage.r2 + linkage.r3)[..., None] * direction
-            lengths = linkage.r2, linkage.r3, linkage.offset
-        case InvertedSliderCrank():
-            second, lengths = linkage.o4 - middle, (linkage.r2, np.zeros_like(linkage.r2), linkage.offset)
-        case _:
-            raise TypeError(type(linkage).__name__)
+    if "o4" in linkage.mechanism.ground:
+        second = linkage.o4 - middle
+    else:
+        direction = np.stack([np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)], axis=-1)
+        second = linkage.lengths.sum(axis=-1)[..., None] * direction
+    names = ("r2", "r3", "offset" if linkage.mechanism.slides else "r4")
+    lengths = (getattr(linkage, name, np.zeros_like(linkage.r2)) for name in names)
     return np.concatenate(
-        [linkage.o2 - middle, second, np.stack(lengths, axis=-1), linkage.coupler_point], axis=-1
+        [linkage.o2 - middle, second, np.stack(list(lengths), axis=-1), linkage.coupler_point], axis=-1
     )
 
 
-# Columns of it that change their sign where a linkage is mirrored, besides y of pivots and directions.
-MIRRORED = {FourBar: (8,), SliderCrank: (6, 8), InvertedSliderCrank: (6, 8)}
+def mirrored(kind: Mechanism) -> tuple[int, ...]:
+    """Columns of it that change their sign in a mirror, besides y of pivots and directions."""
+    return (6, 8) if kind.slides else (8,)
 
 
 EQUAL = 1e-9  # share of merits by which those differ at most that tie

@@ -124,7 +124,7 @@ def test_the_page_has_the_same_column_and_each_kind_in_its_legend(folder: Path) 
         each.mechanism.word for each in LINKAGES
     ]
     assert all(len([x for x in each["torque"] if x is not None]) > 100 for each in data["designs"])
-    assert dict(legend(ONE_LOOP))["output"] == "output O4-B, slider B, block O4-B"
+    assert dict(legend(ONE_LOOP.values()))["output"] == "output O4-B, slider B, block O4-B"
     assert "output O4-B, slider B, block O4-B" in page or "slider B, output O4-B, block O4-B" in page
 
 

@@ -28,11 +28,14 @@ class Linkage(Displayed):
     mechanism: Mechanism  # its kind; files, tables, drawings and plates go through the rows of it
 
     o2: FloatArray
-    o4: FloatArray
     r2: FloatArray
     coupler_point: FloatArray
     assembly: FloatArray
     body_angle: FloatArray
+    # Of some kinds only, as their rows say.
+    o4: FloatArray
+    r3: FloatArray
+    slide_angle: FloatArray
 
     def _keep(self, *given: npt.ArrayLike) -> None:
         """Set the fields, in the order of `Mechanism.parameters`, checked, with the same batch axes."""

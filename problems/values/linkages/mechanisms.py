@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from grashof.problems.values.checks import near_miss, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
@@ -32,6 +32,7 @@ DIMENSIONS: tuple[str, ...] = (
 )
 _ANY = f"{', '.join(list(ONE_LOOP)[:-1])} or {list(ONE_LOOP)[-1]}"
 ANY_KINDS = f"{_ANY}, or a list of these"
+Kind = TypeVar("Kind", bound=Linkage)
 
 
 # What makes them in Python, and describes their parameters; six-bars are `SixBar`.
@@ -57,6 +58,27 @@ def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
     if (made := linkage.mechanism.word) != word:
         raise ProblemError(f"mechanism is {word}; links {linkage.choices['hosts']} carry C and D in a {made}")
     return linkage
+
+
+def as_kind(linkage: Linkage, kind: type[Kind]) -> Kind | None:
+    """The linkage where it is of a kind: what only linkages of that kind have goes by it."""
+    return linkage if isinstance(linkage, kind) else None
+
+
+def kinds_text(words: Sequence[str]) -> str:
+    """Kinds in words; empty of a four-bar alone, which is meant where none is named.
+
+    Examples
+    --------
+    >>> kinds_text(["four-bar"]), kinds_text(["four-bar", "slider-crank"])
+    ('', 'four-bar or slider-crank')
+    """
+    return "" if list(words) == [FOUR_BAR] else " or ".join(words)
+
+
+def among(linkage: Linkage, words: Sequence[str]) -> bool:
+    """Whether a linkage is of one of some kinds."""
+    return linkage.mechanism.word in words
 
 
 def having(column: str) -> tuple[str, ...]:

@@ -9,11 +9,12 @@ import numpy.typing as npt
 import pandas as pd
 from matplotlib.axes import Axes
 
-from grashof.figures.parts import COUPLER, GROUND, OUTPUT, PATH, TARGET
+from grashof.figures.parts import COUPLER, COUPLER_2, DRIVER, GROUND, OUTPUT, OUTPUT_2, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import FourBar, Problem, ProblemError
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.kinds import forces_of
+from grashof.problems.values.linkages.mechanism import MECHANISMS
+from grashof.study.kinds import forces_of, turning
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
@@ -22,17 +23,20 @@ AxesArray = npt.NDArray[np.object_]
 # What each panel shows: the label of its axis, and the columns of the analysis with their names, those of
 # all kinds of linkages together.
 Panel = tuple[str, Mapping[str, str]]
+_MOVING = tuple(dict.fromkeys(name for row in MECHANISMS for name in row.moving))
+_MU = {"mu_deg": "transmission angle mu", "mu_2_deg": "mu of loop 2"}
+_TURNING = tuple(dict.fromkeys(number for row in MECHANISMS for number in turning(row)))
 KINEMATICS: Mapping[str, Panel] = {
     "angle": (
         "angle (deg)",
-        {"theta3_deg": "theta3", "theta4_deg": "theta4", "mu_deg": "transmission angle mu"},
+        {**{f"theta{n}_deg": f"theta{n}" for n in _TURNING}, **_MU},
     ),
-    "angular velocity": ("angular velocity (rad/s)", {"omega3": "omega3", "omega4": "omega4"}),
-    "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in FourBar.mechanism.moving}),
-    "angular acceleration": ("angular acceleration (rad/s²)", {"alpha3": "alpha3", "alpha4": "alpha4"}),
+    "angular velocity": ("angular velocity (rad/s)", {f"omega{n}": f"omega{n}" for n in _TURNING}),
+    "speed": ("speed ({unit}/s)", {f"{name}_speed": name.upper() for name in _MOVING}),
+    "angular acceleration": ("angular acceleration (rad/s²)", {f"alpha{n}": f"alpha{n}" for n in _TURNING}),
     "acceleration": (
         "acceleration ({unit}/s²)",
-        {f"{name}_acceleration": name.upper() for name in FourBar.mechanism.moving},
+        {f"{name}_acceleration": name.upper() for name in _MOVING},
     ),
 }
 # Of linkages with a slide besides.
@@ -43,14 +47,20 @@ SLIDE: Mapping[str, Panel] = {
 }
 DYNAMICS: Mapping[str, Panel] = {
     "torque": ("drive torque (N m)", {"torque": "torque"}),
-    "joint force": ("joint force (N)", forces_of(FourBar.mechanism)),
+    "joint force": (
+        "joint force (N)",
+        {key: joint for row in reversed(MECHANISMS) for key, joint in forces_of(row).items()},
+    ),
     "shaking force": (
         "shaking force (N)",
         {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
     ),
 }
 _DASHES = (0, (5, 2))  # of every second curve, so that equal ones both show
-_PENS = ((COUPLER, "-"), (OUTPUT, _DASHES), (PATH, "-"), (TARGET, _DASHES))
+_PENS = (
+    *((COUPLER, "-"), (OUTPUT, _DASHES), (PATH, "-"), (TARGET, _DASHES)),
+    *((COUPLER_2, "-"), (OUTPUT_2, _DASHES), (DRIVER, "-"), (GROUND, _DASHES)),
+)
 _PEAK = 12.0  # a rate is drawn up to so many times its typical size, where it grows without bound
 
 

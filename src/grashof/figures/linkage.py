@@ -294,8 +294,9 @@ def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
         sweep = subject.sweep
         angles = np.array([np.radians(60) if sweep.turns else np.mean(sweep.ranges[0])])
     state = solve_position(subject.linkage, angles, assembly)
-    if theta2 is not None and np.isnan(state.theta3).any():
-        open_at = np.degrees(angles[np.isnan(state.theta3)][0])
+    open_ = np.isnan(sum(state.margins))
+    if theta2 is not None and open_.any():
+        open_at = np.degrees(angles[open_][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")
     return state
 

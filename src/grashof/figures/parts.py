@@ -27,7 +27,12 @@ from grashof.problems.values.linkages.mechanism import Mechanism
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
-COLOURS = {"driver": DRIVER, "coupler": COUPLER, **dict.fromkeys(("output", "slider", "block"), OUTPUT)}
+COUPLER_2, OUTPUT_2 = "#5b3fd6", "#6b3d00"
+COLOURS = {
+    "driver": DRIVER,
+    **{"coupler": COUPLER, **dict.fromkeys(("output", "slider", "block"), OUTPUT)},
+    **{"coupler-2": COUPLER_2, **dict.fromkeys(("output-2", "slider-2"), OUTPUT_2)},
+}
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
@@ -78,9 +83,9 @@ class Links:
         named: bool = True,
     ) -> None:
         self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
-        for names, look in _looks(kind, named):
+        for names, look in _looks(kind, points, named):
             self._drawn += [(names, line) for line in axes.plot(*_at(points, names).T, alpha=shade, **look)]
-        for names, look in _faces(kind):
+        for names, look in _faces(kind, points):
             face = axes.fill(*_at(points, names).T, linewidth=0, **look | {"alpha": look["alpha"] * shade})[0]
             self._drawn.append((names, face))
 
@@ -99,12 +104,14 @@ class Links:
                 artist.set_data(*corners.T)
 
 
-def _looks(kind: Mechanism, named: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _looks(
+    kind: Mechanism, points: Mapping[str, FloatArray], named: bool
+) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
     for link in sorted(kind.links[1:], key=lambda link: len(link.points)):
         label = f"{link.name} {'-'.join(link.labels)}" if named else None
         width = 2.4 if len(link.points) == 2 else 1.6
-        for names in _outlines(kind, link):
+        for names in _outlines(kind, link, points):
             yield names, {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
             label = None
     dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
@@ -113,27 +120,36 @@ def _looks(kind: Mechanism, named: bool) -> Iterator[tuple[tuple[str, ...], dict
     yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
 
 
-def _faces(kind: Mechanism) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
+def _faces(
+    kind: Mechanism, points: Mapping[str, FloatArray]
+) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
     """The corners of what is filled: plates, and blocks, which cover what is below."""
-    for link in kind.links:
+    for link in kind.links[1:]:
         if len(link.points) > 2:
-            yield _sides(link), {"color": COLOURS[link.name], "alpha": 0.1, "zorder": 3}
-    if kind.slides:
-        yield CORNERS, {"color": COLOURS[kind.links[-1].name], "alpha": 0.25, "zorder": 3}
+            yield _sides(link, points), {"color": COLOURS[link.name], "alpha": 0.1, "zorder": 3}
+    for _, block in kind.slides:
+        yield CORNERS, {"color": COLOURS[kind.links[block - 1].name], "alpha": 0.25, "zorder": 3}
 
 
-def _outlines(kind: Mechanism, link: Link) -> list[tuple[str, ...]]:
+def _outlines(kind: Mechanism, link: Link, points: Mapping[str, FloatArray]) -> list[tuple[str, ...]]:
     """The lines of a link: its bar or plate, its block and bar, or the rod that a block slides on."""
-    if not any(link.number in pair for pair in kind.slides):
-        return [_sides(link)]
-    if link.number == kind.links[-1].number:
-        return [CORNERS, link.points] if len(link.points) > 1 else [CORNERS]
-    return [ROD, ARM]
+    for rod, block in kind.slides:
+        if link.number == block:
+            return [CORNERS, link.points] if len(link.points) > 1 else [CORNERS]
+        if link.number == rod:
+            return [ROD, ARM]
+    return [_sides(link, points)]
 
 
-def _sides(link: Link) -> tuple[str, ...]:
-    """The ends of a bar, the corners of a plate all round."""
-    return link.points if len(link.points) == 2 else (*link.points, link.points[0])
+def _sides(link: Link, points: Mapping[str, FloatArray]) -> tuple[str, ...]:
+    """The ends of a bar, the corners of a plate all round: of many in an order that does not cross itself."""
+    if len(link.points) == 2:
+        return link.points
+    corners = list(link.points)
+    if len(corners) > 3:
+        middle = _at(points, corners).mean(axis=0)
+        corners.sort(key=lambda name: float(np.arctan2(*(points[name] - middle)[::-1])))
+    return (*corners, corners[0])
 
 
 def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:

@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from grashof.analysis import Position
-from grashof.problems import InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 # Of a block: half of its length in lengths of the driver, its width in that half.
 _HALF, _WIDE = 0.22, 0.6
@@ -33,24 +34,30 @@ def half_block(linkage: Linkage) -> float:
 
 def slide_points(linkage: Linkage, state: Position, travel: Travel) -> dict[str, FloatArray]:
     """Corners of the block and ends of the rod in N positions, by their names, each of shape (N, 2)."""
-    if isinstance(linkage, SliderCrank):
-        angle = np.broadcast_to(linkage.slide_angle, np.shape(state.theta2))
-        return _block(linkage, state.b, angle)
-    if isinstance(linkage, InvertedSliderCrank):
-        found = _block(linkage, state.b, state.theta3)
-        over, half = float(linkage.coupler_point[0]), half_block(linkage)
-        ends = np.stack(
-            [
-                np.minimum(state.travel, travel.low),
-                np.maximum(state.travel, travel.high),
-            ]
-        )
-        low = np.where(ends[0] < 0, ends[0] - half, 0.0)
-        high = np.where(ends[1] > 0, ends[1] + half, 0.0)
-        for name, far in (("rod1", np.minimum(low, over)), ("rod2", np.maximum(high, over)), ("foot", over)):
-            found[name] = state.a + _turned(far, 0.0, state.theta3)
-        return found
+    for (_, _, name), loop in zip(LOOP_POINTS, state.loops, strict=False):
+        if loop.dyad.row.kind is DyadKind.RRP:
+            angle, _ = _line(linkage)
+            return _block(linkage, state.point(name), np.broadcast_to(angle, np.shape(state.theta2)))
+        if loop.dyad.row.kind is DyadKind.RPR:
+            return _block(linkage, state.point(name), state.theta3) | _rod(linkage, state, travel)
     return {}
+
+
+def _rod(linkage: Linkage, state: Position, travel: Travel) -> dict[str, FloatArray]:
+    """Ends of the rod in every position, and the foot of P on it."""
+    over, half = float(linkage.coupler_point[0]), half_block(linkage)
+    ends = np.stack([np.minimum(state.travel, travel.low), np.maximum(state.travel, travel.high)])
+    low = np.where(ends[0] < 0, ends[0] - half, 0.0)
+    high = np.where(ends[1] > 0, ends[1] + half, 0.0)
+    places = {"rod1": np.minimum(low, over), "rod2": np.maximum(high, over), "foot": np.asarray(over)}
+    return {name: state.a + _turned(far, 0.0, state.theta3) for name, far in places.items()}
+
+
+def _line(linkage: Linkage) -> tuple[FloatArray, FloatArray]:
+    """Direction of a slide on the ground, and its distance from O2."""
+    slides = (row.name for row in linkage.mechanism.parameters if row.name.startswith("slide_angle"))
+    name = next(slides)
+    return getattr(linkage, name), getattr(linkage, name.replace("slide_angle", "offset"))
 
 
 def _block(linkage: Linkage, centre: FloatArray, angle: FloatArray) -> dict[str, FloatArray]:
@@ -67,10 +74,10 @@ def _turned(u: FloatArray | float, v: float, angle: FloatArray) -> FloatArray:
 
 def draw_guide(axes: Axes, linkage: Linkage, travel: Travel, look: Mapping[str, Any]) -> None:
     """The guide below the block of a slide on the ground, hatched on its far side."""
-    if not isinstance(linkage, SliderCrank):
+    if not any(1 in pair for pair in linkage.mechanism.slides):
         return
-    half = half_block(linkage)
-    below, angle = float(linkage.offset) - _WIDE * half, linkage.slide_angle
+    half, (angle, offset) = half_block(linkage), _line(linkage)
+    below = float(offset) - _WIDE * half
     first, last = travel.low - 1.5 * half, travel.high + 1.5 * half
     ends = np.array([first, last])
     axes.plot(*(linkage.o2 + _turned(ends, below, angle)).T, linewidth=1.6, **look)

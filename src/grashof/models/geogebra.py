@@ -11,47 +11,58 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.models.model import Model
 from grashof.models.xml import add
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems import Linkage
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the same linkage gives the same bytes
 _WINDOW = (600, 450)  # pixels
-_COLOURS = {"driver": (78, 120, 168), "coupler": (242, 142, 43), "output": (89, 161, 79)}
+_COLOURS = {
+    "driver": (78, 120, 168),
+    "coupler": (242, 142, 43),
+    "output": (89, 161, 79),
+    "coupler-2": (176, 122, 161),
+    "output-2": (118, 183, 178),
+}
 _GREY = 120, 120, 120
-
-# Points and numbers, each after those that it depends on, as GeoGebra writes formulas. Left of (x, y)
-# is (-y, x). In closed form, so that the assembly never changes.
-_CRANK = {"A": "O2 + r2 * (cos(t), sin(t))"}
-_STEPS: dict[type[Linkage], dict[str, str]] = {
-    # Norton, Design of Machinery, sec. 4.5: B on circles about A and O4.
-    FourBar: {  # closure: RRR
-        **_CRANK,
-        "d": "sqrt((x(O4) - x(A))^2 + (y(O4) - y(A))^2)",
-        "f": "(r3^2 - r4^2 + d^2) / (2 * d)",
-        "h": "s * sqrt(r3^2 - f^2)",
-        "B": "A + f / d * (x(O4) - x(A), y(O4) - y(A)) + h / d * (y(A) - y(O4), x(O4) - x(A))",
-        "e": "(x(B) - x(A)) / r3",
-        "g": "(y(B) - y(A)) / r3",
+# Points and numbers of a dyad from C over E to D, each after those that it depends on, as GeoGebra writes
+# formulas; m and n are its bars, e and g the direction of its first link. Left of (x, y) is (-y, x). In
+# closed form, so that the assembly never changes.
+_END = {"{e}": "(x({E}) - x({C})) / {m}", "{g}": "(y({E}) - y({C})) / {m}"}
+_STEPS = {
+    # Norton, Design of Machinery, sec. 4.5: E on circles about C and D.
+    DyadKind.RRR: {  # closure: RRR
+        "d{_}": "sqrt((x({D}) - x({C}))^2 + (y({D}) - y({C}))^2)",
+        "f{_}": "({m}^2 - {n}^2 + d{_}^2) / (2 * d{_})",
+        "h{_}": "s{_} * sqrt({m}^2 - f{_}^2)",
+        "{E}": (
+            "{C} + f{_} / d{_} * (x({D}) - x({C}), y({D}) - y({C}))"
+            " + h{_} / d{_} * (y({C}) - y({D}), x({D}) - x({C}))"
+        ),
+        **_END,
     },
-    # Sec. 4.6: h from A to the slide, to its left.
-    SliderCrank: {  # closure: RRP
-        **_CRANK,
-        "h": "c - ((y(A) - y(O2)) * cos(k) - (x(A) - x(O2)) * sin(k))",
-        "f": "s * sqrt(r3^2 - h^2)",
-        "B": "A + f * (cos(k), sin(k)) + h * (-sin(k), cos(k))",
-        "e": "(x(B) - x(A)) / r3",
-        "g": "(y(B) - y(A)) / r3",
+    # Sec. 4.6: h from C to the slide, to its left.
+    DyadKind.RRP: {  # closure: RRP
+        "h{_}": "c{_} - ((y({C}) - y(O2)) * cos(k{_}) - (x({C}) - x(O2)) * sin(k{_}))",
+        "f{_}": "s{_} * sqrt({m}^2 - h{_}^2)",
+        "{E}": "{C} + f{_} * (cos(k{_}), sin(k{_})) + h{_} * (-sin(k{_}), cos(k{_}))",
+        **_END,
     },
-    # Sec. 4.7: (f - i c) turned by the rod's angle is O4 - A.
-    InvertedSliderCrank: {  # closure: RPR
-        **_CRANK,
-        "d": "(x(O4) - x(A))^2 + (y(O4) - y(A))^2",
-        "f": "s * sqrt(d - c^2)",
-        "e": "((x(O4) - x(A)) * f - (y(O4) - y(A)) * c) / d",
-        "g": "((y(O4) - y(A)) * f + (x(O4) - x(A)) * c) / d",
-        "B": "A + f * (e, g)",
+    # Sec. 4.7: (f - i c) turned by the rod's angle is D - C.
+    DyadKind.RPR: {  # closure: RPR
+        "d{_}": "(x({D}) - x({C}))^2 + (y({D}) - y({C}))^2",
+        "f{_}": "s{_} * sqrt(d{_} - c{_}^2)",
+        "{e}": "((x({D}) - x({C})) * f{_} - (y({D}) - y({C})) * c{_}) / d{_}",
+        "{g}": "((y({D}) - y({C})) * f{_} + (x({D}) - x({C})) * c{_}) / d{_}",
+        "{E}": "{C} + f{_} * ({e}, {g})",
     },
 }
-_P = "A + u * (e, g) + v * (-g, e)"
+# Directions of their second links.
+_SECOND = {
+    DyadKind.RRR: ("(x({E}) - x({D})) / {n}", "(y({E}) - y({D})) / {n}"),
+    DyadKind.RRP: ("cos(k{_})", "sin(k{_})"),
+    DyadKind.RPR: ("-{g}", "{e}"),
+}
+_SHORT = {"offset": "c", "slide_angle": "k", "assembly": "s"}
 
 
 def geogebra(model: Model) -> bytes:
@@ -90,9 +101,8 @@ def worksheet(model: Model) -> str:
     for name in linkage.mechanism.ground:
         x, y = getattr(linkage, name).tolist()
         _point(made, name.upper(), f"({x!r}, {y!r})", fixed=True)
-    for name, formula in _STEPS[type(linkage)].items():
+    for name, formula in _formulas(linkage).items():
         (_point if name.isupper() else _number)(made, name, formula)
-    _point(made, "P", _P)
     for link in linkage.mechanism.links[1:]:
         for one, other in link.lines:
             _segment(made, link.name, one.upper(), other.upper())
@@ -106,10 +116,44 @@ def worksheet(model: Model) -> str:
 
 def _numbers(linkage: Linkage) -> dict[str, float]:
     """What the formulas need by their short names."""
-    names = {"r2": "r2", "r3": "r3", "r4": "r4", "c": "offset", "k": "slide_angle", "s": "assembly"}
-    found = {short: float(getattr(linkage, name)) for short, name in names.items() if hasattr(linkage, name)}
+    found = dict[str, float]()
+    for row, value in zip(linkage.mechanism.parameters, linkage.parameters, strict=True):
+        name = row.name.removesuffix("_2")
+        if row.kind == "arm" and row.name != "coupler_point":
+            found |= zip((f"u_{name.upper()}", f"v_{name.upper()}"), value.tolist(), strict=True)
+        elif name in _SHORT or row.kind == "length":
+            found[_SHORT.get(name, name) + row.name[len(name) :]] = float(value)
     u, v = linkage.coupler_point.tolist()
     return found | {"u": u, "v": v}
+
+
+def _formulas(linkage: Linkage) -> dict[str, str]:
+    """Points, and numbers for them, in an order in which each follows from those before it."""
+    kind = linkage.mechanism
+    found, turned = {"A": "O2 + r2 * (cos(t), sin(t))"}, {2: ("cos(t)", "sin(t)")}
+
+    def carried(link: int, u: str, v: str) -> str:
+        origin, (e, g) = kind.links[link - 1].labels[0], turned[link]
+        return f"{origin} + {u} * ({e}, {g}) + {v} * (-{g}, {e})"
+
+    for index, dyad in enumerate(kind.dyads):
+        first, second = 2 * index + 3, 2 * index + 4
+        c, d, e = (point.upper() for point in LOOP_POINTS[index])
+        for host, point in zip(dyad.hosts, (c, d), strict=True):
+            if host != 1 and point not in found:
+                found[point] = carried(host, f"u_{point}", f"v_{point}")
+        turned[first] = (f"e_{first}", f"g_{first}") if index else ("e", "g")
+        names = {"C": c, "D": d, "E": e, "m": f"r{first}", "n": f"r{second}", "_": "_2" if index else ""}
+        names |= zip("eg", turned[first], strict=True)
+        steps = {
+            name.format_map(names): formula.format_map(names) for name, formula in _STEPS[dyad.kind].items()
+        }
+        found |= steps
+        if second == kind.carries or any(second in other.hosts for other in kind.dyads):
+            turned[second] = (f"e_{second}", f"g_{second}")
+            formulas = (formula.format_map(names) for formula in _SECOND[dyad.kind])
+            found |= zip(turned[second], formulas, strict=True)
+    return found | {"P": carried(kind.carries, "u", "v")}
 
 
 def _angle(made: ET.Element, model: Model) -> None:
@@ -148,7 +192,7 @@ def _point(made: ET.Element, name: str, formula: str, *, fixed: bool = False) ->
 
 
 def _segment(made: ET.Element, link: str, one: str, other: str) -> None:
-    name = f"{link}_{{{one}{other}}}"
+    name = f"{link.replace('-', '')}_{{{one}{other}}}"  # no hyphen in a label
     command = add(made, "command", name="Segment")
     add(command, "input", a0=one, a1=other)
     add(command, "output", a0=name)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import cast
 
 import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.models.model import Model
 from grashof.models.xml import add
-from grashof.problems import InvertedSliderCrank, ProblemError, SliderCrank
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 _UNITS = {"mm": "Millimeters", "in": "Inches"}  # what the program shows
-_GUIDE = "guide start", "guide end"
 _LONGER = 0.1  # share of the travel that a guide is longer at each end
 _RPM = 15.0  # as the program has it
 
@@ -35,7 +34,7 @@ def linkage2(model: Model) -> str:
     Raises
     ------
     ProblemError
-        An inverted slider-crank: the program has no block that swings about a pivot.
+        The program has no block that swings about a pivot, and no slider that carries a point.
 
     Examples
     --------
@@ -44,16 +43,26 @@ def linkage2(model: Model) -> str:
     3
     """
     linkage, at = model.linkage, model.first
-    if isinstance(linkage, InvertedSliderCrank):
-        raise ProblemError(
-            "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
-        )
-    fixed = {name: getattr(linkage, name) for name in linkage.mechanism.ground}
-    links = {link.name: list(link.points) for link in linkage.mechanism.links[1:] if len(link.points) > 1}
-    if isinstance(linkage, SliderCrank):
-        fixed |= dict(zip(_GUIDE, _guide(model), strict=True))
-        links["guide"] = list(_GUIDE)
-    places = fixed | {name: getattr(at, name) for name in linkage.mechanism.moving}
+    kind = linkage.mechanism
+    fixed = {name: getattr(linkage, name) for name in kind.ground}
+    links = {link.name: link.points for link in kind.links[1:] if len(link.points) > 1}
+    guided = dict[str, tuple[str, str]]()
+    for index, dyad in enumerate(kind.dyads):
+        if dyad.kind is DyadKind.RPR:
+            raise ProblemError(
+                "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about "
+                "a pivot"
+            )
+        if dyad.kind is DyadKind.RRP:
+            slider, guide = kind.links[2 * index + 3], "guide" if index == 0 else f"guide-{index + 1}"
+            if slider.name in links:
+                raise ProblemError(
+                    f"--linkage2 cannot hold a {kind.word} with P on its {slider.name}: a slider of Linkage "
+                    "is a point"
+                )
+            links[guide] = guided[LOOP_POINTS[index][2]] = f"{guide} start", f"{guide} end"
+            fixed |= zip(links[guide], _guide(model, index), strict=True)
+    places = fixed | {name: getattr(at, name) for name in kind.moving}
     root = ET.Element("linkage2")
     shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
     add(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
@@ -64,10 +73,10 @@ def linkage2(model: Model) -> str:
         connector.attrib |= {"anchor": "true"} if name in fixed else {}
         connector.attrib |= {"input": "true", "rpm": repr(_rpm(model))} if name == "o2" else {}
         connector.attrib |= {"draw": "true"} if name == "p" else {}
-        if name == "b" and isinstance(linkage, SliderCrank):
+        if name in guided:
             connector.set("slider", "true")
-            for end in _GUIDE:
-                add(connector, "slidelimit", id=ids[end])
+        for end in guided.get(name, ()):
+            add(connector, "slidelimit", id=ids[end])
     for number, (name, joined) in enumerate(links.items()):
         link = add(root, "Link", id=str(number), name=name)
         for point in joined:
@@ -81,12 +90,13 @@ def _rpm(model: Model) -> float:
     return _RPM if dynamics is None else float(abs(dynamics.speed_rpm))
 
 
-def _guide(model: Model) -> FloatArray:
-    """Ends of a guide that is somewhat longer than the way of B, shape (2, 2)."""
+def _guide(model: Model, index: int) -> FloatArray:
+    """Ends of a guide that is somewhat longer than the way of the slider of a dyad, shape (2, 2)."""
     state = solve_position(model.linkage, np.linspace(model.low, model.high, 721))
-    travel = state.travel
+    travel = state.loops[index].travel
     low, high = float(np.nanmin(travel)), float(np.nanmax(travel))
     ends = np.array([low, high]) + _LONGER * (high - low) * np.array([-1, 1])
-    angle = float(cast(SliderCrank, model.linkage).slide_angle)
+    angle = float(getattr(model.linkage, f"slide_angle_{index + 1}" if index else "slide_angle"))
     along = np.array([np.cos(angle), np.sin(angle)])
-    return model.first.b + np.outer(ends - model.first.travel, along)
+    slider: FloatArray = getattr(model.first, LOOP_POINTS[index][2])
+    return slider + np.outer(ends - model.first.loops[index].travel, along)

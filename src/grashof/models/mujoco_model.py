@@ -1,25 +1,33 @@
-"""A linkage as a model for MuJoCo: a tree of bodies, and one equality that closes the loop."""
+"""A linkage as a model for MuJoCo: a tree of bodies, and an equality that closes each loop."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from itertools import combinations
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
+from grashof.models.frames import points_on
 from grashof.models.model import Model
 from grashof.models.xml import add
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.linkage_parts import Link
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 STEPS = 50_000  # in a turn of the driver: the loop then stays closed to a millionth of a radian
 _LIGHT = 1e-4  # share of the heaviest link: what a link without mass has, as MuJoCo wants some
 _LEAST = 1e-14  # kg, kg m^2: MuJoCo refuses less than 1e-15
 _STIFF = 30.0  # of the drive: its gain over what inertia and weight ask of it
 _THICK = 0.02  # of bars, as a share of the longest link
-_COLOURS = ("0.30 0.47 0.66 1", "0.95 0.56 0.17 1", "0.35 0.63 0.31 1")
+_COLOURS = (
+    "0.30 0.47 0.66 1",
+    "0.95 0.56 0.17 1",
+    "0.35 0.63 0.31 1",
+    "0.69 0.48 0.63 1",
+    "0.46 0.72 0.70 1",
+)
 
 
 class _Joint(NamedTuple):
@@ -31,15 +39,15 @@ class _Joint(NamedTuple):
     type: str = "hinge"
 
 
-class _Link(NamedTuple):
+class _Body(NamedTuple):
     """A link in the tree: its frame in that of its parent where the motion begins, and points on it."""
 
-    number: int
+    link: Link
+    parent: int
     place: FloatArray
     angle: float
     joint: _Joint
     points: dict[str, FloatArray]
-    children: tuple[_Link, ...] = ()
 
 
 class _Loop(NamedTuple):
@@ -53,9 +61,10 @@ class _Loop(NamedTuple):
 def mjcf(model: Model) -> str:
     """A model in MJCF: lengths in m, masses in kg, the motion in the x-y plane.
 
-    Coordinates are theta2 and theta4 (of a rod: theta3) from the x-axis, and the angle in A; of slides their
-    travel. The model stands assembled at the driver angle it begins from, and a drive turns it steadily.
-    Gravity and masses are those of the file, or bars of 1 kg/m; friction, springs and loads are left out.
+    Coordinates are the angles of links on the ground from the x-axis (of a block: theta4), those in A, C and
+    D of links on moving ones, and the travel of slides. The model stands assembled at the driver angle it
+    begins from, and a drive turns it steadily. Gravity and masses are those of the file, or bars of 1 kg/m;
+    friction, springs and loads are left out.
 
     Parameters
     ----------
@@ -81,14 +90,15 @@ def mjcf(model: Model) -> str:
     size = float(model.linkage.lengths.max()) * model.metre
     world = add(root, "worldbody")
     add(world, "light", pos=_numbers((0, 0, 5 * size)), dir="0 0 -1", directional="true")
-    trees, loop = _TREES[type(model.linkage)](model)
-    for link in trees:
-        _add(world, link, model, size)
-    names = {link.number: link.name for link in model.linkage.mechanism.links}
+    bodies, loops = _tree(model)
+    for body in bodies.values():
+        if body.parent == 1:
+            _add(world, body, bodies, model, size)
     closed = add(root, "equality")
     stiff = {"solref": _numbers((2 * turn / STEPS, 1)), "solimp": "0.9999 0.9999 0.001 0.5 2"}
-    ends = {"body1": names[loop.one], "body2": names[loop.other]}
-    add(closed, "connect", **ends, anchor=_numbers((*loop.anchor * model.metre, 0)), **stiff)
+    for loop in loops:
+        ends = {"body1": bodies[loop.one].link.name, "body2": bodies[loop.other].link.name}
+        add(closed, "connect", **ends, anchor=_numbers((*loop.anchor * model.metre, 0)), **stiff)
     gain = _gain(model, float(np.hypot(*gravity)))
     drive = {"gainprm": _number(gain), "biasprm": _numbers((gain * model.omega2, 0, -gain))}
     actuators = add(root, "actuator")
@@ -98,21 +108,21 @@ def mjcf(model: Model) -> str:
     return ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
+def _add(parent: ET.Element, link: _Body, bodies: dict[int, _Body], model: Model, size: float) -> None:
     """Add a link, and those that hang on it."""
-    metre, name = model.metre, model.linkage.mechanism.links[link.number - 1].name
+    metre, number = model.metre, link.link.number
     place = {"pos": _numbers((*link.place * metre, 0)), "euler": _numbers((0, 0, link.angle))}
-    body = add(parent, "body", name=name, **place)
+    body = add(parent, "body", name=link.link.name, **place)
     joint = link.joint
     ref = joint.value * (1 if joint.type == "hinge" else metre)
     add(body, "joint", name=joint.name, type=joint.type, axis=_numbers(joint.axis), ref=_number(ref))
-    mass = model.masses.of(link.number)
-    least = _LIGHT * max(float(model.masses.of(number).mass) for number in (2, 3, 4))
+    mass = model.masses.of(number)
+    least = _LIGHT * max(float(model.masses.of(each).mass) for each in bodies)
     inertia = _number(max(float(mass.inertia) * metre**2, least * (_THICK * size) ** 2, _LEAST))
     weight = _number(max(float(mass.mass), least, _LEAST))
     centre = _numbers((*mass.centre * metre, 0))
     add(body, "inertial", pos=centre, mass=weight, diaginertia=" ".join([inertia] * 3))
-    look = {"rgba": _COLOURS[link.number - 2], "contype": "0", "conaffinity": "0"}
+    look = {"rgba": _COLOURS[number - 2], "contype": "0", "conaffinity": "0"}
     thick = _number(_THICK * size)
     points = {"": np.zeros(2)} | link.points
     for one, other in combinations(points.values(), 2):
@@ -124,8 +134,9 @@ def _add(parent: ET.Element, link: _Link, model: Model, size: float) -> None:
         add(body, "geom", type="box", size=" ".join([_number(2 * _THICK * size)] * 3), **look)
     for point, at in link.points.items():
         add(body, "site", name=point, pos=_numbers((*at * metre, 0)), size=thick)
-    for child in link.children:
-        _add(body, child, model, size)
+    for child in bodies.values():
+        if child.parent == number:
+            _add(body, child, bodies, model, size)
 
 
 def _gain(model: Model, gravity: float) -> float:
@@ -133,55 +144,61 @@ def _gain(model: Model, gravity: float) -> float:
     furthest = max(float(model.linkage.lengths.max()), float(np.hypot(*model.linkage.coupler_point)))
     reach, speed = furthest * model.metre, abs(model.omega2)
     weight = float(model.masses.total)
-    turning = sum(float(model.masses.of(link).inertia) for link in (2, 3, 4)) * model.metre**2
+    moving = (link.number for link in model.linkage.mechanism.links[1:])
+    turning = sum(float(model.masses.of(number).inertia) for number in moving) * model.metre**2
     return _STIFF * ((weight * reach**2 + turning) * speed + weight * gravity * reach / speed)
 
 
-def _four_bar(model: Model) -> tuple[list[_Link], _Loop]:
-    linkage, at = cast(FourBar, model.linkage), model.first
-    driver = _crank(model, _coupler(model))
-    angle = float(at.theta4)
-    output = _Link(4, linkage.o4, angle, _Joint("O4", angle), {"B4": np.array([float(linkage.r4), 0.0])})
-    return [driver, output], _Loop(3, 4, np.array([float(linkage.r3), 0.0]))
+def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
+    """The bodies by the numbers of their links, and what closes each loop: in E, or of a rod in C.
+
+    The first link of a dyad hangs on the host of C, the second on that of D; a rod hangs on its block.
+    """
+    linkage, at, kind = model.linkage, model.first, model.linkage.mechanism
+    frames = {link.number: points_on(linkage, link) for link in kind.links}
+    angles = {1: 0.0, 2: model.start} | {
+        link.number: float(at.angles[link.number]) for link in kind.links[2:]
+    }
+    bodies, loops = dict[int, _Body](), list[_Loop]()
+
+    def hang(number: int, host: int, joint: str, points: dict[str, FloatArray]) -> None:
+        """Pin a link by its origin."""
+        link, angle = kind.links[number - 1], angles[number] - angles[host]
+        place = frames[host][link.points[0]]
+        bodies[number] = _Body(link, host, place, angle, _Joint(joint, angle), points)
+
+    hang(2, 1, "O2", _named(frames[2]))
+    for index, dyad in enumerate(kind.dyads):
+        first, second = 2 * index + 3, 2 * index + 4
+        c, d, e = LOOP_POINTS[index]
+        slide, travel = "slide" + (f"-{index + 1}" if index else ""), float(at.loops[index].travel)
+        ending = f"_{index + 1}" if index else ""
+        if dyad.kind is not DyadKind.RPR:
+            hang(first, dyad.hosts[0], c.upper(), _named(frames[first]))
+            loops.append(_Loop(first, second, frames[first][e]))
+        if dyad.kind is DyadKind.RRP:
+            angle = float(getattr(linkage, f"slide_angle{ending}"))
+            joint = _Joint(slide, travel, (1, 0, 0), "slide")
+            bodies[second] = _Body(
+                kind.links[second - 1], 1, getattr(at, e), angle, joint, _named(frames[second])
+            )
+        elif dyad.kind is DyadKind.RRR:
+            points = _named(frames[second])
+            points[f"{e.upper()}{second}"] = points.pop(e.upper())
+            hang(second, dyad.hosts[1], d.upper(), points)
+        else:
+            hang(second, dyad.hosts[1], d.upper(), {})
+            joint = _Joint(slide, travel, (-1, 0, 0), "slide")
+            points = _named(frames[first]) | {e.upper(): np.array([travel, 0.0])}
+            place = np.array([float(getattr(linkage, f"offset{ending}")), travel])
+            bodies[first] = _Body(kind.links[first - 1], second, place, -np.pi / 2, joint, points)
+            loops.append(_Loop(dyad.hosts[0], first, frames[dyad.hosts[0]][c]))
+    return bodies, loops
 
 
-def _slider_crank(model: Model) -> tuple[list[_Link], _Loop]:
-    linkage, at = cast(SliderCrank, model.linkage), model.first
-    slide = _Joint("slide", float(at.travel), (1, 0, 0), "slide")
-    slider = _Link(4, at.b, float(linkage.slide_angle), slide, {})
-    return [_crank(model, _coupler(model)), slider], _Loop(3, 4, np.array([float(linkage.r3), 0.0]))
-
-
-def _inverted(model: Model) -> tuple[list[_Link], _Loop]:
-    """The rod hangs on the block, and the loop closes in A."""
-    linkage, at = cast(InvertedSliderCrank, model.linkage), model.first
-    travel = float(at.travel)
-    slide = _Joint("slide", travel, (-1, 0, 0), "slide")
-    points = {"P": linkage.coupler_point, "B": np.array([travel, 0.0])}
-    rod = _Link(3, np.array([float(linkage.offset), travel]), -np.pi / 2, slide, points)
-    angle = float(at.theta4)
-    block = _Link(4, linkage.o4, angle, _Joint("O4", angle), {}, (rod,))
-    return [_crank(model), block], _Loop(2, 3, np.array([float(linkage.r2), 0.0]))
-
-
-def _crank(model: Model, *children: _Link) -> _Link:
-    linkage, angle = model.linkage, model.start
-    return _Link(
-        2, linkage.o2, angle, _Joint("O2", angle), {"A": np.array([float(linkage.r2), 0.0])}, children
-    )
-
-
-def _coupler(model: Model) -> _Link:
-    linkage, angle = cast(FourBar | SliderCrank, model.linkage), float(model.first.theta3 - model.start)
-    points = {"B": np.array([float(linkage.r3), 0.0]), "P": linkage.coupler_point}
-    return _Link(3, np.array([float(linkage.r2), 0.0]), angle, _Joint("A", angle), points)
-
-
-_TREES: dict[type[Linkage], Callable[[Model], tuple[list[_Link], _Loop]]] = {
-    FourBar: _four_bar,
-    SliderCrank: _slider_crank,
-    InvertedSliderCrank: _inverted,
-}
+def _named(frame: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """Points of a link but for its origin, as they are named in the model."""
+    return {name.upper(): at for name, at in list(frame.items())[1:]}
 
 
 def _number(value: float) -> str:

@@ -24,16 +24,23 @@ class Row(NamedTuple):
 def rows(model: Model) -> list[Row]:
     """The parameters as a sketch needs them: those of the linkage, and its angles where it begins.
 
-    Angles are in deg; the sign of the assembly is in the angles.
+    Angles are in deg; the signs of the assemblies are in the angles.
     """
     unit, linkage = model.spec.length_unit, model.linkage
+    kind = linkage.mechanism
+    left_out = {row.name for row in kind.parameters if row.kind == "sign"} | {
+        "body_angle_deg",
+        *linkage.choices,
+    }
     found = [
         Row(name, float(value), "deg" if name.endswith("_deg") else unit)
         for name, value in linkage.columns.items()
-        if name not in ("assembly", "body_angle_deg")
+        if name not in left_out
     ]
-    angles = {"theta2": model.start, "theta3": float(model.first.theta3), "theta4": float(model.first.theta4)}
-    return found + [Row(f"{name}_deg", math.degrees(angle), "deg") for name, angle in angles.items()]
+    angles = {2: model.start} | {
+        number: float(model.first.angles[number]) for number in range(3, len(kind.links) + 1)
+    }
+    return found + [Row(f"theta{number}_deg", math.degrees(angle), "deg") for number, angle in angles.items()]
 
 
 def solidworks(model: Model) -> str:

@@ -77,7 +77,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         spec=spec,
         report=report,
         dimensions=dimensions_text(spec),
-        links=legend([spec.linkage.mechanism.word], [spec.cylinder]),
+        links=legend([spec.linkage.mechanism], [spec.cylinder]),
         ranges=[f"{np.degrees(low):.6g} to {np.degrees(high):.6g} deg" for low, high in sweep.ranges],
         facts=_facts(fact for fact in report.facts if not fact.aside),
         aside=_facts(fact for fact in report.facts if fact.aside),

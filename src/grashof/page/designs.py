@@ -25,12 +25,13 @@ from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Prob
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.linkages.linkage import by_kind
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
 from grashof.synth import Candidate
 from grashof.synth.designs.table import Row
 
 STEPS = 180
+_STYLES = ("driver", "coupler", "output", "coupler-2", "output-2")  # of links 2, 3, ...
 _ROUNDING = 1e-12  # of a turn
 
 
@@ -88,19 +89,19 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     return Travel(low, high, False)
 
 
-def legend(kinds: Iterable[str], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
+def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
     """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
     Examples
     --------
-    >>> legend(["slider-crank"])
+    >>> from grashof.problems import SliderCrank
+    >>> legend([SliderCrank.mechanism])
     [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
     """
     found: dict[str, list[str]] = {}
-    every = list(kinds)
-    for style, index in (("driver", 1), ("coupler", 2), ("output", 3)):
-        links = [ONE_LOOP[kind].links[index] for kind in every]
-        found[style] = [f"{link.name} {'-'.join(link.labels)}" for link in links]
+    for link in (link for kind in kinds for link in kind.links[1:]):
+        name = f"{link.name} {'-'.join(link.labels)}"
+        found.setdefault(_STYLES[link.number - 2], []).append(name)
     words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
     return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
 

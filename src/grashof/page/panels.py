@@ -8,10 +8,11 @@ import numpy as np
 import pandas as pd
 
 from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.study.kinds import forces_of
+from grashof.study.kinds import forces_of, turning
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
 
+_MU = {"mu_deg": "μ", "mu_2_deg": "μ of loop 2"}
 # Of a plot: key, title, unit, and the columns with their labels.
 Panel = tuple[str, str, str, Mapping[str, str]]
 
@@ -59,11 +60,12 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
     speeds, accelerations = (
         {f"{name}_{size}": label for name, label in points.items()} for size in ("speed", "acceleration")
     )
-    every = ", ".join(points.values())
+    *others, last = points.values()
+    every, links = ", ".join(points.values()), turning(kind)
     motion: list[Panel] = [
-        ("angles", "angles", "deg", {"theta3_deg": "θ3", "theta4_deg": "θ4", "mu_deg": "μ"}),
-        ("angular-velocity", "angular velocity", "rad/s", {"omega3": "ω3", "omega4": "ω4"}),
-        ("angular-acceleration", "angular acceleration", "rad/s²", {"alpha3": "α3", "alpha4": "α4"}),
+        ("angles", "angles", "deg", {f"theta{n}_deg": f"θ{n}" for n in links} | _MU),
+        ("angular-velocity", "angular velocity", "rad/s", {f"omega{n}": f"ω{n}" for n in links}),
+        ("angular-acceleration", "angular acceleration", "rad/s²", {f"alpha{n}": f"α{n}" for n in links}),
         ("slide", "travel of the slide", unit, {"slide_travel": "travel"}),
         ("slide-velocity", "velocity of the slide", f"{unit}/s", {"slide_velocity": "velocity"}),
         (
@@ -103,7 +105,7 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
         ("motion", "Angles and velocities", motion),
         ("power", "Torque and power", power),
         ("forces", "Forces", forces),
-        ("points", "Points A, B and P", places),
+        ("points", f"Points {', '.join(others)} and {last}", places),
     ]
 
 

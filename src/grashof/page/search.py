@@ -15,6 +15,7 @@ from grashof.page.render import DRAWING, render
 from grashof.page.scene import loci_of, scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
@@ -60,6 +61,8 @@ def search_page(
     data = search_data(problem, designs, rows, found=bool(result.candidates))
     data["loci"] = loci_of(result)
     columns = [Column(**each) for each in data["columns"]]
+    kinds = list(dict.fromkeys(each.linkage.mechanism.word for each in designs))
+    cylinders = [each.verdict.cylinder for each in designs]
     return render(
         "search.html",
         _SCRIPTS,
@@ -83,8 +86,8 @@ def search_page(
         caution=any(row["caution"] for row in told),
         regions=len({row["region"] for row in told} - {""}) > 1,
         classes=sorted({row["grashof_class"] for row in rows}),
-        mechanisms=(kinds := list(dict.fromkeys(each.linkage.mechanism.word for each in designs))),
-        links=legend(kinds or problem.mechanism, (each.verdict.cylinder for each in designs)),
+        mechanisms=kinds,
+        links=legend(map(ONE_LOOP.__getitem__, kinds or problem.mechanism), cylinders),
         counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from grashof.problems import ProblemError
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, not_had
-from grashof.problems.values.requirements.quantities import TURNING
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, Mechanism
+from grashof.problems.values.linkages.mechanisms import not_had
 from grashof.sections.balancing import balancing
 from grashof.sections.coupler_plane import coupler_plane
 from grashof.sections.cylinder import cylinder
@@ -31,6 +31,7 @@ from grashof.sections.release import release
 from grashof.sections.strength import strength
 from grashof.sections.tolerance import tolerance
 from grashof.study.asked import ON_REQUEST
+from grashof.study.kinds import output_turns, plain
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
@@ -60,22 +61,22 @@ SECTIONS: tuple[Callable[[LinkageStudy], Section | None], ...] = (
     strength,
     pumping_unit,
 )
-# Those that only some kinds of linkages have, with the kinds and what asks for them.
-_ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[tuple[str, ...], str]] = {
-    newton_raphson: ((FOUR_BAR,), "newton-raphson"),
-    pumping_unit: ((FOUR_BAR,), ""),
-    mechanical_advantage: (TURNING, ""),
-    dwell_section: (TURNING, "dwell_deg"),
+# Those that only some kinds of linkages have, with which these are and what asks for them.
+_ONLY: dict[Callable[[LinkageStudy], Section | None], tuple[Callable[[Mechanism], bool], str]] = {
+    newton_raphson: (plain, "newton-raphson"),
+    pumping_unit: (plain, ""),
+    mechanical_advantage: (output_turns, ""),
+    dwell_section: (output_turns, "dwell_deg"),
 }
 
 
 def sections_of(study: LinkageStudy) -> tuple[Section, ...]:
     """The sections that a linkage has; `ProblemError` where one is asked for that its kind has not."""
-    kind, asked = study.linkage.mechanism.word, study.asked
+    kind, asked = study.linkage.mechanism, study.asked
     named = () if set(asked.sections) == set(ON_REQUEST) else asked.sections
-    suited = [make for make in SECTIONS if make not in _ONLY or kind in _ONLY[make][0]]
-    for make in SECTIONS:
-        kinds, word = _ONLY.get(make, ((), ""))
+    suited = [make for make in SECTIONS if make not in _ONLY or _ONLY[make][0](kind)]
+    for make, (have, word) in _ONLY.items():
         if make not in suited and (word in named or getattr(asked, word, None)):
-            raise ProblemError(not_had(word, (kind,), kinds))
+            kinds = [name for name, row in ONE_LOOP.items() if have(row)]
+            raise ProblemError(not_had(word, (kind.word,), kinds))
     return tuple(section for make in suited if (section := make(study)) is not None)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import Kinematics, centrodes, coupler_circles, solve_position
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.columns import Columns, curves, over_driver, table, track
 from grashof.study.section import Plot, Section
@@ -27,13 +28,11 @@ def coupler_plane(study: LinkageStudy) -> Section:
     far = np.hypot(columns["moving_u"], columns["moving_v"]) > reach
     fixed, moving = track(columns, "fixed"), track(columns, "moving", "uv")
     pivots = {name.upper(): np.array([getattr(linkage, name)]) for name in linkage.mechanism.ground}
-    frame = {"A": (0.0, 0.0)}
-    if "b" in linkage.mechanism.links[2].points:  # the B of an inverted slider-crank moves along its rod
-        frame["B"] = (float(linkage.lengths[linkage.mechanism.lengths.index("r3")]), 0.0)
-    frame["P"] = tuple(linkage.coupler_point.tolist())
+    # The B of an inverted slider-crank moves along its rod.
+    frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}
-    named = {name: np.array([place]) for name, place in frame.items()}
+    named = {name: place[None] for name, place in frame.items()}
     of_fixed, of_moving = (
         "fixed centrode: I13 in the frame",
         "moving centrode: I13 in the coupler, u along AB",
@@ -59,6 +58,13 @@ def _columns(study: LinkageStudy, state: Kinematics) -> Columns:
     }
 
 
+def _in_coupler(linkage: Linkage, name: str) -> FloatArray:
+    """A point of link 3 in its frame, shape (2,)."""
+    if name in ("a", "b"):
+        return np.array([0.0 if name == "a" else linkage.columns["r3"], 0.0], dtype=np.float64)
+    return np.asarray(getattr(linkage, "coupler_point" if name == "p" else name))
+
+
 def _angles(study: LinkageStudy) -> FloatArray:
     """The driver angles asked for; by default one. In rad."""
     if study.asked.at_deg:
@@ -78,9 +84,10 @@ def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
 
 
 def _circle_plot(study: LinkageStudy, circles: pd.DataFrame) -> Plot:
-    """The inflection circle and Bresse's at each angle, over the path of P."""
-    tracks = {"path of P": study.joined([state.p.position for state in study.states])}
-    points = {}
+    """The inflection circle and Bresse's at each angle, over the path of P where the coupler carries it."""
+    tracks, points = dict[str, FloatArray](), dict[str, FloatArray]()
+    if carried := "p" in study.linkage.mechanism.links[2].points:
+        tracks["path of P"] = study.joined([state.p.position for state in study.states])
     for row in circles.to_dict("records"):
         at, state = f"{row['theta2_deg']:g}°", solve_position(study.linkage, np.radians(row["theta2_deg"]))
         places = {
@@ -94,7 +101,8 @@ def _circle_plot(study: LinkageStudy, circles: pd.DataFrame) -> Plot:
         for name, label in (("pole", "I13"), ("acceleration_pole", "acceleration pole")):
             if np.isfinite(places[name]).all():
                 points[f"{label}, {at}"] = places[name][None]
-        points[f"P, {at}"] = state.p[None]
+        if carried:
+            points[f"P, {at}"] = state.p[None]
     title = "inflection circle and Bresse's circle"
     return Plot("inflection-circle", title, study.spec.unit, tracks, points=points)
 

@@ -23,7 +23,8 @@ def energy_section(study: LinkageStudy) -> Section | None:
     if masses is None:
         return None
     columns = over_driver(study, lambda state: _columns(state, masses, loads, study.metre**2))
-    kinetic = {f"link {n}": f"kinetic_{n}" for n in (2, 3, 4)} | {"together": "kinetic"}
+    numbers = [link.number for link in study.linkage.mechanism.links[1:]]
+    kinetic = {f"link {n}": f"kinetic_{n}" for n in numbers} | {"together": "kinetic"}
     whole = {"kinetic": "kinetic", "weights": "weights", "springs": "springs", "sum": "energy"}
     given = {"drive": "drive_power", "loads": "load_power", "friction": "friction_power"}
     for labels in (whole, given):  # lines of what is not there would only be in the way
@@ -44,7 +45,7 @@ def _columns(state: Kinematics, masses: Masses, loads: Loads, joule: float) -> C
     found, given = energies(state, masses, loads), powers(state, masses, loads)
     none = np.zeros(state.shape)
     return {
-        **{f"kinetic_{link}": found.kinetic[link - 2] * joule for link in (2, 3, 4)},
+        **{f"kinetic_{link}": each * joule for link, each in enumerate(found.kinetic, start=2)},
         "kinetic": found.kinetic.sum(axis=0) * joule,
         "weights": found.weight * joule + none,
         "springs": found.springs * joule + none,

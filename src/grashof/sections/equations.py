@@ -1,4 +1,4 @@
-"""The nine equations of inverse dynamics as a system: its matrix and solution at chosen driver angles."""
+"""The equations of inverse dynamics as a system: its matrix and solution at chosen driver angles."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _driver_angles(study: LinkageStudy) -> FloatArray:
 
 
 def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: float = 1.0) -> pd.DataFrame:
-    """Nine rows for each driver angle, shape (N,): an equation each, and beside it one of the unknowns.
+    """Three rows for each moving link and driver angle: an equation each, and beside it one of the unknowns.
 
     Parameters
     ----------
@@ -54,12 +54,13 @@ def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: flo
     metre : float
         The length unit in metres: arms are given in metres, forces in N.
     """
-    count, moment = len(theta2_deg), np.arange(9) % 3 == 2
+    count, rows = len(theta2_deg), len(system.equations)
+    moment = np.arange(rows) % 3 == 2
     forces = np.array([name.startswith("F") for name in system.unknowns])
     arms = np.where(moment, metre, 1.0)[:, None] * np.where(forces, 1.0, 1 / metre)
-    matrix = (system.matrix * arms + 0.0).reshape(-1, 9)
+    matrix = (system.matrix * arms + 0.0).reshape(-1, rows)
     columns: dict[str, object] = {
-        "theta2_deg": np.repeat(np.round(theta2_deg, 12), 9),
+        "theta2_deg": np.repeat(np.round(theta2_deg, 12), rows),
         "equation": list(system.equations) * count,
     }
     columns |= {name: matrix[:, index] for index, name in enumerate(system.unknowns)}

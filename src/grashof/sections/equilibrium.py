@@ -40,7 +40,7 @@ def _rows(study: LinkageStudy, found: Equilibria) -> pd.DataFrame:
         period = 1 / frequency
     return pd.DataFrame({
         "theta2_deg": np.degrees(found.theta2).round(9),
-        "theta4_deg": np.degrees(state.theta4),
+        **{f"theta{link}_deg": np.degrees(state.angles[link]) for link in _shown(study)},
         "p_x": state.p[:, 0],
         "p_y": state.p[:, 1],
         "stable": found.stiffness > 0,
@@ -49,6 +49,11 @@ def _rows(study: LinkageStudy, found: Equilibria) -> pd.DataFrame:
         "frequency_hz": frequency,
         "period_s": period,
     })  # fmt: skip
+
+
+def _shown(study: LinkageStudy) -> tuple[int, ...]:
+    """The second links of all dyads."""
+    return tuple(link.number for link in study.linkage.mechanism.links[3::2])
 
 
 def _facts(table: pd.DataFrame) -> Iterator[Fact]:

@@ -1,4 +1,4 @@
-"""Velocity and acceleration of P as tracks in a plane, and the jerk of P and of links 3 and 4."""
+"""Velocity and acceleration of P as tracks in a plane, and the jerk of P and of all driven links."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from grashof.study.turn import degrees, turn_extremes, varies
 
 
 def hodographs(study: LinkageStudy) -> Section:
-    """Hodographs of P, its jerk, and the angular jerk of links 3 and 4."""
+    """Hodographs of P, its jerk, and the angular jerk of the links after the driver."""
     columns, unit = over_driver(study, _motion), study.spec.unit
+    of_links = {f"link {link.number}": f"jerk{link.number}" for link in study.linkage.mechanism.links[2:]}
     of_p = {"x": "p_jerk_x", "y": "p_jerk_y", "size": "p_jerk"}
     plots = (
         _hodograph(columns, "velocity", f"{unit}/s"),
         _hodograph(columns, "acceleration", f"{unit}/s²"),
         curves(columns, "jerk-of-p", "jerk of P", f"{unit}/s³", of_p),
-        curves(columns, "angular-jerk", "angular jerk", "rad/s³", {"link 3": "jerk3", "link 4": "jerk4"}),
+        curves(columns, "angular-jerk", "angular jerk", "rad/s³", of_links),
     )
     kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
     return Section("hodographs", "Hodographs and jerk", tuple(_facts(study)), {"jerk": table(kept)}, plots)
@@ -32,15 +33,14 @@ def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:
 
 
 def _motion(state: Kinematics) -> Columns:
-    p = state.p
+    p, links = state.p, state.linkage.mechanism.links[2:]
     return {
         "p_velocity": p.velocity,
         "p_acceleration": p.acceleration,
         "p_jerk_x": p.jerk[:, 0],
         "p_jerk_y": p.jerk[:, 1],
         "p_jerk": np.hypot(p.jerk[:, 0], p.jerk[:, 1]),
-        "jerk3": state.jerk3 + np.zeros(state.shape),
-        "jerk4": state.jerk4 + np.zeros(state.shape),
+        **{f"jerk{link.number}": state.angular(link.number).jerk + np.zeros(state.shape) for link in links},
     }
 
 

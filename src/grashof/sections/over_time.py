@@ -6,6 +6,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.history import TIME, History
+from grashof.study.kinds import turning
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.samples import Samples
 from grashof.study.section import Fact, Plot, Section
@@ -35,7 +36,7 @@ def over_time(study: LinkageStudy) -> Section | None:
 
 def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
     samples, unit = Samples.over_time(study, history), study.spec.unit
-    moving = study.linkage.mechanism.moving
+    moving, links = study.linkage.mechanism.moving, turning(study.linkage.mechanism)
     speeds, accelerations = (
         {name.upper(): f"{name}_{size}" for name in moving} for size in ("speed", "acceleration")
     )
@@ -43,9 +44,9 @@ def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]
     driver = Plot("theta2-over-time", "driver angle theta2 over time", "deg", {"theta2": wrapped}, time, TIME)
     rows = [
         ("theta2-total", "driver angle, counted on", "deg", {"theta2": "theta2_total_deg"}),
-        ("angles", "angles", "deg", {"theta3": "theta3_deg", "theta4": "theta4_deg"}),
-        ("angular-velocity", "angular velocity", "rad/s", {"omega3": "omega3", "omega4": "omega4"}),
-        ("angular-acceleration", "angular acceleration", "rad/s²", {"alpha3": "alpha3", "alpha4": "alpha4"}),
+        ("angles", "angles", "deg", {f"theta{n}": f"theta{n}_deg" for n in links}),
+        ("angular-velocity", "angular velocity", "rad/s", {f"omega{n}": f"omega{n}" for n in links}),
+        ("angular-acceleration", "angular acceleration", "rad/s²", {f"alpha{n}": f"alpha{n}" for n in links}),
         ("slide", "travel of the slide", unit, {"travel": "slide_travel"}),
         ("slide-velocity", "velocity of the slide", f"{unit}/s", {"velocity": "slide_velocity"}),
         ("p-place", "place of P", unit, {"x": "p_x", "y": "p_y"}),

@@ -10,9 +10,6 @@ from grashof.study.columns import Columns, over_driver, table, tracks
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 
-# By the links of a joint: the force on the second of them, as `Dynamics` names it.
-_ON_SECOND = {(1, 2): ("f12", 1.0), (2, 3): ("f32", -1.0), (3, 4): ("f43", -1.0), (1, 4): ("f14", 1.0)}
-
 
 def pin_forces(study: LinkageStudy) -> Section | None:
     """Polar plots of the joint forces: in global axes, and in the frame of each link."""
@@ -36,22 +33,17 @@ def pin_forces(study: LinkageStudy) -> Section | None:
 
 def _forces(state: Kinematics, found: Dynamics, metre: float) -> Columns:
     columns: dict[str, FloatArray] = {}
-    for joint, links in state.linkage.mechanism.joints.items():
-        columns[joint] = _on(found, links, links[1]) * metre
-        for link in links:
-            if link != 1:
-                turned = _in_frame(_on(found, links, link), getattr(state, f"theta{link}")) * metre
-                columns |= {
-                    f"{joint}_on_{link}_{axis}": part for axis, part in zip("uv", turned.T, strict=True)
-                }
+    kind = state.linkage.mechanism
+    numbers = {joint.links: number for number, joint in enumerate(kind.every_joint)}
+    for joint, links in kind.joints.items():
+        # On the first link, of the ground on the second.
+        force = found.forces[numbers[links]] * metre
+        on = {links[0]: force, links[1]: -force} if links[0] != 1 else {links[1]: force}
+        columns[joint] = on[links[1]]
+        for link, each in on.items():
+            turned = _in_frame(each, state.angular(link).theta)
+            columns |= {f"{joint}_on_{link}_{axis}": part for axis, part in zip("uv", turned.T, strict=True)}
     return columns
-
-
-def _on(found: Dynamics, links: tuple[int, ...], link: int) -> FloatArray:
-    """The force on one of two links in the joint that joins them, in global axes."""
-    name, sign = _ON_SECOND[links[0], links[1]]
-    force: FloatArray = getattr(found, name)
-    return force * (sign if link == links[1] else -sign)
 
 
 def _in_frame(force: FloatArray, theta: FloatArray) -> FloatArray:

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pandas as pd
 
 from grashof.analysis import Kinematics, solve_position
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS, Mechanism
 from grashof.sections.mass_centres import centres_of
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
 _SMALL = ("_x", "_y")
-# Through which points the links are drawn; with a gap at "".
-_BARS = {
-    FOUR_BAR: ("o2", "a", "b", "o4", "", "a", "p", "b"),
-    SLIDER_CRANK: ("o2", "a", "b", "", "a", "p", "b"),
-    INVERTED: ("o2", "a", "b", "o4", "", "a", "p"),
-}
 
 
 def positions(study: LinkageStudy) -> Section | None:
@@ -52,13 +48,27 @@ def _drawing(study: LinkageStudy, state: Kinematics) -> Plot:
     p = places["p"]
     places |= {name: np.broadcast_to(getattr(linkage, name), p.shape) for name in linkage.mechanism.ground}
     gap = np.full(p.shape, np.nan)
-    bars = np.stack([places.get(name, gap) for name in _BARS[linkage.mechanism.word]], axis=1)
+    bars = np.stack([places.get(name, gap) for name in _bars(linkage.mechanism)], axis=1)
     labels = [f"theta2 = {angle:.6g} deg" for angle in study.asked.at_deg]
     series: dict[str, FloatArray] = {"path of P": _path(study)}
     series |= {label: bars[number] for number, label in enumerate(labels)}
     pivots = {name.upper(): getattr(linkage, name)[None] for name in linkage.mechanism.ground}
     title = "the linkage at chosen driver angles"
     return Plot("positions", title, study.spec.unit, series, points={**pivots, "P": p})
+
+
+def _bars(kind: Mechanism) -> list[str]:
+    """Through which points the links are drawn, with a gap at "": the loops, then what links have beside."""
+    drawn = ["o2"]
+    for c, d, e in LOOP_POINTS[: len(kind.dyads)]:
+        drawn += [*([""] if len(drawn) > 1 else []), c, e, *([d] if d in kind.points else [])]
+    pairs = {frozenset(pair) for pair in pairwise(drawn)}
+    for first, *others in (link.points for link in kind.links[1:]):
+        if len(others) > 1:
+            drawn += ["", first, *others[1:], others[0]]
+        elif others and frozenset((first, *others)) not in pairs:
+            drawn += ["", first, *others]
+    return drawn
 
 
 def _path(study: LinkageStudy) -> FloatArray:

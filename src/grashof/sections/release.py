@@ -42,8 +42,10 @@ def release(study: LinkageStudy) -> Section | None:
         "theta2_deg": theta2,
         "omega2": state.omega2,
         "alpha2": state.alpha2,
-        "theta3_deg": np.degrees(np.unwrap(state.theta3)),
-        "theta4_deg": np.degrees(np.unwrap(state.theta4)),
+        **{
+            f"theta{link.number}_deg": np.degrees(np.unwrap(state.angular(link.number).theta))
+            for link in study.linkage.mechanism.links[2:]
+        },
         "p_x": p[:, 0],
         "p_y": p[:, 1],
         "kinetic": parts.kinetic.sum(axis=0) * joule,

@@ -11,33 +11,36 @@ from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
 from grashof.study.columns import Columns, curves, over_driver, table
-from grashof.study.kinds import turning
+from grashof.study.kinds import output_turns
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
 
+_SAME = 1e-12  # share by which rounding may tell equal moves apart
 _ALL = {"worst": "worst senses", "rms": "root of the sum of squares"}
 
 
 def tolerance(study: LinkageStudy) -> Section | None:
-    """Moves of P and of link 4 over the driver angle; None unless a tolerance is asked for."""
+    """Moves of P and of the output link over the driver angle; None unless a tolerance is asked for."""
     if study.asked.tolerance is None:
         return None
     off = number_within(positive_number(study.asked.tolerance, "tolerance"), 0.0, GREATEST, "tolerance")
     unit = study.spec.unit
     columns = over_driver(study, lambda state: _columns(state, off))
     each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
-    turns = {dimension: f"theta4_{dimension}_deg" for dimension in _of_loop(study.linkage)}
+    output = study.linkage.mechanism.links[-1].number
+    turns = {dimension: f"theta{output}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
     whole = {"worst": "p_worst", "root of squares": "p_rms"}
-    turned = {"worst": "theta4_worst_deg", "root of squares": "theta4_rms_deg"}
+    turned = {"worst": f"theta{output}_worst_deg", "root of squares": f"theta{output}_rms_deg"}
     plots: tuple[Plot, ...] = (
         curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
         curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, whole),
     )
-    if _turns(study.linkage):
+    if output_turns(study.linkage.mechanism):
+        key, what = f"tolerance-of-theta{output}", f"turn of link {output}"
         plots += (
-            curves(columns, "tolerance-of-theta4", "turn of link 4, one dimension off", "deg", turns),
-            curves(columns, "tolerance-of-theta4-all", "turn of link 4, all dimensions off", "deg", turned),
+            curves(columns, key, f"{what}, one dimension off", "deg", turns),
+            curves(columns, f"{key}-all", f"{what}, all dimensions off", "deg", turned),
         )
     facts = (Fact("tolerance", "each dimension is off by", off, unit), *_facts(study, off))
     notes = ("the driver angle is held; moves are linear in the tolerance, without limit in dead positions",)
@@ -50,25 +53,22 @@ def _columns(state: Kinematics, off: float) -> Columns:
         f"p_{dimension}": found.point[:, k] for k, dimension in enumerate(state.linkage.mechanism.dimensions)
     }
     columns |= {"p_worst": found.point_worst, "p_rms": found.point_rms}
-    if not _turns(state.linkage):
+    if not output_turns(state.linkage.mechanism):
         return columns
+    theta = f"theta{state.linkage.mechanism.links[-1].number}"
     columns |= {
-        f"theta4_{dimension}_deg": np.degrees(found.theta4[:, k])
-        for k, dimension in enumerate(_of_loop(state.linkage))
+        f"{theta}_{dimension}_deg": np.degrees(found.theta4[:, k])
+        for k, dimension in enumerate(_of_loops(state.linkage))
     }
     return columns | {
-        "theta4_worst_deg": np.degrees(found.theta4_worst),
-        "theta4_rms_deg": np.degrees(found.theta4_rms),
+        f"{theta}_worst_deg": np.degrees(found.theta4_worst),
+        f"{theta}_rms_deg": np.degrees(found.theta4_rms),
     }
 
 
-def _of_loop(linkage: Linkage) -> tuple[str, ...]:
-    """The dimensions that turn link 4: all but the place of P; they come first."""
+def _of_loops(linkage: Linkage) -> tuple[str, ...]:
+    """The dimensions that turn the links: all but the place of P; they come first."""
     return tuple(name for name in linkage.mechanism.dimensions if name not in ("u", "v"))
-
-
-def _turns(linkage: Linkage) -> bool:
-    return 4 in turning(linkage.mechanism)
 
 
 def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
@@ -82,8 +82,9 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
 
     values, places = turn_peaks(study, rows)
     what = [("p", "P", study.spec.unit, 1.0)]
-    if _turns(study.linkage):
-        what.append(("theta4", "link 4", "deg", 180 / np.pi))
+    if output_turns(study.linkage.mechanism):
+        output = study.linkage.mechanism.links[-1].number
+        what.append((f"theta{output}", f"link {output}", "deg", 180 / np.pi))
     for k, (key, part, unit, scale) in enumerate(what):
         for j, (name, how) in enumerate(_ALL.items()):
             label = f"largest {'move' if key == 'p' else 'turn'} of {part}, all off: {how}"
@@ -92,7 +93,7 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
             if name == "worst":
                 at = degrees(float(places[2 * k]))
                 yield Fact(f"tolerance_{key}_worst_theta2_deg", f"{label}, at theta2", at, "deg")
-    most = int(np.argmax(values[4:]))
+    most = int(np.argmax(values[4:] >= (1 - _SAME) * values[4:].max()))  # of equals the first
     label = "dimension that moves P most"
     yield Fact("tolerance_dimension", label, study.linkage.mechanism.dimensions[most])
     yield Fact("tolerance_dimension_move", f"{label}: by", float(values[4 + most]), study.spec.unit)

@@ -6,31 +6,25 @@ import numpy as np
 
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import DyadKind, Mechanism
 
-# The two shares of `rotatability`, in words; empty where one of them says nothing.
+# Of the first dyad the two shares of `rotatability`, in words; empty where one of them says nothing.
 SHARES = {
-    FOUR_BAR: ("(r3 + r4 - r1 - r2) / sum", "(|r1 - r2| - |r3 - r4|) / sum"),
-    SLIDER_CRANK: ("(r3 - r2 - offset) / sum", "(r3 - r2 + offset) / sum"),
-    INVERTED: ("", "(|r1 - r2| - |offset|) / sum"),
+    DyadKind.RRR: ("(r3 + r4 - r1 - r2) / sum", "(|r1 - r2| - |r3 - r4|) / sum"),
+    DyadKind.RRP: ("(r3 - r2 - offset) / sum", "(r3 - r2 + offset) / sum"),
+    DyadKind.RPR: ("", "(|r1 - r2| - |offset|) / sum"),
 }
+_IN_LINE = {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"}
 # In which two positions link 4 turns back, by keys.
 LIMIT_POSITIONS = {
-    FOUR_BAR: {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"},
-    SLIDER_CRANK: {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"},
-    INVERTED: {"left": "2 square to the rod, to its left", "right": "2 square to the rod, to its right"},
+    DyadKind.RRR: _IN_LINE,
+    DyadKind.RRP: _IN_LINE,
+    DyadKind.RPR: {"left": "2 square to the rod, to its left", "right": "2 square to the rod, to its right"},
 }
-
-
-def joints_with_forces(kind: Mechanism) -> dict[str, tuple[int, int]]:
-    """The joints in which links press on each other, slides among them, with the numbers of the links."""
-    pins = {name.upper(): links for name, links in kind.joints.items()}
-    return pins | ({"slide": kind.slides[0]} if kind.slides else {})
 
 
 def forces_of(kind: Mechanism) -> dict[str, str]:
-    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in.
+    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in, slides last.
 
     Examples
     --------
@@ -40,10 +34,24 @@ def forces_of(kind: Mechanism) -> dict[str, str]:
     >>> forces_of(SliderCrank.mechanism)
     {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'slide'}
     """
-    return {
-        f"f1{other}" if one == 1 else f"f{other}{one}": joint
-        for joint, (one, other) in joints_with_forces(kind).items()
-    }
+    every = sorted(kind.every_joint, key=lambda joint: joint.slides)
+    return {force_key(joint.links): "slide" if joint.slides else joint.name for joint in every}
+
+
+def force_key(links: tuple[int, int]) -> str:
+    """Key of the force in the joint of two links: on the first by the second, on this by the ground."""
+    one, other = links
+    return f"f1{other}" if one == 1 else f"f{other}{one}"
+
+
+def plain(kind: Mechanism) -> bool:
+    """Whether it is a four-bar: one loop, of pins alone."""
+    return len(kind.dyads) == 1 and not kind.slides
+
+
+def output_turns(kind: Mechanism) -> bool:
+    """Whether the last link turns."""
+    return kind.links[-1].number in turning(kind)
 
 
 def turning(kind: Mechanism) -> dict[int, str]:

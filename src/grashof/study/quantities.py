@@ -19,7 +19,7 @@ from grashof.analysis import (
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.kinds import forces_of, turning
+from grashof.study.kinds import force_key, forces_of, turning
 from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
@@ -42,6 +42,8 @@ class Quantity:
         It follows from the position alone, and stays finite towards a dead position.
     never_negative : bool
         It is the size of something.
+    mu_of : int, optional
+        It is the transmission angle of this loop.
     """
 
     key: str
@@ -51,6 +53,7 @@ class Quantity:
     period: float | None = None
     position: bool = False
     never_negative: bool = False
+    mu_of: int | None = None
 
 
 def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
@@ -61,7 +64,7 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         Quantity(f"theta{n}_deg", f"angle of {name} {n}", "deg", _degrees(f"theta{n}"), 360.0, position=True)
         for n, name in driven.items()
     ]
-    found.append(Quantity("mu_deg", "transmission angle mu", "deg", _mu, position=True))
+    found += [_transmission(loop) for loop in range(1, len(kind.dyads) + 1)]
     found += [
         Quantity(f"{key}{n}", f"angular {rate} of {n}", per, attrgetter(f"{key}{n}"))
         for key, rate, per in (("omega", "velocity", "rad/s"), ("alpha", "acceleration", "rad/s2"))
@@ -116,14 +119,18 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
     def of(name: str) -> Curve:
         return _part_of(solved, name)
 
+    def force(joint: int) -> Curve:
+        return lambda s: np.asarray(solved(s).forces[joint])
+
     def moment(key: str, label: str, unit: str) -> Quantity:
         return Quantity(key, label, unit, lambda s: of(key)(s) * metre**2)
 
     found = [moment("torque", "drive torque", "N m"), moment("power", "drive power", "W")]
     kind = study.linkage.mechanism
+    numbers = {force_key(joint.links): number for number, joint in enumerate(kind.every_joint)}
     for key, joint in forces_of(kind).items():
         labels = (f"force {key.upper()} in {joint}", f"joint force in {joint}")
-        found += _vector((key, key), labels, "N", of(key), metre)
+        found += _vector((key, key), labels, "N", force(numbers[key]), metre)
     if kind.slides:
         across = of("slide_force")
         found.append(Quantity("slide_force", "force across the slide", "N", lambda s: across(s) * metre))
@@ -161,9 +168,16 @@ def _degrees(angle: str) -> Curve:
     return lambda s: np.degrees(getattr(s, angle))
 
 
-def _mu(state: Kinematics) -> FloatArray:
-    mu = transmission_angle(state.linkage, state.theta2)
-    return np.degrees(np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu))
+def _transmission(loop: int) -> Quantity:
+    """The transmission angle of a loop."""
+    ending, where = ("", "") if loop == 1 else (f"_{loop}", f" of loop {loop}")
+
+    def values(state: Kinematics) -> FloatArray:
+        mu = transmission_angle(state.linkage, state.theta2, loop)
+        return np.degrees(np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu))
+
+    label = f"transmission angle mu{where}"
+    return Quantity(f"mu{ending}_deg", label, "deg", values, position=True, mu_of=loop)
 
 
 def _ratio(state: Kinematics) -> FloatArray:

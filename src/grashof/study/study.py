@@ -12,6 +12,7 @@ from grashof.problems import FourBar, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.linkages.mechanisms import as_kind
 from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import Sweep
 
@@ -54,9 +55,9 @@ class LinkageStudy:
     @property
     def four_bar(self) -> FourBar:
         """The linkage as a four-bar; `ProblemError` where it is none."""
-        if not isinstance(self.linkage, FourBar):
+        if (four_bar := as_kind(self.linkage, FourBar)) is None:
             raise ProblemError(f"{self.spec.name} is a {self.linkage.mechanism.word}; it must be a four-bar")
-        return self.linkage
+        return four_bar
 
     @property
     def masses(self) -> Masses | None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from grashof.analysis import (
     DriverLaw,
@@ -21,6 +22,8 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
+from grashof.analysis.mechanism.second_loop import cut, lifted
+from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
@@ -152,12 +155,24 @@ def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:
         if np.isnan(low):
             continue
         low, high = dead_ends(linkage, low, high)
-        # At a change point dead positions lie inside a range too, on the ground line.
+        # At a change point dead positions lie inside a range too, of the first loop on the ground line.
         inside = float(linkage.theta1) + np.pi * np.arange(-1, 4)
-        sine = np.sin(transmission_angle(linkage, inside))
-        dead = (inside > low + 1e-9) & (inside < high - 1e-9) & ~(np.abs(sine) > _DEAD)
-        ends = [low, *inside[dead].tolist(), high]
+        inside = inside[~(np.abs(np.sin(transmission_angle(linkage, inside))) > _DEAD)]
+        inside = np.unique([*inside, *inner_dead_positions(linkage, low, high)])
+        ends = [low, *inside[(inside > low + 1e-9) & (inside < high - 1e-9)].tolist(), high]
         yield from ((start, end) for start, end in pairwise(ends) if end - start > 4 * INSET)
+
+
+def inner_dead_positions(linkage: Linkage, low: float, high: float) -> FloatArray:
+    """Driver angles between two at which a second loop is dead and closes again, shape (K,), rad."""
+    return lifted(cut(linkage).touched, low, high) if len(linkage.mechanism.dyads) > 1 else np.zeros(0)
+
+
+def least_quality(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
+    """The least `quality` of the transmission angles of all loops, shape (...), rad."""
+    loops = range(1, len(linkage.mechanism.dyads) + 1)
+    every = [quality(transmission_angle(linkage, theta2, loop)) for loop in loops]
+    return np.asarray(np.min(every, axis=0))
 
 
 @contextmanager

@@ -7,13 +7,12 @@ from enum import Enum
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from grashof.analysis import rotatability, transmission_angle
-from grashof.analysis.loops.loop import CHANGE
-from grashof.analysis.mechanism.transmission import quality
+from grashof.analysis import rotatability
+from grashof.analysis.mechanism.first_loop import CHANGE
 from grashof.analysis.numerics.quadrature import Curve, held
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.sweep import INSET
+from grashof.study.sweep import INSET, inner_dead_positions, least_quality
 
 _ALONG = 1e-6  # half turns
 _DEAD = 1e-6  # rad
@@ -38,7 +37,9 @@ def end_of(linkage: Linkage, limit: float) -> End:
     near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0
     if near and abs(rotatability(linkage)[1 if folded else 0]) <= CHANGE:
         return End.CHANGE
-    return End.DEAD if quality(transmission_angle(linkage, limit)) < _DEAD else End.OPEN
+    if np.any(np.abs(inner_dead_positions(linkage, limit - 1, limit + 1) - limit) < _ALONG):
+        return End.CHANGE
+    return End.DEAD if least_quality(linkage, limit) < _DEAD else End.OPEN
 
 
 def towards_dead(curve: Curve, limit: float, near: float, value: float) -> float:

@@ -13,17 +13,15 @@ from grashof.analysis import (
     Kinematics,
     even_motion,
     solve_kinematics,
-    transmission_angle,
     transmission_extremes,
 )
 from grashof.analysis.mechanism.even_motion import EvenMotion
 from grashof.analysis.mechanism.extremes import counted_on, dense_places, refined
-from grashof.analysis.mechanism.transmission import quality
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.quantities import Quantity
-from grashof.study.sweep import INSET, Sweep
+from grashof.study.sweep import INSET, Sweep, least_quality
 from grashof.survey.ends import End, end_of, rounding_of, towards_change, towards_dead
 
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
@@ -167,8 +165,9 @@ def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, 
 
 
 def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | None:
-    if quantity.key == "mu_deg":
-        mu = transmission_extremes(part.whole.sweep.spec.linkage, part.low, part.high)
+    if quantity.mu_of is not None:
+        linkage = part.whole.sweep.spec.linkage
+        mu = transmission_extremes(linkage, part.low, part.high, quantity.mu_of)
         return Extremes(float(np.degrees(mu.low)), float(np.degrees(mu.high)), mu.at_low, mu.at_high)
     if not (quantity.position or part.law.motor.steady):
         return _of_uneven_drive(part, quantity)
@@ -185,7 +184,7 @@ def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | N
 def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
     """The extremes of a rate; near a dead position rounding of the driver angle takes digits away."""
     linkage, places = part.whole.sweep.spec.linkage, [found.at_low, found.at_high]
-    ways = quality(transmission_angle(linkage, places)).tolist()
+    ways = least_quality(linkage, np.array(places)).tolist()
     if min(ways) >= _NEARLY_DEAD:
         return found
     low, high = found.low, found.high

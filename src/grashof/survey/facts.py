@@ -28,8 +28,8 @@ from grashof.analysis.mechanism.means import mean_in_time
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SLIDER_CRANK
-from grashof.study.kinds import LIMIT_POSITIONS, SHARES, turning
+from grashof.problems.values.linkages.mechanisms import as_kind
+from grashof.study.kinds import LIMIT_POSITIONS, SHARES, output_turns, plain, turning
 from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
@@ -44,12 +44,13 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     sweep, masses = study.sweep, study.masses
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
     linkage, unit = spec.linkage, spec.unit
-    kind = grashof_class(linkage)
+    first, *more = linkage.mechanism.dyads
+    kind, of_first = grashof_class(linkage), " of the first loop" if more else ""
     triple = triple_rocker_kind(linkage)
-    yield Fact("grashof_class", "Grashof class", f"{kind} {triple}".strip())
+    yield Fact("grashof_class", f"Grashof class{of_first}", f"{kind} {triple}".strip())
     stretched, folded = rotatability(linkage)
     both = (("stretched", stretched), ("folded", folded))
-    for (name, share), label in zip(both, SHARES[linkage.mechanism.word], strict=True):
+    for (name, share), label in zip(both, SHARES[first.kind], strict=True):
         if label:
             yield Fact(f"rotatability_{name}", label, float(share))
     yield Fact("full_rotation", "driver turns fully", turns)
@@ -72,31 +73,28 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
 
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
-    linkage, unit = spec.linkage, spec.unit
-    stroke, moved = output_stroke(linkage), linkage.mechanism.links[-1].name
-    if linkage.mechanism.word == SLIDER_CRANK:
-        yield from _slide_facts(spec, turns, extremes, float(stroke.chord))
-    elif not turns:  # the two toggle positions may lie on different circuits
-        swings = extremes[extremes["quantity"] == "theta4_deg"]
-        for number, (low, high) in enumerate(zip(swings["min"], swings["max"], strict=True), start=1):
-            mark, where = (f"_{number}", f", range {number}") if len(swings) > 1 else ("", "")
-            yield Fact(f"output_swing{mark}_deg", f"swing of the output{where}", float(high - low), "deg")
-            if spec.output_arm is not None:
-                way = float(spec.output_arm * np.radians(high - low))
-                yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, unit)
+    linkage, unit, kind = spec.linkage, spec.unit, spec.linkage.mechanism
+    if len(kind.dyads) > 1:  # limit positions have a closed form in one loop alone
+        yield from _ranges_facts(spec, extremes)
+        return
+    stroke, moved = output_stroke(linkage), kind.links[-1].name
+    if not turns:  # the two toggle positions may lie on different circuits
+        yield from _ranges_facts(spec, extremes)
+    elif not output_turns(kind):
+        yield Fact("stroke", "stroke of the slide", float(stroke.chord), unit)
     elif np.isfinite(stroke.swing):
         yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
-        if linkage.mechanism.word == FOUR_BAR:
+        if plain(kind):
             yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
             way = float(spec.output_arm * stroke.swing)
             yield Fact("output_stroke", "stroke of the output arm", way, unit)
     if np.isfinite(stroke.time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
-    for index, (name, words) in enumerate(LIMIT_POSITIONS[linkage.mechanism.word].items()):
+    for index, (name, words) in enumerate(LIMIT_POSITIONS[kind.dyads[0].kind].items()):
         if np.isfinite(stroke.theta4[index]):
             angles = {2: stroke.theta2[index], 4: stroke.theta4[index]}
-            for link, angle in ((n, angles[n]) for n in (2, *turning(linkage.mechanism)) if n in angles):
+            for link, angle in ((n, angles[n]) for n in (2, *turning(kind)) if n in angles):
                 label, found = f"{moved} turns back, {words}: theta{link}", float(np.degrees(angle))
                 if link == 4:  # as the extremes count it
                     swings = extremes[extremes["quantity"] == "theta4_deg"]
@@ -104,15 +102,20 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
                 yield Fact(f"toggle_{name}_theta{link}_deg", label, found, "deg")
 
 
-def _slide_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame, chord: float) -> Iterator[Fact]:
-    """The stroke of a slide between its limit positions, or in each range of the driver."""
-    if turns:
-        yield Fact("stroke", "stroke of the slide", chord, spec.unit)
-        return
-    travels = extremes[extremes["quantity"] == "slide_travel"]
-    for number, (low, high) in enumerate(zip(travels["min"], travels["max"], strict=True), start=1):
-        mark, where = (f"_{number}", f", range {number}") if len(travels) > 1 else ("", "")
-        yield Fact(f"stroke{mark}", f"stroke of the slide{where}", float(high - low), spec.unit)
+def _ranges_facts(spec: LinkageSpec, extremes: pd.DataFrame) -> Iterator[Fact]:
+    """How far the output moves in each range of the driver; nothing of one that turns fully."""
+    kind = spec.linkage.mechanism
+    output = f"theta{kind.links[-1].number}_deg" if output_turns(kind) else "slide_travel"
+    rows = extremes[extremes["quantity"] == output]
+    for number, (low, high) in enumerate(zip(rows["min"], rows["max"], strict=True), start=1):
+        mark, where = (f"_{number}", f", range {number}") if len(rows) > 1 else ("", "")
+        if not output_turns(kind):
+            yield Fact(f"stroke{mark}", f"stroke of the slide{where}", float(high - low), spec.unit)
+        elif np.isfinite(high - low):
+            yield Fact(f"output_swing{mark}_deg", f"swing of the output{where}", float(high - low), "deg")
+            if spec.output_arm is not None:
+                way = float(spec.output_arm * np.radians(high - low))
+                yield Fact(f"output_stroke{mark}", f"stroke of the output arm{where}", way, spec.unit)
 
 
 def _path_facts(sweep: Sweep) -> Iterator[Fact]:
@@ -132,8 +135,8 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
                 yield Fact(f"fourier_share_{number}", f"share of harmonic {number} in the path of P", share)
         label = f"path of P from {_HARMONICS} harmonics errs by"
         yield Fact(f"fourier_error_{_HARMONICS}", label, float(series.error_max[_HARMONICS]), unit)
-    if isinstance(linkage, FourBar):
-        yield from _double_points(linkage, unit)
+    if (four_bar := as_kind(linkage, FourBar)) is not None:
+        yield from _double_points(four_bar, unit)
     still = np.degrees(cusps(linkage))
     yield Fact("cusps", "cusps of the path of P", len(still))
     for number, angle in enumerate(still, start=1):

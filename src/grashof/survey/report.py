@@ -100,7 +100,9 @@ def _notes(sweep: Sweep) -> tuple[str, ...]:
     between = " and ".join(f"{np.degrees(low):.6g} to {np.degrees(high):.6g}" for low, high in sweep.ranges)
     change = grashof_class(sweep.spec.linkage) is GrashofClass.CHANGE_POINT
     why = "links 3 and 4 may go either way there" if change else "rates and forces grow without bound there"
-    assembly = f"shown is assembly {int(sweep.spec.linkage.assembly):+d}"
+    linkage = sweep.spec.linkage
+    signs = [getattr(linkage, row.name) for row in linkage.mechanism.parameters if row.kind == "sign"]
+    assembly = f"shown is assembly {' '.join(f'{int(sign):+d}' for sign in signs)}"
     return (f"dead positions bound the driver's motion, {between} deg: {why}; {assembly}",)
 
 

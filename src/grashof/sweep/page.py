@@ -17,7 +17,6 @@ from grashof.page.render import DRAWING, render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.sweep.plot import measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
@@ -63,7 +62,8 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
     scenes, of_place = _scenes(done, places)
     rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
-    kinds = {each["linkage"].get("mechanism", FOUR_BAR) for each in drawn} or {FOUR_BAR}
+    meant, *_ = ONE_LOOP
+    kinds = {each["linkage"].get("mechanism", meant) for each in drawn} or {meant}
     listed = {column.key for column in columns}  # so far: an interrupted sweep may not have varied all
     axes = [key for key in number_axes(done) if key in listed]
     rows_of_places = {place: row for row, place in enumerate(places)}
@@ -95,7 +95,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
         compared=any(column.better for column in columns if column.key != "designs"),
         cells=len(axes) == 2,
         moves=any(done.results[place]["drawing"] for place in places),
-        links=legend(kind for kind in ONE_LOOP if kind in kinds),
+        links=legend(row for kind, row in ONE_LOOP.items() if kind in kinds),
         columns=columns,
         given=[column.key for column in columns].index("designs") + 1,
         rows=[

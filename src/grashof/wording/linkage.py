@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grashof.problems import LinkageSpec
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, lengths_text
+from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
 
 
 def dimensions_text(spec: LinkageSpec) -> str:
@@ -17,5 +17,5 @@ def dimensions_text(spec: LinkageSpec) -> str:
     >>> dimensions_text(load_linkage_spec("pumpjack"))
     'r1 to r4 5, 1.1938, 3.7719, 3.04876 m'
     """
-    kind = "" if spec.linkage.mechanism.word == FOUR_BAR else f"{spec.linkage.mechanism.word}, "
-    return f"{kind}{lengths_text(spec.linkage, 6)} {spec.length_unit}".rstrip()
+    said = [kinds_text([spec.linkage.mechanism.word]), lengths_text(spec.linkage, 6)]
+    return f"{', '.join(filter(None, said))} {spec.length_unit}".rstrip()

@@ -17,7 +17,7 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.programme.merit import same_error
@@ -55,7 +55,7 @@ def summary(problem: Problem) -> list[str]:
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
         f"  {_task(task, unit)}; {_exactness(problem)}",
-        *([] if problem.mechanism == (FOUR_BAR,) else [f"  mechanism {' or '.join(problem.mechanism)}"]),
+        *([f"  mechanism {kinds}"] if (kinds := kinds_text(problem.mechanism)) else []),
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
         *(

@@ -8,12 +8,15 @@ import numpy as np
 
 from grashof.analysis import full_rotation, solve_position
 from grashof.analysis.mechanism.position import places
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
-from grashof.workshop.plates import Plate, PlateSizes, base, link_plates, spacer
-from grashof.workshop.slots import guide, moving_plates, slot_ends
-from grashof.workshop.stacking import Pin, Stack, base_angle, poses, ranges_of_use, stack, sweep
+from grashof.workshop.link_plates import base_plate, link_plates
+from grashof.workshop.plates import Plate, PlateSizes, spacer
+from grashof.workshop.slots import Slot, base_angle, slots_of
+from grashof.workshop.stacking import GROUND, Pin, Stack, pinned, placed, poses, ranges_of_use, stack, sweep
+
+_MOST_MET = 8  # pairs that notes name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,24 +120,25 @@ def plan_parts(
 
     Examples
     --------
+    >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(100, 0), r2=30, r3=90, r4=80)
     >>> [(part.plate.name, part.layers) for part in plan_parts(crank_rocker).parts]
     [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
     """
     sizes = sizes or PlateSizes()
     scaled = _in_millimetres(linkage, mm_per_unit)
-    if isinstance(scaled, FourBar):
-        link_plates(scaled, sizes)  # what is too short is refused before what cannot be assembled
+    if not scaled.mechanism.slides:
+        link_plates(scaled, sizes, ())  # what is too short is refused before what cannot be assembled
     ranges = ranges_of_use(scaled, within, theta2)
-    slot = slot_ends(scaled, ranges, sizes) if scaled.mechanism.slides else np.zeros(2)
-    plates, note = moving_plates(scaled, sizes, slot)
+    slots = slots_of(scaled, ranges, sizes)
+    plates, without_hole = link_plates(scaled, sizes, slots)
     order = stack(plates, scaled, sweep(scaled, ranges, sizes.gap), sizes)
     low, high = ranges[0]
     if theta2 is None or (theta2 - low) % (2 * np.pi) > high - low:
         theta2 = low + (high - low) / 4
     return Plan(
         sizes=sizes,
-        parts=_parts(plates, order, scaled, sizes, theta2, slot),
+        parts=_parts(plates, order, scaled, sizes, theta2, slots),
         pins=order.pins,
         layers=max(order.layers.values()) + len(order.bases),
         theta2=theta2,
@@ -142,9 +146,10 @@ def plan_parts(
         notes=(
             _use(scaled, ranges, within),
             "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
-            *_slot_note(scaled, slot),
-            *_two_bases(order),
-            *([note] if note else []),
+            *(_slot_note(scaled, slot) for slot in slots),
+            *_two_bases(order, scaled),
+            *_return_crank(order),
+            *without_hole,
         ),
     )
 
@@ -162,19 +167,16 @@ def _parts(
     linkage: Linkage,
     sizes: PlateSizes,
     theta2: float,
-    slot: FloatArray,
+    slots: tuple[Slot, ...],
 ) -> tuple[Part, ...]:
-    where = {name: place[0] for name, place in poses(linkage, np.array([theta2])).items()}
+    at = poses(linkage, np.array([theta2]))
+    at, plates = (order.crank.placed(at), order.crank.plates) if order.crank else (at, plates)
+    where = {name: place[0] for name, place in at.items()}
     on_base = np.array([0.0, 0.0, base_angle(linkage)])
-    holes = {"O2": 0.0}
-    if isinstance(linkage, FourBar | InvertedSliderCrank):
-        holes["O4"] = float(linkage.r1)
-    if order.posts:
-        holes = {"post 1": order.posts[0], **holes, "post 2": order.posts[1]}
-    for name, along in holes.items():
-        where[name] = np.array([along * np.cos(on_base[2]), along * np.sin(on_base[2]), 0.0])
-    below = guide(linkage, holes, sizes, slot) if isinstance(linkage, SliderCrank) else base(holes, sizes)
+    posts = {f"post {number}": np.array([x, 0.0]) for number, x in enumerate(order.posts, start=1)}
+    below = base_plate(linkage, posts, sizes, slots)
     parts = [Part(below, order.bases, np.tile(on_base, (len(order.bases), 1)))]
+    where |= {name: np.append(placed(at[None], on_base)[0], 0.0) for name, at in posts.items()}
     parts += [Part(plate, (order.layers[name],), where[name][None]) for name, plate in plates.items()]
     rings = [(layer, where[pin.name]) for pin in order.pins for layer in pin.passed]
     if rings:
@@ -199,20 +201,27 @@ def _use(
     return f"free for theta2 = {spans} deg" + ("" if within else ", between the dead positions")
 
 
-def _slot_note(linkage: Linkage, slot: FloatArray) -> list[str]:
-    if not linkage.mechanism.slides:
-        return []
-    joint, plate = ("B", "base") if isinstance(linkage, SliderCrank) else ("O4", "coupler")
-    long = f"{round(float(np.diff(slot)[0]), 3):.10g} mm between centres"
-    name = linkage.mechanism.links[-1].name
-    return [f"the {name} is pin {joint} itself, in a slot of the {plate} {long}"]
+def _slot_note(linkage: Linkage, slot: Slot) -> str:
+    links = linkage.mechanism.links
+    plate = "base" if slot.link == 1 else links[slot.link - 1].name
+    long = f"{round(slot.length, 3):.10g} mm between centres"
+    return f"the {links[slot.slider - 1].name} is pin {slot.pin} itself, in a slot of the {plate} {long}"
 
 
-def _two_bases(order: Stack) -> list[str]:
+def _two_bases(order: Stack, linkage: Linkage) -> list[str]:
     if not order.posts:
         return []
-    last = [pin.name for pin in order.pins if not pin.name.startswith("post")][-1]
+    ground = [name for name, parts in pinned(linkage.mechanism).items() if GROUND in parts]
+    upper = " and ".join(pin.name for pin in order.pins if pin.name in ground and pin.high == order.bases[1])
+    more = len(order.met) - _MOST_MET
     return [
-        f"a second base carries {last} from the other side; on one base",
-        *(f"- {pair}" for pair in order.met),
+        f"a second base carries {upper} from the other side; on one base",
+        *(f"- {pair}" for pair in order.met[:_MOST_MET]),
+        *([f"- and {more} more pairs"] if more > 0 else []),
     ]
+
+
+def _return_crank(order: Stack) -> list[str]:
+    if order.crank is None:
+        return []
+    return [f"the driver is in two plates: both are fixed to pin {order.crank.pin}, which turns with them"]

@@ -1,20 +1,20 @@
-"""Shapes of the parts: a point, a line or a triangle between holes, widened all round by half a width."""
+"""Shapes of the parts: a point, a line or a polygon round holes, widened all round by half a width."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
-from grashof.problems import FourBar, ProblemError
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import number_within, positive_number
-from grashof.problems.values.linkages.linkage_parts import Link
 
-# A link longer than so many widths is a slip in the unit, and no plate.
-_SLENDEREST = 1000
+_STRAIGHT = 1e-9  # share of a plate's length by which holes in line may be off it
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +107,10 @@ class Plate:
 
     @property
     def distances(self) -> tuple[tuple[str, float], ...]:
-        """Distances between holes (mm) by the names of their joints, of a row of four to the next; slots."""
+        """Distances between holes (mm) by the names of their joints, in a row of four to the next; slots."""
         holes = list(zip(self.joints, self.holes, strict=True))
-        pairs = combinations(holes, 2) if len(holes) <= 3 else pairwise(holes)
+        row = len(holes) > 3 and len(self.corners) == 2
+        pairs = pairwise(holes) if row else combinations(holes, 2)
         apart = [(f"{one}-{other}", float(np.hypot(*(b - a)))) for (one, a), (other, b) in pairs]
         return (*apart, *((f"slot {name}", float(np.hypot(*(b - a)))) for name, (a, b) in self.slots))
 
@@ -147,41 +148,6 @@ def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
     return np.stack([arcs, lines], axis=1).reshape(-1, 3)
 
 
-def link_plates(linkage: FourBar, sizes: PlateSizes) -> tuple[dict[str, Plate], str]:
-    """Plates of the links `driver`, `coupler` and `output`, and a note on P.
-
-    Parameters
-    ----------
-    linkage : FourBar
-        One linkage, in mm.
-    sizes : PlateSizes
-
-    Returns
-    -------
-    plates : dict of str to Plate
-    note : str
-        Why P has no hole; empty when it has one.
-
-    Raises
-    ------
-    ProblemError
-        A link too short or too long for its width.
-    """
-    u, v = linkage.coupler_point.tolist()
-    lengths = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
-    reach = max(abs(u), abs(u - lengths["r3"]), abs(v))
-    for name, length in (lengths | {"A-P": reach}).items():
-        refuse_length(name, length, sizes)
-    plates, note = dict[str, Plate](), ""
-    for link in linkage.mechanism.links[1:]:
-        length = lengths[f"r{link.number}"]
-        if len(link.points) == 2:
-            plates[link.name] = bar(link.name, link.labels, (0.0, length), sizes)
-        else:
-            plates[link.name], note = with_point(link, length, u, v, sizes)
-    return plates, note
-
-
 def bar(name: str, joints: tuple[str, ...], along: tuple[float, ...], sizes: PlateSizes) -> Plate:
     """A straight plate with holes at positions along x (mm), rounded about the outermost ones."""
     holes = np.array([(x, 0.0) for x in along])
@@ -189,9 +155,32 @@ def bar(name: str, joints: tuple[str, ...], along: tuple[float, ...], sizes: Pla
     return _plate(name, joints, holes, ends, sizes)
 
 
-def base(along: dict[str, float], sizes: PlateSizes) -> Plate:
-    """The base: a bar with holes for the given joints, twice as wide as the links."""
-    return replace(bar("base", tuple(along), tuple(along.values()), sizes), width=2 * sizes.width)
+def plate_of(
+    name: str,
+    holes: Mapping[str, FloatArray],
+    sizes: PlateSizes,
+    slots: Mapping[str, FloatArray] | None = None,
+) -> Plate:
+    """A plate round holes (x, y) and slots, each from one centre to another, shape (2, 2), mm.
+
+    A bar where all its holes lie on the x-axis and it has no slot.
+    """
+    centres, slots = np.array(list(holes.values())), slots or {}
+    if not slots and np.abs(centres[:, 1]).max() <= _STRAIGHT * np.abs(centres).max():
+        return bar(name, tuple(holes), tuple(centres[:, 0].tolist()), sizes)
+    corners = _hull(np.concatenate([centres, *slots.values()]))
+    if not slots:  # they begin at the first hole that is one
+        _, corner = np.nonzero((centres[:, None] == corners).all(axis=-1))
+        corners = np.roll(corners, -corner[0], axis=0)
+    plate = _plate(name, tuple(holes), centres, corners, sizes)
+    return replace(plate, slots=tuple((pin, frozen_array(ends)) for pin, ends in slots.items()))
+
+
+def _hull(points: FloatArray) -> FloatArray:
+    """Corners of what surrounds points, counter-clockwise, shape (1, 2 or more, 2)."""
+    hull = shapely.convex_hull(shapely.multipoints(points))
+    corners: FloatArray = shapely.get_coordinates(shapely.orient_polygons(hull))
+    return corners[:-1] if shapely.get_dimensions(hull) == 2 else corners
 
 
 def spacer(sizes: PlateSizes) -> Plate:
@@ -200,35 +189,7 @@ def spacer(sizes: PlateSizes) -> Plate:
     return _plate("spacer", ("pin",), centre, centre, sizes)
 
 
-def with_point(link: Link, length: float, u: float, v: float, sizes: PlateSizes) -> tuple[Plate, str]:
-    """Plate of a link with a point: a triangle, or a bar where it is too near to a joint or on their line."""
-    *joints, point = link.labels
-    for joint, distance in zip(joints, (np.hypot(u, v), np.hypot(u - length, v)), strict=True):
-        if distance < sizes.least_spacing:
-            where = f"it lies {distance:.4g} mm from {joint}, and holes are at least"
-            note = f"the {link.name} has no hole for {point}: {where} {sizes.least_spacing:g} mm apart"
-            return bar(link.name, tuple(joints), (0.0, length), sizes), note
-    if abs(v) <= 1e-9 * max(length, abs(u)):
-        return bar(link.name, link.labels, (0.0, length, u), sizes), ""
-    holes = np.array([(0.0, 0.0), (length, 0.0), (u, v)])
-    return _plate(link.name, link.labels, holes, holes if v > 0 else holes[[0, 2, 1]], sizes), ""
-
-
 def _plate(
     name: str, joints: tuple[str, ...], holes: FloatArray, corners: FloatArray, sizes: PlateSizes
 ) -> Plate:
     return Plate(name, joints, frozen_array(holes), frozen_array(corners), sizes.width, sizes.hole)
-
-
-def refuse_length(name: str, length: float, sizes: PlateSizes) -> None:
-    """Refuse a length in mm that is too long for its width, or too short for two holes."""
-    if length > _SLENDEREST * sizes.width:
-        raise ProblemError(
-            f"{name} is {length:.6g} mm, over {_SLENDEREST} widths of {sizes.width:g} mm; choose a "
-            f"width from {length / _SLENDEREST:.4g} mm, or a smaller scale"
-        )
-    if name != "A-P" and length < sizes.least_spacing:
-        raise ProblemError(
-            f"{name} is {length:.4g} mm; for width {sizes.width:g} and hole {sizes.hole:g} mm it must be at "
-            f"least {sizes.least_spacing:g} mm: as much between two holes as beside them"
-        )

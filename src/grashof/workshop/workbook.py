@@ -189,7 +189,9 @@ def _facts(spec: LinkageSpec) -> list[tuple[str, Any, str]]:
 
 
 def _unit_of(column: str, unit: str) -> str:
-    return "deg" if column.endswith("_deg") else "" if column == "assembly" else unit
+    """Unit of a column of a linkage; signs and names of links have none."""
+    bare = column.startswith("assembly") or column in ("hosts", "point_link")
+    return "deg" if column.endswith("_deg") else "" if bare else unit
 
 
 def _targets(design: ListedDesign) -> list[Sequence[Any]]:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

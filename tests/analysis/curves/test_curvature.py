@@ -11,7 +11,7 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_p
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.line_and_circle import best_circle
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
 

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from random_linkages import six_bars
 
 from grashof.analysis import transmission_angle
-from grashof.analysis.enclosure.closure import CLOSURES, places
+from grashof.analysis.enclosure.closure import closure_of, places
 from grashof.analysis.enclosure.interval import Centred, Interval, crank
 from grashof.analysis.enclosure.turns import Pieces, least_transmission
 from grashof.analysis.judge.planted import (
@@ -19,7 +20,7 @@ from grashof.analysis.judge.planted import (
 )
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.transmission import worst_transmission
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 
 MAKERS = (random_full_crank, random_slider_crank, random_inverted_slider_crank)
 SHARP = np.radians(1e-6)
@@ -132,6 +133,14 @@ def test_places_hold_dense_samples_of_points(batch: Linkage) -> None:
     assert_within(np.sin(state.theta3), found.direction3.y.over)
 
 
+def test_two_loops_are_refused_in_one_line() -> None:
+    two = six_bars("pins 3 1", 2, np.random.default_rng(1))
+    with pytest.raises(
+        ProblemError, match=r"a stephenson-3 has two loops; it cannot be proven by intervals$"
+    ):
+        least_transmission(two, np.zeros(2), np.ones(2))
+
+
 def assert_within(values: np.ndarray, held: Interval, rounding: float = 1e-12) -> None:
     """Samples are rounded, too."""
     assert (values >= held.lo - rounding * (1 + np.abs(values))).all()
@@ -156,10 +165,10 @@ def test_half_as_wide_is_a_quarter_as_far(batch: Linkage) -> None:
     angle = np.linspace(0.2, 5.9, 12)
     excess = []
     for half in (2e-3, 1e-3):
-        margin = CLOSURES[type(batch)].margins(batch, crank(angle, np.full(12, half))).near
+        margin = closure_of(batch).margins(batch, crank(angle, np.full(12, half))).near
         true = np.stack(
             [
-                CLOSURES[type(batch)].margins(batch, crank(angle + d, np.zeros(12))).near.mid.lo
+                closure_of(batch).margins(batch, crank(angle + d, np.zeros(12))).near.mid.lo
                 for d in np.linspace(-half, half, 9)
             ]
         )

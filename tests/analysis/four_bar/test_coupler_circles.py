@@ -19,7 +19,7 @@ from grashof.analysis import (
     solve_kinematics,
     solve_position,
 )
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=25)

@@ -12,7 +12,7 @@ from grashof.analysis import GrashofClass
 from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
 from grashof.analysis.judge.task_motion import task_motion
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, MotionTask
 
 CHECKED = settings(max_examples=25)

@@ -18,7 +18,7 @@ from grashof.analysis import (
     solve_position,
     transmission_angle,
 )
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.means import mean_in_time, mean_over
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_kinematics, solve_position
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
 CHECKED = settings(max_examples=25)

@@ -20,7 +20,7 @@ from grashof.analysis import (
     rotatability,
     triple_rocker_kind,
 )
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.analysis.mechanism.transmission import quality, transmission_angle
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank

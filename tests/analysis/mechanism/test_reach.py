@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, reach_box
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.reach import diagonal
 from grashof.problems import FourBar
 

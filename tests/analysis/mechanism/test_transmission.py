@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, transmission_angle, worst_transmission, worst_transmission_cycle
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar
 

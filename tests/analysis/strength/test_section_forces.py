@@ -32,7 +32,7 @@ from grashof.analysis import (
     uniform_bar,
     uniform_bars,
 )
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import DeadPositionWarning, FourBar, ProblemError
 
 Floats = npt.NDArray[np.float64]

@@ -341,6 +341,6 @@ SIGHT = {
 
 @pytest.mark.parametrize("who", SIGHT)
 def test_colours_are_told_apart(who: str) -> None:
-    colours = (parts.DRIVER, parts.COUPLER, parts.OUTPUT, parts.PATH, parts.TARGET)
-    for one, other in combinations(colours, 2):
+    colours = (*parts.COLOURS.values(), parts.PATH, parts.TARGET)
+    for one, other in combinations(dict.fromkeys(colours), 2):
         assert np.linalg.norm(seen(one, SIGHT[who]) - seen(other, SIGHT[who])) > 15, (one, other)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.figures.animation import animate, save_animation
@@ -28,17 +29,19 @@ from grashof.problems import (
     ProblemError,
     SliderCrank,
 )
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS
 
 SLIDER = SliderCrank((0.5, -1), 1, 3, 0.4, 0.6, (1, 0.7), -1)
 INVERTED = InvertedSliderCrank((0, 0), (2, 1), 1, -0.3, (3, 0.5))
 SWINGING = InvertedSliderCrank((0, 0), (2, 0), 1.5, 1.0, (-1, -0.8), -1)
+PRESSES = [linkage for linkage in SIX_BARS.values() if linkage.mechanism.slides]
 
 
 def axes() -> Axes:
     return Figure().subplots()
 
 
-@pytest.mark.parametrize("linkage", [SLIDER, INVERTED, SWINGING])
+@pytest.mark.parametrize("linkage", [SLIDER, INVERTED, SWINGING, *PRESSES])
 @settings(max_examples=25, deadline=None)
 @given(share=st.floats(0.01, 0.99))
 def test_blocks_sit_on_their_slides_and_rods_pass_them(linkage: Linkage, share: float) -> None:
@@ -48,9 +51,10 @@ def test_blocks_sit_on_their_slides_and_rods_pass_them(linkage: Linkage, share: 
     state, travel = solve_position(linkage, theta2), subject.travel
     points = {name: complex(*place) for name, place in stands(linkage, state, travel)[0].items()}
     corners = np.array([points[name] for name in CORNERS[:4]])
-    np.testing.assert_allclose(corners.mean(), points["b"], atol=1e-12)
-    turn = linkage.slide_angle if isinstance(linkage, SliderCrank) else state.theta3[0]
-    flat = (corners - points["b"]) * np.exp(-1j * turn)
+    ((_, block),) = linkage.mechanism.slides
+    pin = points[LOOP_POINTS[block // 2 - 2][2]]
+    np.testing.assert_allclose(corners.mean(), pin, atol=1e-12)
+    flat = (corners - pin) * np.exp(-1j * (state.angles[block][0] - np.pi / 2))
     assert np.ptp(flat.real) > np.ptp(flat.imag) > 0
     np.testing.assert_allclose(np.abs(flat), np.abs(flat[0]), rtol=1e-12)
     if isinstance(linkage, InvertedSliderCrank):
@@ -62,21 +66,24 @@ def test_blocks_sit_on_their_slides_and_rods_pass_them(linkage: Linkage, share: 
         np.testing.assert_allclose(abs((points["p"] - points["foot"]) / way), abs(linkage.coupler_point[1]))
 
 
-def test_the_guide_covers_the_travel() -> None:
-    ax = plot_linkage(SLIDER, ax=axes())
+@pytest.mark.parametrize("linkage", [SLIDER, *PRESSES])
+def test_the_guide_covers_the_travel(linkage: Linkage) -> None:
+    ax = plot_linkage(linkage, ax=axes())
     theta2 = np.linspace(0, 2 * np.pi, 3601)
-    b = solve_position(SLIDER, theta2).b @ np.array([1, 1j])
-    turn = np.exp(1j * float(SLIDER.slide_angle))
+    state, ending = solve_position(linkage, theta2), "_2" if linkage in PRESSES else ""
+    b = state.point("e" if ending else "b") @ np.array([1, 1j])
+    angle, offset = (float(getattr(linkage, f"{name}{ending}")) for name in ("slide_angle", "offset"))
+    turn = np.exp(1j * angle)
     lines = [np.asarray(line.get_xydata()) @ np.array([1, 1j]) for line in ax.lines]
-    straight = [(line - complex(*SLIDER.o2)) / turn for line in lines if len(line) == 2]
-    along = ((b - complex(*SLIDER.o2)) / turn).real
+    straight = [(line - complex(*linkage.o2)) / turn for line in lines if len(line) == 2]
+    along = ((b - complex(*linkage.o2)) / turn).real
     guides = [
         line
         for line in straight
         if np.ptp(line.imag) < 1e-9 and line.real.min() < along.min() and line.real.max() > along.max()
     ]
     assert len(guides) == 1
-    assert guides[0].imag.mean() < float(SLIDER.offset)
+    assert guides[0].imag.mean() < offset
 
 
 def test_travel_is_that_of_all_ranges() -> None:
@@ -87,7 +94,7 @@ def test_travel_is_that_of_all_ranges() -> None:
     assert isinstance(subject.travel, Travel)
 
 
-@pytest.mark.parametrize("linkage", [SLIDER, INVERTED, SWINGING])
+@pytest.mark.parametrize("linkage", [SLIDER, INVERTED, SWINGING, *PRESSES])
 def test_an_animation_moves_the_block(linkage: Linkage, tmp_path: Path) -> None:
     ax = axes()
     moving = animate(linkage, seconds=1, fps=4, annotated=True, ax=ax)

@@ -14,10 +14,11 @@ ROW = re.compile(r'"(\w+)" = (-?\d[\d.e+-]*?)(mm|cm|m|in|ft|deg|)')
 
 
 def expected(model: Model) -> dict[str, float]:
-    at, stated = model.first, model.linkage.columns
-    angles = np.degrees([model.start, at.theta3, at.theta4]).tolist()
-    kept = {name: value for name, value in stated.items() if name not in ("assembly", "body_angle_deg")}
-    return kept | dict(zip(("theta2_deg", "theta3_deg", "theta4_deg"), angles, strict=True))
+    linkage, at = model.linkage, model.first
+    left_out = ("assembly", "assembly_2", "hosts", "point_link", "body_angle_deg")
+    kept = {name: float(value) for name, value in linkage.columns.items() if name not in left_out}
+    angles = {2: model.start} | {link.number: at.angles[link.number] for link in linkage.mechanism.links[2:]}
+    return kept | {f"theta{link}_deg": float(np.degrees(angle)) for link, angle in angles.items()}
 
 
 def test_solidworks_equations(model: Model) -> None:

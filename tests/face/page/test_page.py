@@ -142,7 +142,8 @@ def test_colours_are_those_of_the_drawings() -> None:
     colours = dict(
         re.findall(r"--([\w-]+): (#\w+)", style.read_text(encoding="utf-8").partition("@media")[0])
     )
-    for name in ("driver", "coupler", "output", "body", "path", "scene", "ground", "target", "kept_out"):
+    links = ("driver", "coupler", "output", "coupler_2", "output_2")
+    for name in (*links, "body", "path", "scene", "ground", "target", "kept_out"):
         assert colours[name.replace("_", "-")] == getattr(grashof.figures.parts, name.upper())
 
 

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from playwright.sync_api import Page
+from six_bar_examples import SIX_BARS
 
-from grashof.analysis import driver_ranges, solve_position, transmission_angle
+from grashof.analysis import driver_ranges, solve_kinematics, solve_position, transmission_angle
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.mechanism.position import places
 from grashof.analysis.mechanism.transmission import quality
@@ -21,10 +22,11 @@ from grashof.page.analysis import analysis_page
 from grashof.page.designs import linkage_data
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.linkages.mechanism import LOOP_POINTS
 from grashof.survey import report_on
 
 TEMPLATES = Path(designs.__file__).parent / "templates"
-LINKAGES: dict[str, Linkage] = {
+ONE_LOOP: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0.5), (4, 0), 1, 4, 3, (2, 1.5), -1),
     "engine": SliderCrank((1, 2), 1, 3, -0.5, 0.6, (1, 0.7)),
     "behind": SliderCrank((1, 2), 1, 3, 0.5, 3.6, (1, -0.7), -1),
@@ -34,6 +36,7 @@ LINKAGES: dict[str, Linkage] = {
     "inverted, swinging driver": InvertedSliderCrank((0, 0), (2, 0.5), 1.5, 1.0, (-1, -0.8)),
     "change point": InvertedSliderCrank((0, 0), (1, 0), 1, 0, (2, 1)),
 }
+LINKAGES: dict[str, Linkage] = ONE_LOOP | SIX_BARS
 
 
 def positions(window: Page, linkage: Linkage, theta2: FloatArray) -> list[dict[str, Any]]:
@@ -80,19 +83,23 @@ def test_positions_are_those_of_the_analysis(window: Page, name: str) -> None:
     )
     found = positions(window, linkage, theta2)
     state = solve_position(linkage, theta2)
-    for key in ("a", "b", "p"):
-        np.testing.assert_allclose([each[key] for each in found], getattr(state, key), atol=1e-9)
-    for key in ("theta3", "theta4"):
-        gap = np.array([each[key] for each in found]) - getattr(state, key)
+    for key in linkage.mechanism.points:
+        np.testing.assert_allclose([each[key] for each in found], state.point(key), atol=1e-9)
+    for link, angle in state.angles.items():
+        gap = np.array([each[f"theta{link}"] for each in found]) - angle
         np.testing.assert_allclose(np.angle(np.exp(1j * gap)), 0, atol=1e-9)
-    mu = quality(transmission_angle(linkage, theta2))
+    loops = range(1, len(linkage.mechanism.dyads) + 1)
+    mu = np.min([quality(transmission_angle(linkage, theta2, loop)) for loop in loops], axis=0)
     np.testing.assert_allclose([each["mu"] for each in found], mu, atol=1e-6)
+    guided = solve_kinematics(linkage, theta2).frame_angle(linkage.mechanism.carries) + linkage.body_angle
+    turned = np.array([each["guided"] for each in found]) - guided
+    np.testing.assert_allclose(np.angle(np.exp(1j * turned)), 0, atol=1e-9)
     if linkage.mechanism.slides:
         travel = state.travel
         np.testing.assert_allclose([each["slide"] for each in found], travel, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", LINKAGES)
+@pytest.mark.parametrize("name", ONE_LOOP)
 def test_the_loop_stays_closed_in_dead_positions_and_past_them(window: Page, name: str) -> None:
     linkage = LINKAGES[name]
     ends = driver_ranges(linkage)[np.isfinite(driver_ranges(linkage)).all(axis=1)].ravel()
@@ -110,6 +117,9 @@ def test_the_loop_stays_closed_in_dead_positions_and_past_them(window: Page, nam
 @pytest.mark.parametrize("name", [name for name, linkage in LINKAGES.items() if linkage.mechanism.slides])
 def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str) -> None:
     linkage, page = LINKAGES[name], shown(name)
+    kind = linkage.mechanism
+    ((_, block),) = kind.slides
+    pin = LOOP_POINTS[block // 2 - 2][2]
     drawn = "document.querySelector('#stage .linkage .block').getAttribute('d')"
     before = page.evaluate(drawn)
     assert before.count("L") == 3
@@ -119,18 +129,18 @@ def test_the_drawing_follows_the_driver(shown: Callable[[str], Page], name: str)
     after = page.evaluate(drawn)
     assert "NaN" not in after
     assert after != before
-    at = "document.querySelector('#stage .joint.b')"
+    at = f"document.querySelector('#stage .joint.{pin}')"
     place = [float(page.evaluate(f"{at}.getAttribute('c{axis}')")) for axis in "xy"]
     corners = np.array([pair.split() for pair in after.strip("MZ").split("L")], dtype=float)
     np.testing.assert_allclose(corners.mean(axis=0), place, atol=0.02)
     guides = page.locator("#stage .ground .guide").count()
-    assert guides == (1 if isinstance(linkage, SliderCrank) else 0)
-    words = page.locator(".legend").inner_text()
-    assert ("slider B" if guides else "block O4-B") in words
+    assert guides == (1 in kind.slides[0])
+    link, words = kind.links[block - 1], page.locator(".legend").inner_text()
+    assert f"{link.name} {'-'.join(link.labels)}" in words
     assert "slide" in page.locator("#angles").inner_text()
 
 
-@pytest.mark.parametrize("name", LINKAGES)
+@pytest.mark.parametrize("name", ONE_LOOP)
 @pytest.mark.parametrize("on", ["driver", "coupler", "output"])
 def test_cylinders_are_where_the_analysis_has_them(window: Page, name: str, on: str) -> None:
     linkage, jack = LINKAGES[name], Cylinder(on, (-2.0, 1.5), (0.8, -0.3))
@@ -151,6 +161,30 @@ def test_cylinders_are_where_the_analysis_has_them(window: Page, name: str, on: 
     at = places(linkage, state)
     np.testing.assert_allclose(first, at[joints[0]], atol=1e-9)
     np.testing.assert_allclose(second, at[joints[:2][-1]], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", SIX_BARS)
+def test_six_bars_play_with_all_their_links(shown: Callable[[str], Page], name: str) -> None:
+    linkage, page = LINKAGES[name], shown(name)
+    links = linkage.mechanism.links[1:]
+    legend = page.locator(".legend").first.inner_text()
+    assert all(f"{link.name} {'-'.join(link.labels)}" in legend for link in links)
+    assert all(f"θ{link.number} " in page.locator("#angles").inner_text() for link in links)
+    seen = []
+    for key in ("Home", "Shift+ArrowRight", "Shift+ArrowRight", "PageUp"):
+        page.keyboard.press(key)
+        state = page.evaluate("grashof.state()")
+        there = solve_position(linkage, state["theta2"])
+        points = linkage.mechanism.points
+        dots = [page.locator(f"#stage .joint.{point}") for point in points]
+        drawn = np.array([[float(dot.get_attribute(f"c{axis}") or "nan") for axis in "xy"] for dot in dots])
+        true = np.array([there.point(point) for point in points]) * [1, -1]
+        # One scale for all: distances on the screen are those of the linkage.
+        apart, truly = drawn - drawn[0], true - true[0]
+        scale = np.abs(apart).max() / np.abs(truly).max()
+        np.testing.assert_allclose(apart, scale * truly, atol=0.03)
+        seen.append(state["theta2"])
+    assert len(set(seen)) == 4
 
 
 def test_the_rod_of_a_cylinder_is_not_that_of_the_linkage(window: Page, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.synth.theory.distinct import DISTINCT, MIRRORED, apart, best_first, pick_apart, signature
+from grashof.synth.theory.distinct import DISTINCT, apart, best_first, mirrored, pick_apart, signature
 
 bounded = settings(max_examples=25)
 number = st.floats(-10, 10).filter(lambda value: value == 0 or abs(value) > 1e-3)
@@ -54,10 +54,10 @@ def test_the_numbers_that_count() -> None:
 )
 def test_numbers_that_change_their_sign_in_a_mirror(linkage: Linkage, image: Linkage) -> None:
     theta2 = np.linspace(0, 6, 20)
-    there, mirrored = solve_position(linkage, theta2).p, solve_position(image, -theta2).p
-    np.testing.assert_allclose(mirrored, there * [1, -1], atol=1e-12)  # it is the image
+    there, other = solve_position(linkage, theta2).p, solve_position(image, -theta2).p
+    np.testing.assert_allclose(other, there * [1, -1], atol=1e-12)  # it is the image
     signs = np.ones(9)
-    signs[[1, 3, *MIRRORED[type(linkage)]]] = -1
+    signs[[1, 3, *mirrored(linkage.mechanism)]] = -1
     np.testing.assert_allclose(signature(image), signature(linkage) * signs, atol=1e-12)
 
 

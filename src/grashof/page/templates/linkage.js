@@ -5,15 +5,34 @@ const STEPS = 180;
 
 const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
 
-// Where every point is; on the assembly of the linkage unless another is given.
+// A point of a link by its place in the frame of the link.
+const carried = ({ at: [x, y], along: [cos, sin] }, [u, v]) => [x + u * cos - v * sin, y + u * sin + v * cos];
+
+// Where every point is; in the first loop on the assembly of the linkage unless another is given. `mu` is the
+// worst of all loops, `guided` the direction of the guided body.
 function positionOf(linkage, theta2, assembly = linkage.assembly) {
-  const { o2, o4, r2 } = linkage;
-  const a = [o2[0] + r2 * Math.cos(theta2), o2[1] + r2 * Math.sin(theta2)];
-  const { e3, ...closed } = kindOf(linkage).close(linkage, a, assembly);
-  const [cos, sin] = e3;
-  const [u, v] = linkage.coupler_point;
-  const p = [a[0] + u * cos - v * sin, a[1] + u * sin + v * cos];
-  return { theta2, theta3: Math.atan2(sin, cos), o2, o4, a, p, ...closed };
+  const { o2, o4, coupler_point: point, body_angle: turned } = linkage;
+  const { dyads, carries } = kindOf(linkage);
+  const frames = { 1: { at: [0, 0], along: [1, 0] }, 2: { at: o2, along: [Math.cos(theta2), Math.sin(theta2)] } };
+  const state = { theta2, o2, o4, mu: Math.PI };
+  for (const { kind, first, points, hosts, at, sizes } of dyads) {
+    const [c, d] = hosts.map((host, k) => carried(frames[host], at[k]));
+    const { e, e3, e4, mu, across, slide } = CLOSE[kind](sizes, c, d, first === 3 ? assembly : linkage.assembly_2);
+    const slider = kind === "RRP";
+    frames[first] = { at: c, along: e3 };
+    frames[first + 1] = slider ? { at: e, along: [e4[1], -e4[0]] } : { at: d, along: e4 };
+    [state[points[0]], state[points[2]]] = [c, e];
+    if (!slider) state[points[1]] = d;
+    state[`theta${first}`] = Math.atan2(e3[1], e3[0]);
+    state[`theta${first + 1}`] = Math.atan2(e4[1], e4[0]);
+    state.mu = Math.min(state.mu, mu);
+    state.across ??= across;
+    if (slide !== undefined) state.slide = slide;
+  }
+  const { at, along } = frames[carries];
+  state.p = carried({ at, along }, point);
+  state.guided = Math.atan2(along[1], along[0]) + turned;
+  return state;
 }
 
 // How far P goes for a radian of the driver; null in a dead position, where that has no limit. B of a bar or a slide has no
@@ -30,10 +49,11 @@ function pointSpeed(linkage, state) {
 
 // The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.
 function cylinderAt(linkage, { on, base, point, closed }, state) {
-  const [origin, angle, joint] = kindOf(linkage).frames[on].map((name) => state[name] ?? linkage[name]);
-  const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
-  const [u, v] = point;
-  const pivot = [origin[0] + u * cos - v * sin, origin[1] + u * sin + v * cos];
+  const { dyads, links } = kindOf(linkage);
+  const number = ["driver", "coupler", "output"].indexOf(on) + 2;
+  const [origin, joint = origin] = links[number].points.map((name) => state[name]);
+  const angle = state[`theta${number}`] - (number === 4 && dyads[0].kind === "RRP" ? Math.PI / 2 : 0);
+  const pivot = carried({ at: origin, along: [Math.cos(angle), Math.sin(angle)] }, point);
   const length = Math.hypot(pivot[0] - base[0], pivot[1] - base[1]) || 1;
   const share = Math.min((0.9 * closed) / length, 1);
   return { base, end: base.map((place, k) => place + share * (pivot[k] - place)), pivot, bracket: [origin, pivot, joint] };
@@ -113,9 +133,12 @@ function slideOf(design) {
 // The parts of a drawing as [name, class, path] of a design in a state; `at` is where a place is drawn, and
 // `half` the half length of a block.
 function partsOf(design, state, at, half) {
-  const { parts, shapes } = kindOf(design.linkage);
-  const corners = shapes(slideOf(design), state, half);
-  return parts.map(([name, style, closed]) => [name, style, through(corners[name].map(at), closed)]);
+  const slid = slideOf(design);
+  return kindOf(design.linkage).parts.map(({ name, style, closed, corners }) => [
+    name,
+    style,
+    through(corners(slid, state, half).map(at), closed),
+  ]);
 }
 
 // The same over the whole travel of a design; kept, as every drawing of it needs it.

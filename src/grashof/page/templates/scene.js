@@ -14,7 +14,7 @@ function posesOf(scene, design) {
     const state = positionOf(design.linkage, design.theta2[k], design.assemblies[k]);
     return {
       at: x === null ? state.p : [x, y],
-      angle: angle === null ? state.theta3 + design.linkage.body_angle : angle,
+      angle: angle === null ? state.guided : angle,
       whole,
     };
   });
@@ -41,20 +41,19 @@ function pointsToSee(scene, designs, close) {
 
 // All that a linkage covers in a state, but for the width of blocks.
 function drawnPoints(design, state) {
-  const shapes = kindOf(design.linkage).shapes(slideOf(design), state, 0);
-  return [...pointsOf(design.linkage).map((name) => state[name]), ...Object.values(shapes).flat()];
+  const { parts } = kindOf(design.linkage);
+  const corners = parts.flatMap((part) => part.corners(slideOf(design), state, 0));
+  return [...pointsOf(design.linkage).map((name) => state[name]), ...corners];
 }
 
 // Where the block of a slide on the ground is at the ends of its travel; null where there is none.
 function guideOf(design) {
   const { linkage, from, to } = slideOf(design);
-  if (linkage.slide_angle === undefined) return null;
-  const [cos, sin] = [Math.cos(linkage.slide_angle), Math.sin(linkage.slide_angle)];
-  const on = (along) => [
-    linkage.o2[0] + along * cos - linkage.offset * sin,
-    linkage.o2[1] + along * sin + linkage.offset * cos,
-  ];
-  return [on(from), on(to)];
+  const slider = kindOf(linkage).dyads.find(({ kind }) => kind === "RRP");
+  if (!slider) return null;
+  const { angle, offset } = slider.sizes;
+  const frame = { at: linkage.o2, along: [Math.cos(angle), Math.sin(angle)] };
+  return [from, to].map((at) => carried(frame, [at, offset]));
 }
 
 // The parts of a design's travel, in deg, that it does its task in: two where it passes the end of a whole turn.
@@ -71,11 +70,13 @@ function countedIn({ low, high }, theta2) {
 }
 
 // The angles and the place of P as text, beside the drawing and for screen readers.
-function tellPosition(stage, { theta2, theta3, theta4, p, slide }) {
-  const [driver, coupler, output] = [theta2, theta3, theta4].map((angle) => fixed(angle * DEG, 2));
+function tellPosition(stage, state) {
+  const { theta2, p, slide } = state;
+  const links = Object.keys(kindOf(stage.design.linkage).links).slice(1);
+  const angles = links.map((number) => `θ${number} ${fixed(state[`theta${number}`] * DEG, 2)}`);
   const place = p.map((value) => fixed(value, stage.decimals)).join(", ");
   const slid = slide === undefined ? "" : `, ${withUnit(`slide ${fixed(slide, stage.decimals)}`, stage.scene.unit)}`;
-  $("#angles").textContent = `θ2 ${driver}, θ3 ${coupler}, θ4 ${output} deg${slid}`;
+  $("#angles").textContent = `${angles.join(", ")} deg${slid}`;
   $("#place").textContent = withUnit(`P ${place}`, stage.scene.unit);
   const degrees = (theta2 * DEG).toFixed(1);
   set(stage.svg, { "aria-valuenow": degrees, "aria-valuetext": `${degrees} degrees` });

@@ -279,7 +279,7 @@ class Stage {
       parts.piston = add(layer, "path", { class: "piston" });
       parts.ram = add(layer, "path", { class: "ram" });
     }
-    for (const [name, style] of links) parts[name] = add(layer, "path", { class: style });
+    for (const { name, style } of links) parts[name] = add(layer, "path", { class: style });
     parts.sense = add(layer, "path", { class: "sense" });
     for (const name of [...pivots, ...moving]) {
       parts[name] = add(layer, "circle", { r: name === "p" ? 3.5 : 4, class: `joint ${name}` });
@@ -287,7 +287,7 @@ class Stage {
     if (parts.ram) {
       for (const name of ["base", "pivot"]) parts[name] = add(layer, "circle", { r: 4, class: "joint" });
     }
-    for (const name of ["A", "B", "P"]) parts[name] = add(layer, "text", {}, name);
+    for (const name of moving) parts[`name-${name}`] = add(layer, "text", {}, name.toUpperCase());
     if (this.onDrive) {
       parts.hold = add(layer, "path", { class: "hold", "data-joint": "a" });
       add(parts.hold, "title", {}, "Drag the driver");
@@ -308,7 +308,6 @@ class Stage {
     this.onDraw(state);
     if (!this.parts) return;
     const places = Object.fromEntries(pointsOf(linkage).map((name) => [name, this.at(state[name])]));
-    const { o2, a, b, p } = places;
     const { parts } = this;
     for (const [name, , d] of partsOf(this.design, state, this.at, BLOCK / this.unit)) {
       set(parts[name], { d });
@@ -317,17 +316,18 @@ class Stage {
       set(parts[name], { cx: px(x), cy: px(y) });
       if (parts[`hold-${name}`]) set(parts[`hold-${name}`], { cx: px(x), cy: px(y) });
     }
-    const middle = [(a[0] + b[0] + p[0]) / 3, (a[1] + b[1] + p[1]) / 3];
+    const joints = kindOf(linkage).moving.map((name) => [name, places[name]]);
+    const middle = [0, 1].map((axis) => joints.reduce((sum, [, at]) => sum + at[axis], 0) / joints.length);
     const labels = new Labels(this.labels.taken);
-    for (const joint of [a, b, p]) labels.keep(joint);
-    for (const [name, joint] of Object.entries({ A: a, B: b, P: p })) {
+    for (const [, joint] of joints) labels.keep(joint);
+    for (const [name, joint] of joints) {
       const away = [joint[0] - middle[0], joint[1] - middle[1]];
       const { way, place } = labels.beside(joint, name, away, this.ways[name]);
       this.ways[name] = way;
-      set(parts[name], place);
+      set(parts[`name-${name}`], place);
     }
     if (parts.body) {
-      const corners = bodyAt(this.scene.body, state.p, state.theta3 + linkage.body_angle);
+      const corners = bodyAt(this.scene.body, state.p, state.guided);
       set(parts.body, { d: through(corners.map(this.at), true) });
     }
     if (parts.ram) {
@@ -339,8 +339,8 @@ class Stage {
       set(parts.base, { cx: px(base[0]), cy: px(base[1]) });
       set(parts.pivot, { cx: px(pivot[0]), cy: px(pivot[1]) });
     }
-    set(parts.sense, { d: this.senseArrow(o2, direction) });
-    if (parts.hold) set(parts.hold, { d: through([o2, a]) });
+    set(parts.sense, { d: this.senseArrow(places.o2, direction) });
+    if (parts.hold) set(parts.hold, { d: through([places.o2, places.a]) });
   }
 
   // A line below the block of a slide, from end to end, hatched on its far side.

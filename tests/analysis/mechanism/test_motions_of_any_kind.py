@@ -23,8 +23,8 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.analysis.curves.coupler_curve import tracks
-from grashof.analysis.loops.four_bar import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.extremes import transmission_extremes
+from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.means import mean_over
 from grashof.analysis.mechanism.reach import reach_box
 from grashof.problems import InvertedSliderCrank, SliderCrank

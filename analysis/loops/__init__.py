@@ -1,1 +1,0 @@
-"""How the loop of each kind of linkage closes: all that differs between kinds, a file each."""

@@ -1,0 +1,216 @@
+"""A variable over which the first loop moves evenly, wherever it runs away from its driver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from grashof.analysis.mechanism.first_loop import first_loop, first_ranges
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import TURN, FloatArray
+
+_SLACK = 1e-9  # rad: so far past the end of a range rounding may lie
+_SHORT = 1e-6  # rad: a range below it has no room for more than its ends
+
+
+class _Way(Enum):
+    """How the driver moves about the ground line."""
+
+    TURNS = "turns fully"
+    THROUGH = "swings through it"
+    BESIDE = "swings beside it"
+    PLAIN = "over a part where the linkage does not close everywhere"
+
+
+@dataclass(frozen=True, slots=True)
+class FirstMotion:
+    """Driver angle as a function of a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
+
+    See `EvenMotion`. Made by `first_motion`.
+
+    Parameters
+    ----------
+    start, end : float, rad
+        Driver angles of the motion, in either order.
+    way : _Way
+    centre : float, rad
+        Driver angle from which tan(half the angle) is counted.
+    scale, modulus : float
+        c or X, and the complementary modulus k', of the notes to `first_motion`.
+    first, last : float
+        The elliptic integral at both ends, as a share of half its period.
+    """
+
+    start: float
+    end: float
+    way: _Way = _Way.PLAIN
+    centre: float = 0.0
+    scale: float = 1.0
+    modulus: float = 1.0
+    first: float = 0.0
+    last: float = 1.0
+
+    def theta2(self, share: npt.ArrayLike) -> FloatArray:
+        """Driver angle at a share of the motion, shape (...), rad.
+
+        Where the driver turns fully the share may lie beyond 0 and 1.
+        """
+        t = np.asarray(share, dtype=np.float64)
+        if self.way is _Way.PLAIN:
+            angle = self.start + (self.end - self.start) * np.sin(np.pi / 2 * t) ** 2
+        else:
+            angle = self.centre + 2 * self._half_angle(self._amplitude(t))
+        if self.way is not _Way.TURNS:
+            angle = np.clip(angle, min(self.start, self.end), max(self.start, self.end))
+        return np.where(t == 0, self.start, np.where(t == 1, self.end, angle))
+
+    def rate(self, share: npt.ArrayLike) -> FloatArray:
+        """Derivative of `theta2` by the share, shape (...), rad; 0 in dead positions."""
+        t = np.asarray(share, dtype=np.float64)
+        if self.way is _Way.PLAIN:
+            return np.asarray((self.end - self.start) * np.pi / 2 * np.sin(np.pi * t))
+        psi = self._amplitude(t)
+        sine, cosine, size = np.sin(psi), np.cos(psi), self.scale
+        dn = np.hypot(cosine, self.modulus * sine)
+        if self.way is _Way.TURNS:
+            slope = size * dn / (cosine**2 + (size * sine) ** 2)
+        elif self.way is _Way.THROUGH:
+            slope = size * sine * dn / (1 + (size * cosine) ** 2)
+        else:
+            slope = -size * (1 - self.modulus**2) * sine * cosine / (1 + (size * dn) ** 2)
+        return np.asarray(4 * _quarter_period(self.modulus) * (self.last - self.first) * slope)
+
+    def share(self, theta2: npt.ArrayLike) -> FloatArray:
+        """Share of the motion at driver angles between its ends, shape (...)."""
+        angle = np.asarray(theta2, dtype=np.float64)
+        if self.way is _Way.PLAIN:
+            done = np.clip((angle - self.start) / (self.end - self.start), 0, 1)
+            return np.asarray(2 / np.pi * np.arcsin(np.sqrt(done)))
+        return np.asarray((self._integral(angle) - self.first) / (self.last - self.first))
+
+    def ground_line(self) -> FloatArray:
+        """Driver angles of the motion at which O2A lies along the ground line; none where it is plain."""
+        if self.way is _Way.PLAIN:
+            return np.empty(0)
+        ends = (np.array([self.start, self.end]) - self.centre) / np.pi
+        return self.centre + np.pi * np.arange(np.ceil(ends.min()), np.floor(ends.max()) + 1)
+
+    def _amplitude(self, t: FloatArray) -> FloatArray:
+        return _amplitude(self.first + (self.last - self.first) * t, self.modulus)
+
+    def _half_angle(self, psi: FloatArray) -> FloatArray:
+        sine, cosine = np.sin(psi), np.cos(psi)
+        if self.way is _Way.TURNS:  # tan f = c tan psi, unwrapped
+            c = self.scale
+            return np.asarray(psi + np.arctan2((c - 1) * sine * cosine, cosine**2 + c * sine**2))
+        if self.way is _Way.THROUGH:
+            return np.asarray(np.arctan(-self.scale * cosine))
+        return np.asarray(np.arctan(self.scale * np.hypot(cosine, self.modulus * sine)))
+
+    def _integral(self, theta2: FloatArray) -> FloatArray:
+        """Elliptic integral at driver angles, as a share of half its period."""
+        half = (theta2 - self.centre) / 2
+        if self.way is _Way.TURNS:
+            sine, cosine, c = np.sin(half), np.cos(half), self.scale
+            psi = half + np.arctan2((1 - c) * sine * cosine, c * cosine**2 + sine**2)
+        elif self.way is _Way.THROUGH:
+            psi = np.arccos(np.clip(-np.tan(half) / self.scale, -1, 1))
+        else:
+            dn = np.clip(np.tan(half) / self.scale, self.modulus, 1)
+            psi = np.arctan2(np.sqrt(1 - dn**2), -np.sqrt(dn**2 - self.modulus**2))
+        turns = np.round(psi / np.pi)
+        sine, cosine = np.sin(psi - np.pi * turns), np.cos(psi - np.pi * turns)
+        part = sine * scipy.special.elliprf(cosine**2, cosine**2 + (self.modulus * sine) ** 2, 1.0)
+        return np.asarray(part / (2 * _quarter_period(self.modulus)) + turns)
+
+
+def first_motion(linkage: Linkage, start: float, end: float) -> FirstMotion:
+    """A variable over which links 3 and 4 move evenly between two driver angles; see `even_motion`.
+
+    Notes
+    -----
+    The positions of a four-bar are elliptic functions, without branch points, of the integral of
+    d theta2 / sin mu (Darboux 1879, *Bull. Sci. Math.* 3, 109-128), so rates and forces have poles
+    alone, far from the real axis. With phi = theta2 - theta1, x = tan(phi / 2) and
+
+        sin^2 mu ~ (sin^2(phi / 2) + a) (cos^2(phi / 2) + b),
+        4 r1 r2 a = (r1 - r2)^2 - (r3 - r4)^2,    4 r1 r2 b = (r3 + r4)^2 - (r1 + r2)^2,
+
+    x is c sn / cn where the driver turns fully (a, b > 0), X cn where it swings through the ground line
+    (b < 0 < a; the other way round phi is counted from its back), and X dn where it swings on one side of
+    it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
+    c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) nothing is narrow that need be
+    met: that part is then left out of the integral.
+
+    Slider-cranks have the same form with a and b of their own (`FirstLoop.even`). Of an inverted one b is
+    infinite, and sin mu has the diagonal A-O4 below it besides.
+    """
+    plain = FirstMotion(float(start), float(end))
+    home = _home(linkage, min(start, end), max(start, end))
+    if home is None:
+        return plain
+    way, centre, a, b = home
+    c = 1.0 if np.isinf(a) else float(np.sqrt(abs(a) / (1 + a)))
+    x = 1.0 if np.isinf(b) else float(np.sqrt((1 + b) / abs(b)))
+    modulus = {_Way.TURNS: c / x, _Way.THROUGH: c / np.hypot(c, x), _Way.BESIDE: c / x}[way]
+    size = c if way is _Way.TURNS else -x if way is _Way.BESIDE and start + end < 2 * centre else x
+    motion = replace(plain, way=way, centre=centre, scale=size, modulus=float(modulus))
+    first, last = motion._integral(np.array([start, end])).tolist()
+    return replace(motion, first=first, last=last)
+
+
+def panelled(panels: int, shares: FloatArray) -> FloatArray:
+    """Shares that part a motion evenly, about so many, and some others."""
+    edges = np.sort(np.concatenate([np.linspace(0, 1, panels + 1), np.clip(shares, 0, 1)]))
+    return edges[np.diff(edges, prepend=-1) > 1e-12]
+
+
+def _home(linkage: Linkage, low: float, high: float) -> tuple[_Way, float, float, float] | None:
+    """How the driver moves between two angles, the angle that it is counted from, and a and b."""
+    a, b = first_loop(linkage).even(linkage)
+    if np.isnan(a):
+        return None
+    theta1 = float(linkage.theta1)
+    if a > 0 and b > 0:
+        return _Way.TURNS, theta1, a, b
+    for least, most in first_ranges(linkage).tolist():
+        turned = TURN * np.round((low + high - least - most) / (2 * TURN))
+        if most - least > _SHORT and least + turned - _SLACK <= low <= high <= most + turned + _SLACK:
+            half_turns = ((least + most) / 2 - theta1) / np.pi
+            if a < 0 and b < 0:
+                return _Way.BESIDE, theta1 + turned + TURN * np.round(half_turns / 2), a, b
+            folded = a < 0  # about the back of the ground, an odd number of half turns away
+            return (
+                _Way.THROUGH,
+                theta1 + turned + np.pi * np.round(half_turns),
+                *((b, a) if folded else (a, b)),
+            )
+    return None
+
+
+def _quarter_period(modulus: float) -> float:
+    """Complete elliptic integral of the first kind, by the arithmetic-geometric mean."""
+    return np.pi / 2 / _means(modulus)[-1][0]
+
+
+def _means(modulus: float) -> list[tuple[float, float]]:
+    """The arithmetic means from 1 and k', each with half the difference of the two before it."""
+    a, g, half = 1.0, modulus, 0.0
+    found = [(a, half)]
+    while abs(a - g) > 1e-15 * a:
+        a, g, half = (a + g) / 2, float(np.sqrt(a * g)), (a - g) / 2
+        found.append((a, half))
+    return found
+
+
+def _amplitude(share: FloatArray, modulus: float) -> FloatArray:
+    """Jacobi's amplitude at a share of half the period, descending by Landen's transformation."""
+    means = _means(modulus)
+    psi = np.pi * 2 ** (len(means) - 1) * share
+    for a, half in means[:0:-1]:
+        psi = (psi + np.arcsin(half / a * np.sin(psi))) / 2
+    return np.asarray(psi)
