@@ -303,6 +303,8 @@ def test_what_does_not_fit_a_six_bar_is_refused() -> None:
     ):
         with pytest.raises(ProblemError, match=message):
             act()
+    with pytest.raises(ProblemError, match="link is 1; it must be that of a body, 2 to 4"):
+        three.with_body(1, Body(1.0))
     five = solve_kinematics(FourBar((0, 0), (4, 0), 1, 4, 3), 0.3)
     with pytest.raises(ProblemError, match="masses has 5 bodies; it must have 3 for a four-bar"):
         inverse_dynamics(five, Masses(*[Body(1.0)] * 5))
