@@ -81,9 +81,8 @@ class Dynamics:
     def joint_force(self, joint: Joint) -> FloatArray:
         """Magnitude of the force in a joint, shape (...), N; in a slide with its friction."""
         if joint >= len(self.forces):
-            raise wrong_value(
-                "joint", joint.name, f"one of {', '.join(Joint(k).name for k in range(len(self.forces)))}"
-            )
+            names = [each.name for each in Joint][: len(self.forces)]
+            raise wrong_value("joint", Joint(joint).name, f"one of {', '.join(names)}")
         return np.asarray(np.hypot(self.forces[joint, ..., 0], self.forces[joint, ..., 1]))[()]
 
 

@@ -140,6 +140,8 @@ class Masses:
     def with_body(self, link: int, body: Body) -> Masses:
         """The same with one more body fixed to a link."""
         bodies = list(self.bodies)
+        if not 2 <= link < len(bodies) + 2:
+            raise wrong_value("link", link, f"that of a body, 2 to {len(bodies) + 1}")
         bodies[link - 2] = bodies[link - 2] + body
         return Masses(*bodies)
 

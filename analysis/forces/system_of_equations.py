@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, joints_of, slide_direction, slide_normal
+from grashof.analysis.forces.joints import Joint, joints_of, slide_direction, slide_normal, slides_of
 from grashof.analysis.forces.loads import Loads, cross, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
@@ -95,38 +95,24 @@ def system_of_equations(
     loads = Loads() if loads is None else loads
     if joint_moments is None:
         joint_moments = _moments_in_joints(state, masses, loads)
-    kind, gravity, outside = state.linkage.mechanism, loads.gravity_vector(), wrenches(state, loads)
-    bodies, columns = (
-        masses.by_link(state.linkage),
-        [_column(state, joint) for joint in joints_of(state.linkage)],
-    )
+    linkage, gravity, outside = state.linkage, loads.gravity_vector(), wrenches(state, loads)
+    bodies = masses.by_link(linkage)
+    columns = [_column(state, joint) for joint in joints_of(linkage)]
     size = 3 * len(bodies)
     matrix, right_side = np.zeros((*state.shape, size, size)), np.zeros((*state.shape, size))
-    centres = {link: state.point(link, body.centre) for link, body in bodies.items()}
     for row, (link, body) in zip(range(0, size, 3), bodies.items(), strict=True):
-        centre, force = centres[link], outside[link].force
+        centre, force = state.point(link, body.centre), outside[link].force
         known = outside[link].moment - cross(centre.position - state.origin(link).position, force)
         mass = np.asarray(body.mass)[..., None]
         right_side[..., row : row + 2] = mass * (centre.acceleration - gravity) - force
         right_side[..., row + 2] = body.inertia * state.angular(link)[2] - known
-    for number, (joint, column) in enumerate(zip(kind.every_joint, columns, strict=True)):
-        for link in joint.links:
-            if link == 1:
-                continue
-            row = 3 * (link - 2)
-            sign, turn = (1.0 if link == column.on else -1.0), (1.0 if link == joint.links[1] else -1.0)
-            arm = column.place - centres[link].position
-            for offset, (force, moment) in enumerate(column.unknown):
-                at = 2 * number + offset
-                matrix[..., row : row + 2, at] = sign * force
-                matrix[..., row + 2, at] = sign * cross(arm, force) + turn * moment
-            rubbing = joint_moments[number]
-            if column.along is None:
-                right_side[..., row + 2] -= turn * rubbing
-            else:  # the friction of a slide is a force, known, on its second link
-                pull = turn * rubbing[..., None] * column.along
-                right_side[..., row : row + 2] -= pull
-                right_side[..., row + 2] -= cross(arm, pull)
+        for joint, column in enumerate(columns):
+            if link in column.links:
+                arm, rows = column.place - centre.position, slice(row, row + 3)
+                matrix[..., rows, 2 * joint : 2 * joint + 2] = column.unknown_on(link, arm)
+                right_side[..., rows] -= column.known_on(link, arm, joint_moments[joint])
+    for joint in slides_of(linkage):
+        right_side[np.isnan(joint_moments[joint])] = np.nan  # it locks
     matrix[..., 2, -1] = 1
     names = tuple(name for column in columns for name in column.names)
     equations = tuple(f"link {link}, {what}" for link in bodies for what in _PARTS)
@@ -134,27 +120,47 @@ def system_of_equations(
 
 
 class _Column(NamedTuple):
-    """What is not known of a joint: two unit forces on a link, or one and a moment on the second link."""
+    """A joint: forces on one of its links are unknowns, in a slide that across it and a moment.
+
+    `on` is the link that the force acts on; moments are on the second of `links`.
+    """
 
     names: tuple[str, str]
+    links: tuple[int, int]
     on: int
     place: FloatArray
-    unknown: tuple[tuple[FloatArray, float], tuple[FloatArray, float]]
+    forces: tuple[FloatArray, ...]  # unit vectors
     along: FloatArray | None  # of a slide
+
+    def unknown_on(self, link: int, arm: FloatArray) -> FloatArray:
+        """What a unit of each unknown does to a link: x, y and moment about its centre, shape (..., 3, 2)."""
+        sign, turn = (1.0 if link == one else -1.0 for one in (self.on, self.links[1]))
+        found = np.zeros((*arm.shape[:-1], 3, 2))
+        for column, force in enumerate(self.forces):
+            found[..., :2, column], found[..., 2, column] = sign * force, sign * cross(arm, force)
+        if self.along is not None:
+            found[..., 2, 1] = turn
+        return found
+
+    def known_on(self, link: int, arm: FloatArray, moment: FloatArray) -> FloatArray:
+        """What the moment of a pin, or the friction along a slide, does to it; shape (..., 3)."""
+        own = moment if link == self.links[1] else -moment
+        if self.along is None:
+            return np.stack([np.zeros_like(own), np.zeros_like(own), own], axis=-1)
+        force = own[..., None] * self.along
+        return np.concatenate([force, cross(arm, force)[..., None]], axis=-1)
 
 
 def _column(state: Kinematics, joint: Joint) -> _Column:
     row = state.linkage.mechanism.every_joint[joint]
     first, second = row.links
     on, by = (second, first) if first == 1 else (first, second)
-    in_loop = first % 2 == 1 and second == first + 1 and first > 1
+    in_loop = first > 1 and first % 2 == 1 and second == first + 1  # at the end of both its links
     place = (getattr(state, row.name.lower()) if in_loop else state.origin(second)).position
     if row.slides:
-        across, none = slide_normal(state, second), np.zeros(2)
-        names = f"F{by}{on}n", f"M{first}{second}"
-        return _Column(names, on, place, ((across, 0.0), (none, 1.0)), slide_direction(state, second))
-    x, y = np.eye(2)
-    return _Column((f"F{by}{on}x", f"F{by}{on}y"), on, place, ((x, 0.0), (y, 0.0)), None)
+        across, along = slide_normal(state, second), slide_direction(state, second)
+        return _Column((f"F{by}{on}n", f"M{first}{second}"), row.links, on, place, (across,), along)
+    return _Column((f"F{by}{on}x", f"F{by}{on}y"), row.links, on, place, tuple(np.eye(2)), None)
 
 
 def _moments_in_joints(state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:

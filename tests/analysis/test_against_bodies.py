@@ -1,4 +1,4 @@
-"""Motions, forces and driver ranges of the analysis against the judge in body coordinates, kind by kind."""
+"""Motions and driver ranges of the analysis against the judge in body coordinates, kind by kind."""
 
 from __future__ import annotations
 
@@ -6,18 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from body_coordinates import carried, follow, forces, margins, rates, reach, start
+from body_coordinates import carried, follow, margins, rates, reach, start
 from body_plans import Array, plan_of
 from random_linkages import ROWS, any_linkages, six_bars
 
 from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    Body,
-    Loads,
-    Masses,
     driver_ranges,
-    inverse_dynamics,
     solve_kinematics,
 )
 from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
@@ -95,36 +89,6 @@ def test_a_slide_travels_the_same(both: Both) -> None:
         found = found * both.linkage.assembly
     for k, rate in enumerate((slide.travel, slide.velocity, slide.acceleration, slide.jerk)[: len(found)]):
         agree(found[k], rate, both.clear)
-
-
-def test_joint_forces_and_torque(both: Both) -> None:
-    rng, pull = both.rng, (0.7, -9.81)
-    masses = {k: (*rng.uniform(0.5, 2, (2, COUNT)), rng.normal(size=(COUNT, 2))) for k in (2, 3, 4)}
-    loads = [
-        (k, tuple(rng.normal(size=2)), rng.normal(size=(COUNT, 2)), rng.normal(size=COUNT)) for k in (2, 3, 4)
-    ]
-    expected = inverse_dynamics(
-        both.state,
-        Masses(*(Body(*masses[k]) for k in (2, 3, 4))),
-        Loads(
-            gravity=pull,
-            forces=tuple(AppliedForce(link, at, force) for link, at, force, _ in loads),
-            moments=tuple(AppliedMoment(link, moment) for link, *_, moment in loads),
-        ),
-    )
-    found = forces(both.plan, both.motion, masses, loads, pull)
-    normal = np.stack([-np.sin(both.motion[0, ..., 5]), np.cos(both.motion[0, ..., 5])], axis=-1)
-    if isinstance(both.linkage, SliderCrank):
-        angle = both.linkage.slide_angle
-        found["o4"] = found["slide"][..., None] * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
-    elif isinstance(both.linkage, InvertedSliderCrank):
-        found["b"] = -found["slide"][..., None] * normal
-    pairs = {"o2": "f12", "a": "f32", "b": "f43", "o4": "f14", "torque": "torque"}
-    if both.state.slide is not None:
-        pairs |= {"slide": "slide_force", "slide moment": "slide_moment"}
-    for name, theirs in pairs.items():
-        values = getattr(expected, theirs)
-        agree(found[name], values, both.clear)
 
 
 def test_the_driver_stops_at_the_ends_of_its_range(both: Both) -> None:

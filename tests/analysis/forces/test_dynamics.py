@@ -26,7 +26,6 @@ from grashof.analysis import (
     given_masses,
     inverse_dynamics,
     solve_kinematics,
-    system_centre,
     uniform_bars,
     virtual_work_torque,
 )
@@ -173,49 +172,6 @@ def test_torque_is_the_virtual_work_with_every_load_on(
     peak = np.abs(expected[clear]).max()
     np.testing.assert_allclose(found.torque[clear], expected[clear], rtol=0, atol=1e-9 * peak)
     np.testing.assert_allclose(found.power[clear], found.torque[clear] * speed)
-
-
-@given(data=st.data())
-@CHECKED
-def test_every_link_and_the_whole_are_in_balance(four_bars: Drawer, data: st.DataObject) -> None:
-    """Newton and Euler written out link by link about the centres of mass, and for the whole."""
-    linkage = data.draw(four_bars(GrashofClass.CRANK_ROCKER))
-    masses = data.draw(bodies())
-    gravity = np.array([data.draw(number(-10, 10)), data.draw(number(-10, 10))])
-    pushed = AppliedForce(3, (0.4, -0.3), (2.0, -1.0))
-    loads = Loads(gravity=gravity, forces=(pushed,), friction=Friction(viscous=(0.1, 0.2, 0.3, 0.4)))
-    state = solve_kinematics(linkage, np.linspace(0, TURN, 37), 1.3, 0.7)
-    found = inverse_dynamics(state, masses, loads)
-    at = {"O2": linkage.o2, "A": state.a.position, "B": state.b.position, "O4": linkage.o4}
-    push = state.point(3, pushed.at).position
-    moments = found.joint_moments
-    acting = {
-        2: ([("O2", found.f12), ("A", found.f32)], found.torque + moments[0] - moments[1]),
-        3: ([("A", -found.f32), ("B", found.f43)], moments[1] - moments[2]),
-        4: ([("B", -found.f43), ("O4", found.f14)], moments[2] + moments[3]),
-    }
-    scale = max(
-        1.0, float(max(np.abs(force).max() for force in (found.f12, found.f32, found.f43, found.f14)))
-    )
-    angular_rate = np.zeros(37)
-    for link, (forces, couple) in acting.items():
-        body, centre = masses.of(link), state.point(link, masses.of(link).centre)
-        total = body.mass * gravity + sum(force for _, force in forces)
-        turning = couple + sum(cross(at[joint] - centre.position, force) for joint, force in forces)
-        if link == 3:
-            total = total + pushed.force
-            turning = turning + cross(push - centre.position, np.array(pushed.force))
-        needed = body.mass * centre.acceleration
-        np.testing.assert_allclose(total, needed, atol=1e-11 * scale)
-        spin = body.inertia * state.angular(link)[2]
-        np.testing.assert_allclose(turning, spin, atol=1e-10 * scale * linkage.lengths.max())
-        angular_rate += spin + cross(centre.position - linkage.o2, needed - body.mass * gravity)
-    if masses.total > 0:
-        mass_force = masses.total * (system_centre(masses, state).acceleration - gravity)
-        np.testing.assert_allclose(found.shaking_force, pushed.force - mass_force, atol=1e-10 * scale)
-    outside = cross(push - linkage.o2, np.array(pushed.force))
-    limit = 1e-10 * scale * linkage.lengths.max()
-    np.testing.assert_allclose(found.shaking_moment, outside - angular_rate, atol=limit)
 
 
 def cross(first: npt.NDArray[np.float64], second: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
