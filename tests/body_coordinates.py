@@ -277,6 +277,50 @@ def _both_ways(plan: Plan, q: Array, theta: Array, low: Array, high: Array) -> _
     return _advance(plan.taken(twice), q[twice], theta[twice], ends)
 
 
+def circuit(plan: Plan, q: Array, most_step: float = 0.1, most: int = 3000) -> tuple[Array, Any]:
+    """All that each linkage of a batch reaches from a position, through dead positions too.
+
+    No link drives: a tangent predicts, Newton's method corrects at right angles to it, until the motion
+    comes back to where it began. Positions of shape (N, K, 3n), NaN after that, and whether it came back.
+    """
+    scale = np.ones((len(q), q.shape[-1]))
+    scale[:, 0::3] = scale[:, 1::3] = plan.size[:, None]
+    way = np.linalg.svd(jacobian(plan, q)[:, :-1] * scale[:, None])[2][:, -1]
+    first, here, begin = way.copy(), q.copy(), q.copy()
+    step, back, passed = np.full(len(q), 1e-3), np.zeros(len(q), dtype=bool), [q.copy()]
+    for _ in range(most):
+        on = np.flatnonzero(~back)
+        if not len(on):
+            break
+        sub, to = plan.taken(on), here[on] + scale[on] * way[on] * step[on, None]
+        fits = np.ones(len(on), dtype=bool)
+        for count in range(5):
+            matrix = jacobian(sub, to) * scale[on, None]
+            matrix[:, -1] = way[on]
+            missed = gap(sub, to[None], np.zeros((1, len(on))))[0]
+            missed[:, -1] = 0
+            change = -_solve(matrix, missed)
+            moved = np.linalg.norm(change, axis=-1)
+            if count == 0:
+                fits = moved < 0.1 * step[on] + CONVERGED
+            to = to + scale[on] * change
+        ahead = _solve(matrix, np.broadcast_to(np.eye(q.shape[-1])[-1], to.shape))
+        ahead /= np.linalg.norm(ahead, axis=-1)[:, None]
+        good = fits & (moved < CONVERGED) & ((ahead * way[on]).sum(axis=-1) > 0.98)
+        yes, no = on[good], on[~good]
+        here[yes], way[yes] = to[good], ahead[good]
+        away = (here[yes] - begin[yes]) / scale[yes]
+        away[:, 2::3] = (away[:, 2::3] + np.pi) % (2 * np.pi) - np.pi
+        near = np.linalg.norm(away, axis=-1) < step[yes]
+        back[yes] = near & ((way[yes] * first[yes]).sum(axis=-1) > 0.9) & (len(passed) > 20)
+        step[yes] = np.minimum(1.5 * step[yes], most_step)
+        step[no] /= 2
+        latest = np.full_like(q, np.nan)
+        latest[yes] = here[yes]
+        passed.append(latest)
+    return np.array(passed), back
+
+
 # --- Rates and forces
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from body_coordinates import carried, follow, rates, start
-from body_plans import plan_of
+from body_plans import Array, plan_of
 
 from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
 
@@ -73,3 +73,27 @@ def six_bars(row: str, count: int, rng: np.random.Generator, turning: bool = Tru
     else:
         total, more = most * rng.uniform(0.75, 1.2, count), most * rng.uniform(-0.6, 0.6, count)
     return SixBar(**shared, d=d, r5=(total + more) / 2, r6=(total - more) / 2)
+
+
+def swinging_six_bars(row: str, count: int, rng: np.random.Generator) -> tuple[SixBar, Array]:
+    """Six-bars of one of `ROWS` whose first loops turn or swing; driver angles at which they close."""
+    (i, j), press = ROWS[row]
+    first = any_linkages(FourBar, 8 * count, rng)
+    theta = rng.uniform(-np.pi, np.pi, 8 * count)
+    plan = plan_of(first)
+    q = start(plan, theta, guesses=30)
+    found = np.flatnonzero(np.isfinite(q).all(axis=-1))[:count]
+    first, theta, motion = first[found], theta[found], rates(plan.taken(found), q[found])
+    c, d = (0.8 * rng.normal(size=(count, 2)) + (first.o4 if host == 1 else 0) for host in (i, j))
+    at_c = carried(motion, i, c)[0]
+    shared = {name: getattr(first, name) for name in ("o2", "o4", "r2", "r3", "r4", "assembly")}
+    shared |= {"hosts": (i, j), "c": c, "assembly_2": rng.choice([-1, 1], count)}
+    if press:
+        angle, offset = rng.uniform(-np.pi, np.pi, count), 0.5 * rng.normal(size=count)
+        left = np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+        away = np.abs(offset - ((at_c - first.o2) * left).sum(axis=-1))
+        r5 = away * rng.uniform(1.02, 2.5, count) + 0.05
+        return SixBar(**shared, r5=r5, slide_angle_2=angle, offset_2=offset), theta
+    apart = np.linalg.norm(carried(motion, j, d)[0] - at_c, axis=-1)
+    total, more = apart * rng.uniform(1.02, 2, count), apart * rng.uniform(-0.98, 0.98, count)
+    return SixBar(**shared, d=d, r5=(total + more) / 2, r6=(total - more) / 2), theta

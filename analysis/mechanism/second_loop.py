@@ -37,6 +37,9 @@ class Cut(NamedTuple):
     touched: FloatArray
 
 
+_NOTHING = Cut(np.empty((0, 2)), np.empty((0, 2, 2), dtype=bool), np.empty(0), np.empty(0))
+
+
 class Branches(NamedTuple):
     """All ranges of both assemblies of the first loop, shape (N, 2), rad, and the sign of each, shape (N,).
 
@@ -72,8 +75,7 @@ def cut(linkage: Linkage, transmission: float = 0.0) -> Cut:
         for low, high in first_ranges(linkage, transmission).tolist()
         if np.isfinite(low)
     ]
-    none = Cut(np.empty((0, 2)), np.empty((0, 2, 2), dtype=bool), np.empty(0), np.empty(0))
-    return Cut(*map(np.concatenate, zip(none, *parts, strict=True)))
+    return Cut(*map(np.concatenate, zip(_NOTHING, *parts, strict=True)))
 
 
 def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float], size: float) -> Cut:
@@ -87,27 +89,28 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         at = curve(theta2)
         return np.maximum(limits[0] - at, at - limits[1])
 
-    theta2 = motion.theta2(share)
+    if not len(share):
+        return _NOTHING
+    theta2, stationary, touching = motion.theta2(share), motion.theta2(extremes), CHANGE * size
     missing = missed(theta2)
-    if whole:  # it begins where it is open, if anywhere
+    if whole:
         seam = int(missing.argmax())
-        share = np.concatenate([share[seam:], share[: seam + 1] + 1])
-        theta2, missing = motion.theta2(share), np.concatenate([missing[seam:], missing[: seam + 1]])
-    closed, ends = missing <= 0, [False, False]
-    if not whole and len(share) > 1:
-        for end, inner in ((0, 1), (-1, -2)):
-            ends[end] = bool(abs(missing[end]) <= _TOGETHER * size)
-            closed[end] = closed[inner] if ends[end] else closed[end]
+        if missing[seam] <= touching:
+            never = np.zeros((1, 2, 2), dtype=bool)
+            return Cut(np.array([[low, high]]), never, stationary, theta2[missing >= -touching])
+        # It begins where it is open.
+        theta2 = motion.theta2(np.concatenate([share[seam:], share[: seam + 1] + 1]))
+        missing = np.concatenate([missing[seam:], missing[: seam + 1]])
+    closed, together = missing <= 0, [False, False]
+    if not whole and len(theta2) > 1:  # what rounding leaves of both loops dead together
+        for end, beside in ((0, 1), (-1, -2)):
+            together[end] = bool(abs(missing[end]) <= _TOGETHER * size)
+            closed[end] = closed[beside] if together[end] else closed[end]
     for first, last in _open_runs(closed):
-        if missing[first:last].max() <= CHANGE * size:
+        if missing[first:last].max() <= touching:
             closed[first:last] = True
-    beside = np.concatenate([[whole], closed[:-1]]) & np.concatenate([closed[1:], [whole]])
-    touched = closed & beside & (np.abs(missing) <= CHANGE * size)
-    return Cut(
-        *_ranges(missed, theta2, closed, whole, ends),
-        extremes=motion.theta2(extremes),
-        touched=theta2[touched],
-    )
+    inner = closed[:-2] & closed[1:-1] & closed[2:] & (missing[1:-1] >= -touching)
+    return Cut(*_ranges(missed, theta2, closed, whole, together), stationary, theta2[1:-1][inner])
 
 
 def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray, FloatArray]:
@@ -131,7 +134,7 @@ def _open_runs(closed: BoolArray) -> list[tuple[int, int]]:
 
 
 def _ranges(
-    missed: Curve, theta2: FloatArray, closed: BoolArray, whole: bool, both: list[bool]
+    missed: Curve, theta2: FloatArray, closed: BoolArray, whole: bool, together: list[bool]
 ) -> tuple[FloatArray, BoolArray]:
     """Ranges of the driver, and which loops are dead at their ends."""
     change = np.flatnonzero(closed[1:] != closed[:-1])
@@ -140,9 +143,9 @@ def _ranges(
     ends = last_where(lambda angle: missed(angle) <= 0, inside, outside).tolist()
     dead = [(False, True)] * len(ends)
     if closed[0]:
-        ends, dead = [float(theta2[0]), *ends], [(not whole, both[0]), *dead]
+        ends, dead = [float(theta2[0]), *ends], [(not whole, together[0]), *dead]
     if closed[-1]:
-        ends, dead = [*ends, float(theta2[-1])], [*dead, (not whole, both[1])]
+        ends, dead = [*ends, float(theta2[-1])], [*dead, (not whole, together[1])]
     ranges = np.array(ends).reshape(-1, 2)
     turns = np.round(ranges.mean(axis=-1, keepdims=True) / TURN)
     return ranges - TURN * turns, np.array(dead, dtype=bool).reshape(-1, 2, 2)
