@@ -34,6 +34,7 @@ from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep
+from grashof.study.turn import degrees
 
 _HARMONICS = 5
 _DOUBTED = 2.0  # times its error: a mean below it is 0
@@ -63,10 +64,8 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     worst, where = (worst_transmission_cycle(linkage), "") if turns else (0.0, " (dead positions)")
     label = f"worst transmission angle {sweep.over}{where}"
     yield Fact("transmission_min_deg", label, float(np.degrees(worst)), "deg")
-    strokes = (
-        _limit_facts(study, tables["extremes"]) if more else _stroke_facts(spec, turns, tables["extremes"])
-    )
-    yield from strokes
+    extremes = tables["extremes"]
+    yield from _limit_facts(study, extremes) if more else _stroke_facts(spec, turns, extremes)
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
     yield Fact("size", f"size {sweep.over} (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
@@ -110,17 +109,16 @@ def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
     if np.isfinite(found[0].time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", found[0].time_ratio)
     theta2, values = (np.concatenate([getattr(each, name) for each in found]) for name in ("theta2", "value"))
-    swings = extremes[extremes["quantity"] == f"theta{moved.number}_deg"]
-    for number, (at, value) in enumerate(zip(np.degrees(theta2) % 360, values, strict=True), start=1):
+    rows = extremes[extremes["quantity"] == f"theta{moved.number}_deg"]
+    swings = list(zip(rows["min"], rows["max"], strict=True))
+    for number, (at, value) in enumerate(zip(theta2.tolist(), values.tolist(), strict=True), start=1):
         key, label = f"turns_back_{number}", f"{moved.name} turns back, {number}"
-        yield Fact(f"{key}_theta2_deg", f"{label}: theta2", float(at), "deg")
+        yield Fact(f"{key}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
         if output_turns(kind):
-            angle = counted_with(
-                float(np.degrees(value)), zip(swings["min"], swings["max"], strict=True), 360.0
-            )
+            angle = counted_with(float(np.degrees(value)), swings, 360.0)
             yield Fact(f"{key}_theta{moved.number}_deg", f"{label}: theta{moved.number}", angle, "deg")
         else:
-            yield Fact(f"{key}_travel", f"{label}: travel", float(value), unit)
+            yield Fact(f"{key}_travel", f"{label}: travel", value, unit)
 
 
 def _ranges_facts(spec: LinkageSpec, extremes: pd.DataFrame) -> Iterator[Fact]:
