@@ -64,6 +64,7 @@ class Model:
             low = TURN * float(np.floor(start / TURN))
             return cls(spec, linkage, low, low + TURN, start)
         ranges = driver_ranges(linkage)
+        ranges = ranges[np.isfinite(ranges[:, 0])]
         if not len(ranges):
             raise ProblemError(f"{spec.name} cannot be assembled at any driver angle")
         if theta2 is None:

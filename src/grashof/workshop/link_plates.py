@@ -58,7 +58,8 @@ def link_plates(
         holes = {name.upper(): at for name, at in points_on(linkage, link).items()}
         cut = {slot.pin: slot.ends for slot in slots if slot.link == link.number}
         spots = np.concatenate([np.array(list(holes.values())), *cut.values()])
-        _refuse_length(f"{link.labels[0]}-{link.labels[-1]}", float(np.ptp(spots, axis=0).max()), sizes)
+        farthest = max(link.labels[2:] or link.labels[1:], key=lambda name: float(np.hypot(*holes[name])))
+        _refuse_length(f"{link.labels[0]}-{farthest}", float(np.ptp(spots, axis=0).max()), sizes)
         if note := _without_room(link, holes, cut, sizes):
             notes.append(note)
             del holes[_P]

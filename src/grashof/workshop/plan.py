@@ -148,6 +148,7 @@ def plan_parts(
             "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
             *(_slot_note(scaled, slot) for slot in slots),
             *_two_bases(order, scaled),
+            *_return_crank(order),
             *without_hole,
         ),
     )
@@ -168,7 +169,9 @@ def _parts(
     theta2: float,
     slots: tuple[Slot, ...],
 ) -> tuple[Part, ...]:
-    where = {name: place[0] for name, place in poses(linkage, np.array([theta2])).items()}
+    at = poses(linkage, np.array([theta2]))
+    at, plates = (order.crank.placed(at), order.crank.plates) if order.crank else (at, plates)
+    where = {name: place[0] for name, place in at.items()}
     on_base = np.array([0.0, 0.0, base_angle(linkage)])
     posts = {f"post {number}": np.array([x, 0.0]) for number, x in enumerate(order.posts, start=1)}
     below = base_plate(linkage, posts, sizes, slots)
@@ -216,3 +219,9 @@ def _two_bases(order: Stack, linkage: Linkage) -> list[str]:
         *(f"- {pair}" for pair in order.met[:_MOST_MET]),
         *([f"- and {more} more pairs"] if more > 0 else []),
     ]
+
+
+def _return_crank(order: Stack) -> list[str]:
+    if order.crank is None:
+        return []
+    return [f"the driver is in two plates: both are fixed to pin {order.crank.pin}, which turns with them"]

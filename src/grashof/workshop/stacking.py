@@ -9,7 +9,7 @@ nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import combinations, product
 from typing import NamedTuple, TypeAlias
@@ -25,6 +25,7 @@ from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.workshop.plates import Plate, PlateSizes
+from grashof.workshop.return_crank import ReturnCrank, return_cranks
 from grashof.workshop.slots import base_angle
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
@@ -51,16 +52,17 @@ def pinned(kind: Mechanism) -> dict[str, tuple[str, ...]]:
 
 @dataclass(frozen=True, slots=True)
 class Pin:
-    """A pin through the layers `low` to `high`, both in plates with a hole for it."""
+    """A pin through the layers `low` to `high`, both in plates with a hole for it, as are those `held`."""
 
     name: str
     low: int
     high: int
+    held: tuple[int, ...] = field(default=(), repr=False)
 
     @property
-    def passed(self) -> range:
+    def passed(self) -> tuple[int, ...]:
         """Layers between, where it runs in spacers."""
-        return range(self.low + 1, self.high)
+        return tuple(layer for layer in range(self.low + 1, self.high) if layer not in self.held)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,13 +78,16 @@ class Stack:
     posts : tuple of float, mm
         Where the posts stand along the base, from O2; none with a single base.
     met : tuple of str
-        For each order that was tried before: two parts that would come too close, and where.
+        For each order on one base that was tried before: two parts that would come too close, and where.
+    crank : ReturnCrank or None
+        How the driver is divided into two plates, if it is.
     """
 
     layers: Mapping[str, int]
     pins: tuple[Pin, ...]
     posts: tuple[float, ...] = ()
     met: tuple[str, ...] = ()
+    crank: ReturnCrank | None = None
 
     @property
     def bases(self) -> tuple[int, ...]:
@@ -201,47 +206,82 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
     -------
     Stack
         With two bases, joined by posts outside the reach of the links, where no order on one base is free:
-        the second one carries some of the ground pivots from the other side.
+        the second one carries some of the ground pivots from the other side. With a return crank where that
+        does not help.
 
     Raises
     ------
     ProblemError
         No order is free, as may be of a six-bar.
     """
+    joints, met = pinned(linkage.mechanism), dict[str, None]()
+    tried = _Bench(plates, joints, motion, sizes)
+    if (found := tried.free(linkage, met)) is not None:
+        return found
+    for crank in return_cranks(plates, sizes):
+        moving = Motion(motion.theta2, crank.placed(motion.places))
+        found = _Bench(crank.plates, crank.pinned(joints), moving, sizes).free(linkage, {})
+        if found is not None:
+            return replace(found, met=tuple(met), crank=crank)
+    raise ProblemError(
+        f"no order of the layers lets the plates of the {linkage.mechanism.word} pass each other; on one "
+        f"base {next(iter(met))}"
+    )
 
-    @cache
-    def cores(name: str) -> GeometryArray:
-        return _cores(plates, motion, name)
 
-    @cache
-    def gap(one: str, other: str) -> tuple[float, float]:
-        """Least gap between two parts over the motion, and the driver angle there."""
-        gaps = shapely.distance(cores(one), cores(other)) - sizes.width
-        worst = int(np.argmin(gaps))
-        return float(gaps[worst]), float(motion.theta2[worst])
+class _Bench:
+    """Parts whose orders are tried: plates, what each pin joins, and their motion."""
 
-    def meeting(order: Order) -> tuple[str, str] | None:
+    def __init__(
+        self,
+        plates: Mapping[str, Plate],
+        joints: Mapping[str, tuple[str, ...]],
+        motion: Motion,
+        sizes: PlateSizes,
+    ) -> None:
+        self.plates, self.joints, self.motion, self.sizes = plates, joints, motion, sizes
+        self.cores, self.gap = cache(self._cores), cache(self._gap)
+
+    def free(self, linkage: Linkage, met: dict[str, None]) -> Stack | None:
+        """The first order in which nothing meets, on one base or on two; notes down what meets on one."""
+        layings = _layings(tuple(self.plates), self.joints)
+        for order in _orders(layings, self.joints, [()]):
+            if (pair := self._meeting(order)) is None:
+                return Stack(*order, met=tuple(met))
+            met[self._words(*pair)] = None
+        pivots = [name for name, parts in self.joints.items() if GROUND in parts]
+        above = [some for count in range(1, len(pivots)) for some in combinations(pivots, count)]
+        orders = _orders(layings, self.joints, above)
+        found = next((order for order in orders if self._meeting(order) is None), None)
+        if found is None:
+            return None
+        posts, top = _posts(self.plates, linkage, self.motion, self.sizes), max(found.layers.values()) + 1
+        pins = (*found.pins, *(Pin(f"post {i}", 0, top) for i in range(1, len(posts) + 1)))
+        return Stack(found.layers, pins, posts, tuple(met))
+
+    def _meeting(self, order: Order) -> tuple[str, str] | None:
         """The first two parts that come too close, if any do."""
-        return next((pair for pair in _passing(order) if gap(*pair)[0] < sizes.gap), None)
+        return next((pair for pair in _passing(order) if self.gap(*pair)[0] < self.sizes.gap), None)
 
-    links, joints = tuple(plates), pinned(linkage.mechanism)
-    met: dict[str, None] = {}
-    for order in _orders(links, joints, [()]):
-        if (pair := meeting(order)) is None:
-            return Stack(*order, met=tuple(met))
-        met[_meeting(*pair, *gap(*pair), links)] = None
-    pivots = [name for name, parts in joints.items() if GROUND in parts]
-    above = [some for count in range(1, len(pivots)) for some in combinations(pivots, count)]
-    free = next((order for order in _orders(links, joints, above) if meeting(order) is None), None)
-    if free is None:
-        raise ProblemError(
-            f"no order of the layers lets the {linkage.mechanism.word} move freely, on two bases neither; "
-            f"on one, {next(iter(met))}"
-        )
-    posts = _posts(plates, linkage, motion, sizes)
-    top = max(free.layers.values()) + 1
-    pins = (*free.pins, *(Pin(f"post {i}", 0, top) for i in range(1, len(posts) + 1)))
-    return Stack(free.layers, pins, posts, tuple(met))
+    def _gap(self, one: str, other: str) -> tuple[float, float]:
+        """Least gap between two parts over the motion, and the driver angle there."""
+        gaps = shapely.distance(self.cores(one), self.cores(other)) - self.sizes.width
+        worst = int(np.argmin(gaps))
+        return float(gaps[worst]), float(self.motion.theta2[worst])
+
+    def _cores(self, name: str) -> GeometryArray:
+        """What a part surrounds by half a width, at every angle of the sweep: geometries, shape (n,)."""
+        corners = self.plates[name].corners if name in self.plates else np.zeros((1, 2))
+        at = placed(corners, self.motion.places[name])
+        if len(corners) == 1:
+            return np.asarray(shapely.points(at[:, 0]))
+        return np.asarray(shapely.linestrings(at) if len(corners) == 2 else shapely.polygons(at))
+
+    def _words(self, one: str, other: str) -> str:
+        gap, theta2 = self.gap(one, other)
+        one, other = (name if name in self.plates else f"pin {name}" for name in (one, other))
+        how = "meet" if gap <= 0 else f"come within {gap:.2g} mm"
+        return f"{one} and {other} {how} at theta2 = {round(np.degrees(theta2), 1) % 360:.1f} deg"
 
 
 class Order(NamedTuple):
@@ -251,39 +291,44 @@ class Order(NamedTuple):
     pins: tuple[Pin, ...]
 
 
+def _layings(links: tuple[str, ...], joints: Mapping[str, tuple[str, ...]]) -> list[dict[str, int]]:
+    """The ways to lay the links in layers, none of them empty, and no pin joins two links on one."""
+    levels = range(1, len(links) + 1)
+    places = [[links.index(part) for part in parts if part in links] for parts in joints.values()]
+    pairs = [pair for each in places for pair in combinations(each, 2)]
+    return [
+        dict(zip(links, each, strict=True))
+        for each in product(levels, repeat=len(links))
+        if all(each[one] != each[other] for one, other in pairs) and len(set(each)) == max(each)
+    ]
+
+
 def _orders(
-    links: tuple[str, ...], joints: Mapping[str, tuple[str, ...]], above: Sequence[tuple[str, ...]]
+    layings: Sequence[dict[str, int]],
+    joints: Mapping[str, tuple[str, ...]],
+    above: Sequence[tuple[str, ...]],
 ) -> list[Order]:
-    """The ways to lay the links in layers: fewest layers first, fewest spacers, the driver lowest.
+    """Layings with their pins: fewest layers first, fewest spacers, the driver lowest.
 
     `above` has the choices of ground pivots that a second base carries.
     """
-    levels = range(1, len(links) + 1)
-    orders = (
-        Order(layers, _pins(joints, layers, upper))
-        for each in product(levels, repeat=len(links))
-        if set(each) == set(range(1, max(each) + 1))  # no layer is empty
-        for layers in [dict(zip(links, each, strict=True))]
-        for upper in above
-    )
 
     def cost(order: Order) -> tuple[int, int, int]:
-        spacers = sum(len(pin.passed) for pin in order.pins)
+        spacers = sum(pin.high - pin.low - 1 - len(pin.held) for pin in order.pins)
         return max(order.layers.values()), spacers, order.layers["driver"]
 
-    # No pin joins two parts on one layer.
-    return sorted((each for each in orders if all(pin.low < pin.high for pin in each.pins)), key=cost)
+    return sorted((Order(each, _pins(joints, each, some)) for each in layings for some in above), key=cost)
 
 
 def _pins(
     joints: Mapping[str, tuple[str, ...]], layers: Mapping[str, int], above: tuple[str, ...]
 ) -> tuple[Pin, ...]:
     """The pins, those of the pivots `above` from the base over all layers."""
-    top = max(layers.values()) + 1
-    return tuple(
-        Pin(name, *sorted(layers.get(part, top if name in above else 0) for part in parts))
-        for name, parts in joints.items()
-    )
+    top, pins = max(layers.values()) + 1, list[Pin]()
+    for name, parts in joints.items():
+        low, *held, high = sorted(layers.get(part, top if name in above else 0) for part in parts)
+        pins.append(Pin(name, low, high, tuple(held)))
+    return tuple(pins)
 
 
 def _passing(order: Order) -> Iterator[tuple[str, str]]:
@@ -293,21 +338,6 @@ def _passing(order: Order) -> Iterator[tuple[str, str]]:
         there = [name for name in layers if layers[name] == layer]
         there += [pin.name for pin in pins if layer in pin.passed]
         yield from combinations(there, 2)
-
-
-def _cores(plates: Mapping[str, Plate], motion: Motion, name: str) -> GeometryArray:
-    """What a part surrounds by half a width, at every angle of the sweep: geometries, shape (n,)."""
-    corners = plates[name].corners if name in plates else np.zeros((1, 2))
-    at = placed(corners, motion.places[name])
-    if len(corners) == 1:
-        return np.asarray(shapely.points(at[:, 0]))
-    return np.asarray(shapely.linestrings(at) if len(corners) == 2 else shapely.polygons(at))
-
-
-def _meeting(one: str, other: str, gap: float, theta2: float, links: tuple[str, ...]) -> str:
-    one, other = (name if name in links else f"pin {name}" for name in (one, other))
-    how = "meet" if gap <= 0 else f"come within {gap:.2g} mm"
-    return f"{one} and {other} {how} at theta2 = {round(np.degrees(theta2), 1) % 360:.1f} deg"
 
 
 def _posts(

@@ -1,13 +1,12 @@
 """Linkages of every kind, turning and swinging, on both assemblies, in several units."""
 
 from dataclasses import replace
-from itertools import count
 
 import numpy as np
 import pytest
-from random_linkages import ROWS, TURN, six_bars
+from six_bar_examples import SIX_BARS
 
-from grashof.analysis import full_rotation, solve_position
+from grashof.analysis import full_rotation
 from grashof.analysis.judge.planted import (
     random_full_crank,
     random_inverted_slider_crank,
@@ -29,16 +28,6 @@ LEG = SixBar(
 )  # fmt: skip
 
 
-def turning_six_bar(row: str, point_link: int) -> SixBar:
-    """A six-bar of one of `ROWS` well away from dead positions."""
-    rng = np.random.default_rng(71)
-    for _ in count():
-        found = six_bars(row, 1, rng)[0]
-        if np.min(np.abs(solve_position(found, TURN).margins)) > 0.3:
-            return SixBar(**(found.stated | {"point_link": point_link}))
-    raise AssertionError
-
-
 def models() -> list[Model]:
     rng = np.random.default_rng(23)
     found = []
@@ -51,9 +40,8 @@ def models() -> list[Model]:
     rocker = FourBar(o2=(1, 0), o4=(5, 1), r2=3.5, r3=3, r4=2, coupler_point=(1, 1), assembly=-1)
     assert not full_rotation(rocker)
     found.append(Model.of(LinkageSpec(rocker, "swinging", length_unit="m")))
-    for number, row in enumerate(ROWS):
-        linkage, unit = turning_six_bar(row, 2 + (3 + number) % 5), ("m", "mm", "in", "")[number % 4]
-        found.append(Model.of(LinkageSpec(linkage, f"{linkage.mechanism.word} with {row}", length_unit=unit)))
+    for number, (name, linkage) in enumerate(SIX_BARS.items()):
+        found.append(Model.of(LinkageSpec(linkage, name, length_unit=("m", "mm", "in", "")[number % 4])))
     found.append(Model.of(LinkageSpec(LEG, "leg", length_unit="m")))
     return [*found, Model.of(load_linkage_spec("pumpjack"))]
 

@@ -54,7 +54,7 @@ def test_it_stands_assembled_where_its_motion_begins(model: Model) -> None:
             )
 
 
-@pytest.mark.quick("four-bar in in", "pumpjack", "leg", "watt-2 with slide 4 1", "stephenson-1 with pins 2 4")
+@pytest.mark.quick("four-bar in in", "pumpjack", "leg", "press of a watt-2", "stephenson-1")
 def test_it_moves_as_the_linkage(model: Model) -> None:
     """A turn of the driver, or as far as one that swings comes within a third of its range."""
     made, data = opened(model)

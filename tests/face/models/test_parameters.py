@@ -9,6 +9,7 @@ import pytest
 
 from grashof.models import Model, freecad, solidworks
 from grashof.models.parameters import rows
+from grashof.problems import FourBar, LinkageSpec, ProblemError
 
 ROW = re.compile(r'"(\w+)" = (-?\d[\d.e+-]*?)(mm|cm|m|in|ft|deg|)')
 
@@ -19,6 +20,11 @@ def expected(model: Model) -> dict[str, float]:
     kept = {name: float(value) for name, value in linkage.columns.items() if name not in left_out}
     angles = {2: model.start} | {link.number: at.angles[link.number] for link in linkage.mechanism.links[2:]}
     return kept | {f"theta{link}_deg": float(np.degrees(angle)) for link, angle in angles.items()}
+
+
+def test_what_cannot_be_assembled_has_no_model() -> None:
+    with pytest.raises(ProblemError, match="apart cannot be assembled at any driver angle"):
+        Model.of(LinkageSpec(FourBar((0, 0), (100, 0), 5, 9, 8), "apart"))
 
 
 def test_solidworks_equations(model: Model) -> None:
