@@ -60,7 +60,7 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
     speeds, accelerations = (
         {f"{name}_{size}": label for name, label in points.items()} for size in ("speed", "acceleration")
     )
-    *others, last = points.values()
+    *others, last = sorted(points.values())
     every, links = ", ".join(points.values()), turning(kind)
     motion: list[Panel] = [
         ("angles", "angles", "deg", {f"theta{n}_deg": f"θ{n}" for n in links} | _MU),

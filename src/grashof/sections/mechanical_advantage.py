@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.optimize import brentq
 
 from grashof.analysis import Kinematics, advantage, holding, output_stroke
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -15,7 +14,6 @@ from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes
 
 _STANDS = 1e-9  # |omega4 / omega2| at which the output stands
-_PLACE = 1e-14  # rad
 
 
 def mechanical_advantage(study: LinkageStudy) -> Section:
@@ -79,22 +77,11 @@ def _facts(study: LinkageStudy) -> Iterator[Fact]:
             yield Fact(f"velocity_ratio_{name}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
         if most := max(abs(found.low), abs(found.high)):
             yield Fact("mechanical_advantage_least", f"mechanical advantage |T{n} / T2|, least", 1 / most)
-    stands = output_stroke(linkage).theta2 if len(linkage.mechanism.dyads) == 1 else _turns_back(study)
+    if len(linkage.mechanism.dyads) == 1:
+        stands = output_stroke(linkage).theta2
+    else:
+        stands = np.concatenate([each.theta2 for each in study.limit_positions()]) % TURN
     stands = np.sort(stands[np.abs(advantage(linkage, stands).velocity_ratio) < _STANDS])
     for number, at in enumerate(stands, start=1):
         label = f"mechanical advantage without limit, {number}: theta2"
         yield Fact(f"toggle_{number}_theta2_deg", label, degrees(at), "deg")
-
-
-def _turns_back(study: LinkageStudy) -> FloatArray:
-    """Driver angles where the velocity ratio changes its sign, shape (K,), rad."""
-
-    def ratio(theta2: float) -> float:
-        return float(advantage(study.linkage, theta2).velocity_ratio)
-
-    found: list[float] = []
-    for state in study.states:
-        theta2, values = state.theta2.tolist(), advantage(study.linkage, state.theta2).velocity_ratio
-        changes = np.flatnonzero((values[:-1] * values[1:] <= 0) & np.isfinite(values[:-1] * values[1:]))
-        found += [brentq(ratio, theta2[k], theta2[k + 1], xtol=_PLACE) for k in changes.tolist()]
-    return np.unique(np.array(found) % TURN)

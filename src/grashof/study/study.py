@@ -8,13 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis import DriverLaw, DriverMotion, Kinematics, Loads, Masses, stated_loads, stated_masses
+from grashof.analysis.mechanism.stroke import LinkStroke, link_stroke
 from grashof.problems import FourBar, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.linkages.mechanisms import as_kind
 from grashof.study.asked import Asked as Asked
-from grashof.study.sweep import Sweep
+from grashof.study.sweep import INSET, Sweep
 
 _TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
 
@@ -126,6 +127,13 @@ class LinkageStudy:
         turns = np.floor(now / law.duration + 1e-12)
         motion = law.at_time(np.maximum(now - turns * law.duration, 0.0))
         return motion._replace(theta2=motion.theta2 + turns * law.rotation)
+
+    def limit_positions(self) -> list[LinkStroke]:
+        """Where the last link turns back, in each range of the driver, of a linkage of several loops."""
+        if self.sweep.turns:
+            return [link_stroke(self.linkage)]
+        ends = ((low + INSET, high - INSET) for low, high in self.sweep.ranges)
+        return [link_stroke(self.linkage, start=low, end=high) for low, high in ends]
 
     def in_range(self, angles_deg: npt.ArrayLike, name: str) -> FloatArray:
         """Driver angles, shape (N,), deg, as those of its ranges, rad.

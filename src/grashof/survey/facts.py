@@ -34,6 +34,7 @@ from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep
+from grashof.study.turn import degrees
 
 _HARMONICS = 5
 _DOUBTED = 2.0  # times its error: a mean below it is 0
@@ -63,7 +64,8 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     worst, where = (worst_transmission_cycle(linkage), "") if turns else (0.0, " (dead positions)")
     label = f"worst transmission angle {sweep.over}{where}"
     yield Fact("transmission_min_deg", label, float(np.degrees(worst)), "deg")
-    yield from _stroke_facts(spec, turns, tables["extremes"])
+    extremes = tables["extremes"]
+    yield from _limit_facts(study, extremes) if more else _stroke_facts(spec, turns, extremes)
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
     extent = np.max(box[:, 1], axis=0) - np.min(box[:, 0], axis=0)
     yield Fact("size", f"size {sweep.over} (diagonal of the box it needs)", float(np.hypot(*extent)), unit)
@@ -74,9 +76,6 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
 
 def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Iterator[Fact]:
     linkage, unit, kind = spec.linkage, spec.unit, spec.linkage.mechanism
-    if len(kind.dyads) > 1:  # limit positions have a closed form in one loop alone
-        yield from _ranges_facts(spec, extremes)
-        return
     stroke, moved = output_stroke(linkage), kind.links[-1].name
     if not turns:  # the two toggle positions may lie on different circuits
         yield from _ranges_facts(spec, extremes)
@@ -100,6 +99,26 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
                     swings = extremes[extremes["quantity"] == "theta4_deg"]
                     found = counted_with(found, zip(swings["min"], swings["max"], strict=True), 360.0)
                 yield Fact(f"toggle_{name}_theta{link}_deg", label, found, "deg")
+
+
+def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
+    """How the last link of several loops goes to and fro; limit positions have no closed form there."""
+    kind, unit = study.linkage.mechanism, study.spec.unit
+    yield from _ranges_facts(study.spec, extremes)
+    found, moved = study.limit_positions(), kind.links[-1]
+    if np.isfinite(found[0].time_ratio):
+        yield Fact("time_ratio", "time ratio of the strokes", found[0].time_ratio)
+    theta2, values = (np.concatenate([getattr(each, name) for each in found]) for name in ("theta2", "value"))
+    rows = extremes[extremes["quantity"] == f"theta{moved.number}_deg"]
+    swings = list(zip(rows["min"], rows["max"], strict=True))
+    for number, (at, value) in enumerate(zip(theta2.tolist(), values.tolist(), strict=True), start=1):
+        key, label = f"turns_back_{number}", f"{moved.name} turns back, {number}"
+        yield Fact(f"{key}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
+        if output_turns(kind):
+            angle = counted_with(float(np.degrees(value)), swings, 360.0)
+            yield Fact(f"{key}_theta{moved.number}_deg", f"{label}: theta{moved.number}", angle, "deg")
+        else:
+            yield Fact(f"{key}_travel", f"{label}: travel", value, unit)
 
 
 def _ranges_facts(spec: LinkageSpec, extremes: pd.DataFrame) -> Iterator[Fact]:

@@ -47,6 +47,22 @@ def test_the_dwell_of_a_six_bar() -> None:
     assert np.ptp(np.degrees(theta6)) == pytest.approx(0.5, abs=1e-4)
 
 
+@pytest.mark.parametrize("name", ["dwell-six-bar", "klann"])
+def test_the_output_turns_back_where_it_is_least_and_most(name: str) -> None:
+    report = report_on(load_linkage_spec(name))
+    found, table = facts(report), extremes(report)
+    places = [found[f"turns_back_{number}_theta2_deg"] for number in range(1, 5)]
+    assert "turns_back_5_theta2_deg" not in found
+    assert places == sorted(places)
+    for place in table.loc["theta6_deg", ["theta2_min_deg", "theta2_max_deg"]]:
+        assert np.isclose(places, place, atol=1e-5).any()
+    toggles = [found[f"toggle_{number}_theta2_deg"] for number in range(1, 5)]
+    np.testing.assert_allclose(toggles, places, atol=1e-8)
+    theta6 = np.degrees(np.unwrap(solve_position(report.sweep.spec.linkage, np.radians(places)).theta6))
+    shown = [found[f"turns_back_{number}_theta6_deg"] for number in range(1, 5)]
+    np.testing.assert_allclose(np.diff(shown), np.diff(theta6), atol=1e-9)
+
+
 @pytest.mark.quick("stephenson-3", "press of a watt-2")
 @pytest.mark.parametrize("name", SIX_BARS)
 def test_tables_and_sections_tell_of_all_links(name: str) -> None:

@@ -6,6 +6,7 @@ const STEPS = 180;
 const wrapped = (angle) => angle - TURN * Math.round(angle / TURN);
 
 // A point of a link by its place in the frame of the link.
+/** @type {(frame: { at: number[], along: number[] }, place: number[]) => number[]} */
 const carried = ({ at: [x, y], along: [cos, sin] }, [u, v]) => [x + u * cos - v * sin, y + u * sin + v * cos];
 
 // Where every point is; in the first loop on the assembly of the linkage unless another is given. `mu` is the

@@ -316,7 +316,7 @@ class Stage {
       set(parts[name], { cx: px(x), cy: px(y) });
       if (parts[`hold-${name}`]) set(parts[`hold-${name}`], { cx: px(x), cy: px(y) });
     }
-    const joints = kindOf(linkage).moving.map((name) => [name, places[name]]);
+    const joints = [...kindOf(linkage).moving].sort().map((name) => [name, places[name]]);
     const middle = [0, 1].map((axis) => joints.reduce((sum, [, at]) => sum + at[axis], 0) / joints.length);
     const labels = new Labels(this.labels.taken);
     for (const [, joint] of joints) labels.keep(joint);
