@@ -156,10 +156,11 @@ def with_extremes(
     rows, sign = np.concatenate([top, bottom]), np.repeat([1.0, -1.0], [len(top), len(bottom)])
     near = np.stack([low[rows], middle[rows], high[rows]], axis=-1)
     at = greatest(lambda each: sign[:, None] * curve(each), near, most=1, rounds=_CLOSER)[1][0]
+    at = at[(at > near[:, 0]) & (at < near[:, 2])]
     if periodic:
         at = np.unique(places[0] + (at - places[0]) % period)
         return np.unique(np.concatenate([places[:-1], at])), at
-    at = np.unique(at[(at > places[0]) & (at < places[-1])])
+    at = np.unique(at)
     return np.unique(np.concatenate([places, at])), at
 
 
