@@ -81,8 +81,7 @@ from grashof.analysis.judge.tolerance import Robustness, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
-from grashof.analysis.mechanism.driver import DriverMotion, driver_motion
-from grashof.analysis.mechanism.driver_law import DriverLaw
+from grashof.analysis.mechanism.driver_law import DriverLaw, DriverMotion, driver_motion
 from grashof.analysis.mechanism.driver_samples import driver_samples
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes

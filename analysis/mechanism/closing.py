@@ -263,10 +263,10 @@ def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
     found: list[Solved] = []
     for first, loop in zip((3, 5), loops, strict=False):
         turns = {link: Turns((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
-        ((across, along),) = _projected(loop, turns, 1)
+        (gap,) = _projected(loop, turns, 1)
         scale = np.abs(loop.closed.margin)
         with np.errstate(invalid="ignore"):
-            solved = loop.dyad.sizes.solve(loop.closed, across, along, loop.dyad.sizes.sign, scale)
+            solved = loop.dyad.sizes.solve(loop.closed, gap, loop.dyad.sizes.sign, scale)
             omegas = {link: omega * scale for link, omega in omegas.items()}
             found = [Solved(*(each * scale for each in before)) for before in found]
         omegas |= {first: solved.turn3, first + 1: solved.turn4}

@@ -111,16 +111,9 @@ class Pins(NamedTuple):
         """E4, along which link 3 alone counts, and e3, along which link 4 does."""
         return (closed.cos4, closed.sin4), (closed.cos3, closed.sin3)
 
-    def solve(
-        self,
-        closed: Closed,  # noqa: ARG002
-        first: FloatArray,
-        second: FloatArray,
-        inverse: FloatArray,
-        scale: FloatArray | float,  # noqa: ARG002
-    ) -> Solved:
+    def solve(self, closed: Closed, at: Vector, inverse: FloatArray, scale: FloatArray | float) -> Solved:  # noqa: ARG002
         """Norton, *Design of Machinery*, sec. 6.7."""
-        return Solved(first * inverse / self.m, second * inverse / self.n, _NONE)
+        return Solved(at[0] * inverse / self.m, at[1] * inverse / self.n, _NONE)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
         """The second derivative of the gap has -v3^2 m e3 + v4^2 n e4 besides J times that of q.
@@ -224,17 +217,10 @@ class Slider(NamedTuple):
         """Across the slide, to its left, and along it."""
         return (-self.ey, self.ex), (self.ex, self.ey)
 
-    def solve(
-        self,
-        closed: Closed,
-        first: FloatArray,
-        second: FloatArray,
-        inverse: FloatArray,
-        scale: FloatArray | float,
-    ) -> Solved:
+    def solve(self, closed: Closed, at: Vector, inverse: FloatArray, scale: FloatArray | float) -> Solved:
         """The component across the slide leaves the turn of the bar."""
-        turn = first * inverse / self.m
-        return Solved(turn, self._still(closed), -second * scale - self.m * self._sine(closed) * turn)
+        turn = at[0] * inverse / self.m
+        return Solved(turn, self._still(closed), -at[1] * scale - self.m * self._sine(closed) * turn)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
         """The second derivative of the gap has -v^2 m e3 besides J times that of q, the third -3 v a m e3."""
@@ -332,17 +318,10 @@ class Block(NamedTuple):
         """Across the rod, to its left, and along it."""
         return (-closed.sin3, closed.cos3), (closed.cos3, closed.sin3)
 
-    def solve(
-        self,
-        closed: Closed,
-        first: FloatArray,
-        second: FloatArray,
-        inverse: FloatArray,
-        scale: FloatArray | float,
-    ) -> Solved:
+    def solve(self, closed: Closed, at: Vector, inverse: FloatArray, scale: FloatArray | float) -> Solved:
         """The component across the rod leaves its turn."""
-        turn = first * inverse / np.hypot(closed.reach, self.offset)
-        return Solved(turn, turn, second * scale - self.offset * turn)
+        turn = at[0] * inverse / np.hypot(closed.reach, self.offset)
+        return Solved(turn, turn, at[1] * scale - self.offset * turn)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
         """With z = (l - i offset) e3 the second derivative has 2 i l' v e3 - v^2 z besides J times that of q.

@@ -100,8 +100,8 @@ class _Varied:
         lost = {names[name]: _complex(by) for name, by in sizes.sizes(closed).items()}
         gap = self.add(d - c, lost)
         with np.errstate(divide="ignore", invalid="ignore"):
-            parts = [(gap * _complex(each).conj()).real for each in sizes.facing(closed)]
-            three, four, _ = sizes.solve(closed, parts[0], parts[1], 1 / closed.margin, 1.0)
+            one, other = ((gap * _complex(each).conj()).real for each in sizes.facing(closed))
+            three, four, _ = sizes.solve(closed, (one, other), 1 / closed.margin, 1.0)
         self.turns |= {first: three, first + 1: four + np.zeros(gap.shape)}
         self.origins |= {first: c, first + 1: d}
         if row.kind is DyadKind.RRP:
