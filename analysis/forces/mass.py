@@ -88,8 +88,8 @@ class Masses:
 
     Examples
     --------
-    >>> Masses(Body(1.0), Body(2.0), Body(3.0), Body(0.5), Body(0.0)).of(5).mass
-    array(0.5)
+    >>> float(Masses(Body(1.0), Body(2.0), Body(3.0), Body(0.5), Body(0.0)).of(5).mass)
+    0.5
     """
 
     bodies: tuple[Body, ...]
