@@ -77,6 +77,8 @@ def sections_of(study: LinkageStudy) -> tuple[Section, ...]:
     suited = [make for make in SECTIONS if make not in _ONLY or _ONLY[make][0](kind)]
     for make, (have, word) in _ONLY.items():
         if make not in suited and (word in named or getattr(asked, word, None)):
+            if have is output_turns and len(kind.dyads) > 1:
+                raise ProblemError(f"{word} does not go with a {kind.word} whose link 6 slides")
             kinds = [name for name, row in ONE_LOOP.items() if have(row)]
             raise ProblemError(not_had(word, (kind.word,), kinds))
     return tuple(section for make in suited if (section := make(study)) is not None)

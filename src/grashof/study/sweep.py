@@ -22,12 +22,14 @@ from grashof.analysis import (
     solve_kinematics,
     transmission_angle,
 )
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.second_loop import cut, lifted
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
 from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.linkages.mechanisms import NOISE
 
 INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
@@ -62,12 +64,17 @@ class Sweep:
         Raises
         ------
         ProblemError
-            The linkage closes at no driver angle, or a speed that is not finite or beyond 1e20.
+            The linkage closes at no driver angle, its C and D are one point, or a speed that is not finite or
+            beyond 1e20.
         """
         given = spec.dynamics
         if speed_rpm is None:
             speed_rpm = 60 / TURN if given is None else given.speed_rpm
         speed_rpm = number_within(speed_rpm, -GREATEST, GREATEST, "speed_rpm")
+        if _free(spec.linkage):
+            raise ProblemError(
+                f"{spec.name}: C and D are one point at every driver angle, so that links 5 and 6 turn freely"
+            )
         if full_rotation(spec.linkage):
             return cls(spec, speed_rpm, ((0.0, TURN),), True)
         ranges = tuple(_between_dead_positions(spec.linkage))
@@ -148,6 +155,15 @@ def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatAr
     angles = low + (high - low) * (share if even else (1 - np.cos(np.pi * share)) / 2)
     angles[-1] = high
     return angles
+
+
+def _free(linkage: Linkage) -> bool:
+    """Whether C and D lie on one another whatever the driver does, so that two equal bars turn about them."""
+    if "d" not in linkage.mechanism.points:
+        return False
+    state = solve_position(linkage, np.linspace(0.0, TURN, 7))
+    apart = np.abs(state.point("c") - state.point("d"))
+    return bool((apart[np.isfinite(apart)] <= NOISE * linkage.lengths.max()).all())
 
 
 def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:

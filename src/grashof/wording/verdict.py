@@ -33,8 +33,11 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     Raises
     ------
     ProblemError
-        Lengths in different units.
+        Lengths in different units, or a linkage of two loops.
     """
+    if len(spec.linkage.mechanism.dyads) > 1:
+        word = spec.linkage.mechanism.word
+        raise ProblemError(f"{spec.name} is a {word}; only linkages of one loop can be judged")
     if problem.length_unit and spec.length_unit and problem.length_unit != spec.length_unit:
         raise ProblemError(
             f"{spec.name}: lengths are in {spec.length_unit}, those of {problem.name} in "

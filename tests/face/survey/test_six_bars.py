@@ -10,9 +10,10 @@ import pytest
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
-from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
+from grashof.problems import LinkageSpec, ProblemError, SixBar, load, load_linkage_spec
 from grashof.study.asked import ON_REQUEST
 from grashof.survey import Asked, LinkageReport, report_on
+from grashof.wording.verdict import judged_for
 
 STOPPED = SIX_BARS["stephenson-3"].changed(r5=1.0)  # its second loop opens on the way
 
@@ -116,3 +117,23 @@ def test_what_a_press_has_not_is_refused(asked: dict[str, Any]) -> None:
     press = LinkageSpec(SIX_BARS["press of a watt-2"], "press")
     with pytest.raises(ProblemError, match="does not go with mechanism watt-2; only four-bar"):
         report_on(press, Asked(**asked))
+
+
+def test_links_that_turn_freely_are_refused() -> None:
+    loose = SixBar((0, 0), (4, 0), 1, 4, 3, c=(4, 0), d=(3, 0), r5=4, r6=4, hosts=(3, 4))
+    with pytest.raises(ProblemError, match="mine: C and D are one point at every driver angle"):
+        report_on(LinkageSpec(loose, "mine"))
+
+
+def test_a_six_bar_is_not_judged_by_tasks_yet() -> None:
+    spec = load_linkage_spec("klann")
+    with pytest.raises(
+        ProblemError, match="klann is a stephenson-3; only linkages of one loop can be judged"
+    ):
+        judged_for(load("luggage"), spec)
+
+
+def test_no_dwell_is_sought_of_a_slider() -> None:
+    press = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=6, slide_angle_2=0.5, hosts=(3, 1))
+    with pytest.raises(ProblemError, match="dwell_deg does not go with a stephenson-3 whose link 6 slides"):
+        report_on(LinkageSpec(press, "press"), Asked(dwell_deg=5.0))
