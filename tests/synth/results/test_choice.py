@@ -117,9 +117,9 @@ def test_every_design_keeps_its_zones_and_the_objective_uses_them(
 @pytest.mark.slow
 def test_the_error_factor_bounds_the_error() -> None:
     task = MotionTask.from_degrees(POSES)
-    best = []
+    best = []  # with less effort rounding decides which of few starts is followed
     for factor in (1.0, 1.5, 1e6):
-        result = synthesize(Problem(task=task, requirements=Requirements(error_factor=factor)), effort=0.2)
+        result = synthesize(Problem(task=task, requirements=Requirements(error_factor=factor)), effort=0.5)
         assert result.most_error == factor * result.least_error
         for design in result.candidates:
             assert np.sqrt(design.verdict.square / 6) <= result.most_error * (1 + 1e-6)
