@@ -61,7 +61,7 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
             yield f"dynamics.{name} has {entries}; it must have {len(moving)} numbers"
     if spec.centres is not None and len(spec.centres) != len(moving):
         places = f"{_WORDS[len(moving)]} places [u, v], of links {_listed(moving, 'and')}"
-        yield str(wrong_value("dynamics.centres", [list(each) for each in spec.centres], places))
+        yield str(wrong_value("dynamics.centres", spec.centres, places))
     for table, given in (("section", spec.section), ("strength", spec.strength)):
         for name, value in () if given is None else given.stated.items():
             count = len(kind.every_joint) if name == "pin_diameter" else len(moving)
