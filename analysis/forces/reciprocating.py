@@ -12,7 +12,7 @@ from grashof.analysis.forces.joints import slide_direction, slide_normal
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.problems import AssemblyError, SliderCrank
+from grashof.problems import AssemblyError, Linkage, SliderCrank
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import wrong_value
@@ -42,7 +42,7 @@ class ReciprocatingBalance:
 
 
 def balance_reciprocating(
-    linkage: SliderCrank, masses: Masses, share: float = 0.5, radius: npt.ArrayLike | None = None
+    linkage: Linkage, masses: Masses, share: float = 0.5, radius: npt.ArrayLike | None = None
 ) -> ReciprocatingBalance:
     """A counterweight on the crank against all that turns with it and a share of what goes to and fro.
 
@@ -95,7 +95,7 @@ def balance_reciprocating(
     )
 
 
-def shaking_harmonics(linkage: SliderCrank, masses: Masses, omega2: float, orders: int = 2) -> ComplexArray:
+def shaking_harmonics(linkage: Linkage, masses: Masses, omega2: float, orders: int = 2) -> ComplexArray:
     """Harmonics of the shaking force of a slider-crank whose driver turns steadily: primary, secondary, ...
 
     Parameters
@@ -138,7 +138,7 @@ def shaking_harmonics(linkage: SliderCrank, masses: Masses, omega2: float, order
     return found
 
 
-def _harmonics(linkage: SliderCrank, masses: Masses, omega2: float, orders: int, count: int) -> ComplexArray:
+def _harmonics(linkage: Linkage, masses: Masses, omega2: float, orders: int, count: int) -> ComplexArray:
     """From equal steps of the driver, as the force is smooth and periodic."""
     phi = np.arange(count) * TURN / count
     state = solve_kinematics(linkage, phi + float(linkage.slide_angle), omega2)
@@ -148,6 +148,6 @@ def _harmonics(linkage: SliderCrank, masses: Masses, omega2: float, orders: int,
     return np.asarray(terms[1 : orders + 1])
 
 
-def _check_kind(linkage: SliderCrank) -> None:
+def _check_kind(linkage: Linkage) -> None:
     if not isinstance(linkage, SliderCrank):
         raise wrong_value("linkage", linkage, "a SliderCrank")

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from grashof.analysis.mechanism.dyad import DYADS, EPS, Closed, DyadSizes, Solved, Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, Mechanism
+from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, LoopNames, Mechanism
 
 _ZERO = np.zeros(())
 STEADY = np.ones(()), _ZERO, _ZERO  # a driver at 1 rad/s
@@ -31,7 +31,7 @@ class HostedDyad(NamedTuple):
 
 
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage, as plain arrays for `close`: r2, then C, D and the sizes of each dyad.
+    """What closes a linkage, as plain arrays for `close`: C, D and the sizes of each dyad.
 
     Parameters
     ----------
@@ -42,39 +42,32 @@ def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list
     kind, o2 = linkage.mechanism, linkage.o2
     pinned = "o4" in kind.ground
     rounding = np.abs(o2).sum(axis=-1) + np.abs(linkage.o4).sum(axis=-1) if pinned else _ZERO
-    found = [linkage.r2]
-    rounding = rounding + linkage.r2
-    for first, dyad in zip((3, 5), kind.dyads, strict=False):
-        ending = "" if first == 3 else "_2"
-        sign = getattr(linkage, f"assembly{ending}")
-        sign = sign if assembly is None or ending else np.asarray(assembly, dtype=np.float64)
-        c, d = _hosted(linkage, first, dyad)
-        bars = {DyadKind.RRR: (first, first + 1), DyadKind.RRP: (first,), DyadKind.RPR: ()}[dyad.kind]
-        sizes = [getattr(linkage, f"r{number}") for number in bars]
-        if dyad.slides:
-            sizes.append(getattr(linkage, f"offset{ending}"))
-        if first > 3:
+    rounding, found = rounding + linkage.r2, list[FloatArray]()
+    for loop in kind.loops:
+        first = loop is kind.loops[0]
+        sign = getattr(linkage, loop.assembly)
+        sign = sign if assembly is None or not first else np.asarray(assembly, dtype=np.float64)
+        c = (linkage.r2, _ZERO) if first else _pair(linkage, loop.c)
+        d = _far_end(linkage, loop)
+        sizes = [getattr(linkage, name) for name in (*loop.bars, loop.offset) if name]
+        if not first:
             rounding = rounding + sum(map(np.abs, (*c, *d)))
         rounding = rounding + sum(map(np.abs, sizes))
-        if dyad.kind is DyadKind.RRP:
-            angle = getattr(linkage, f"slide_angle{ending}")
+        if loop.slide_angle:
+            angle = getattr(linkage, loop.slide_angle)
             sizes += [np.cos(angle), np.sin(angle)]
         found += [*c, *d, *sizes, sign, 8 * EPS * rounding]
     return found
 
 
-def _hosted(linkage: Linkage, first: int, dyad: Dyad) -> tuple[Vector, Vector]:
-    """C and D in the frames of the links that carry them; on the ground from O2."""
-    if first == 3:
-        c, on_ground = (linkage.r2, _ZERO), "o4"
-    else:
-        c, on_ground = _pair(linkage, "c"), "d"
-    if dyad.kind is DyadKind.RRP:  # its line is counted from O2
-        return c, (_ZERO, _ZERO)
-    x, y = _pair(linkage, on_ground)
-    if dyad.hosts[1] == 1:
-        return c, (x - linkage.o2[..., 0], y - linkage.o2[..., 1])
-    return c, (x, y)
+def _far_end(linkage: Linkage, loop: LoopNames) -> Vector:
+    """D in the frame of its link, on the ground from O2, where the line of a slide begins."""
+    if not loop.pinned:
+        return _ZERO, _ZERO
+    x, y = _pair(linkage, loop.d)
+    if loop.dyad.hosts[1] == 1:
+        return x - linkage.o2[..., 0], y - linkage.o2[..., 1]
+    return x, y
 
 
 def _pair(linkage: Linkage, name: str) -> Vector:
@@ -84,7 +77,7 @@ def _pair(linkage: Linkage, name: str) -> Vector:
 
 def _hosted_dyads(kind: Mechanism, operands: Sequence[FloatArray]) -> Iterator[HostedDyad]:
     """The dyads of `operands_of`."""
-    begin = 1
+    begin = 0
     for row in kind.dyads:
         sizes = DYADS[row.kind]
         cu, cv, du, dv = operands[begin : begin + 4]

@@ -17,7 +17,7 @@ from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind, Mechanism
+from grashof.problems.values.linkages.mechanism import DyadKind, Mechanism
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,13 +220,12 @@ class Kinematics:
             return 1, linkage.o2
         if link == 3:
             return 2, _along(linkage.r2)
-        loop = (link - 3) // 2
-        dyad = linkage.mechanism.dyads[loop]
+        loop = linkage.mechanism.loops[(link - 3) // 2]
         if link % 2:
-            return dyad.hosts[0], getattr(linkage, LOOP_POINTS[loop][0])
-        if dyad.kind is DyadKind.RRP:
-            return link - 1, _along(getattr(linkage, f"r{link - 1}"))
-        return dyad.hosts[1], getattr(linkage, LOOP_POINTS[loop][1])
+            return loop.dyad.hosts[0], getattr(linkage, loop.c)
+        if not loop.pinned:
+            return link - 1, _along(getattr(linkage, loop.bars[0]))
+        return loop.dyad.hosts[1], getattr(linkage, loop.d)
 
     def origin(self, link: int) -> PointMotion:
         """How the origin of a link's frame moves; of the ground O2."""
@@ -234,11 +233,9 @@ class Kinematics:
 
     def _end(self, link: int) -> PointMotion:
         """B or E, as a point of the second link of a dyad."""
-        kind = self.linkage.mechanism.dyads[link // 2 - 2].kind
-        ending = "" if link == 4 else "_2"
-        names = {DyadKind.RRR: f"r{link}", DyadKind.RPR: f"offset{ending}"}
-        far = getattr(self.linkage, names[kind]) if kind in names else np.zeros(())
-        return self.point(link, _along(far))
+        loop = self.linkage.mechanism.loops[link // 2 - 2]
+        name = {DyadKind.RRR: loop.bars[-1:], DyadKind.RPR: (loop.offset,)}.get(loop.dyad.kind, ())
+        return self.point(link, _along(getattr(self.linkage, *name) if name else np.zeros(())))
 
 
 def solve_kinematics(

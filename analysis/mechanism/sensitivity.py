@@ -9,7 +9,7 @@ from grashof.analysis.mechanism.closing import Loop, Place, close, operands_of, 
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.linkages.mechanism import LoopNames
 
 
 def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
@@ -69,8 +69,8 @@ class _Varied:
         shape = np.shape(loops[-1].closed.margin)
         self.turns: dict[int, FloatArray] = {2: np.zeros((len(self.names), *shape))}
         self.origins: dict[int, ComplexArray] = {2: np.zeros((len(self.names), *shape), dtype=complex)}
-        for first, loop in zip((3, 5), loops, strict=False):
-            self._vary(first, loop)
+        for names, loop in zip(linkage.mechanism.loops, loops, strict=True):
+            self._vary(names, loop)
 
     def add(self, moved: ComplexArray, by: dict[str, ComplexArray]) -> ComplexArray:
         """What some dimensions move besides, added in place."""
@@ -91,32 +91,31 @@ class _Varied:
         carried: ComplexArray = 1j * _complex(arm) * self.turns[link]
         return self.origins[link] + carried
 
-    def _vary(self, first: int, loop: Loop) -> None:
-        sizes, closed, row = loop.dyad.sizes, loop.closed, loop.dyad.row
-        c, d = (self.moved(at, host) for at, host in zip((loop.c, loop.d), row.hosts, strict=True))
-        c_by, d_by = self._own(first, row.hosts, pinned=row.kind is not DyadKind.RRP)
+    def _vary(self, names: LoopNames, loop: Loop) -> None:
+        sizes, closed, (first, second) = loop.dyad.sizes, loop.closed, names.links
+        c, d = (self.moved(at, host) for at, host in zip((loop.c, loop.d), names.dyad.hosts, strict=True))
+        c_by, d_by = self._own(names)
         c, d = self.add(c, c_by), self.add(d, d_by)
-        names = {"m": f"r{first}", "n": f"r{first + 1}", "offset": "offset" if first == 3 else "offset_2"}
-        lost = {names[name]: _complex(by) for name, by in sizes.sizes(closed).items()}
-        gap = self.add(d - c, lost)
+        named = dict(zip("mn", names.bars, strict=False)) | {"offset": names.offset}
+        gap = self.add(d - c, {named[name]: _complex(by) for name, by in sizes.sizes(closed).items()})
         with np.errstate(divide="ignore", invalid="ignore"):
             one, other = ((gap * _complex(each).conj()).real for each in sizes.facing(closed))
             three, four, _ = sizes.solve(closed, (one, other), 1 / closed.margin, 1.0)
-        self.turns |= {first: three, first + 1: four + np.zeros(gap.shape)}
-        self.origins |= {first: c, first + 1: d}
-        if row.kind is DyadKind.RRP:
+        self.turns |= {first: three, second: four + np.zeros(gap.shape)}
+        self.origins |= {first: c, second: d}
+        if not names.pinned:
             e3 = _complex((closed.cos3, closed.sin3))
             carried = 1j * closed.reach * e3 * three
-            self.origins[first + 1] = self.add(c + carried, {names["m"]: e3})
+            self.origins[second] = self.add(c + carried, {names.bars[0]: e3})
 
-    def _own(
-        self, first: int, hosts: tuple[int, int], *, pinned: bool
-    ) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
+    def _own(self, names: LoopNames) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
         """How C and D move with their places on their links."""
-        if first == 3:
-            ground = {"r1": np.exp(1j * self.linkage.theta1)} if pinned else {}
-            return self.along(2, "r2"), ground
-        return self.along(hosts[0], "c_u", "c_v"), self.along(hosts[1], "d_u", "d_v") if pinned else {}
+        (on_c, on_d), far = names.dyad.hosts, dict[str, ComplexArray]()
+        if names.links[0] == 3:
+            far = {"r1": np.exp(1j * self.linkage.theta1)} if names.pinned else far
+            return self.along(2, "r2"), far
+        far = self.along(on_d, f"{names.d}_u", f"{names.d}_v") if names.pinned else far
+        return self.along(on_c, f"{names.c}_u", f"{names.c}_v"), far
 
 
 def _complex(vector: Vector) -> ComplexArray:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from typing import NamedTuple
 
 from grashof.problems.values.linkages.linkage_parts import Link, Parameter, points_of
 
@@ -59,6 +59,29 @@ class Joint:
     slides: bool = False
 
 
+class LoopNames(NamedTuple):
+    """What belongs to the loop of a dyad, by its names on linkages.
+
+    The dyad and the numbers of its links; points C, D and E; the lengths of its bars, from C and from D;
+    offset and direction of its slide, empty where it has none; its assembly.
+    """
+
+    dyad: Dyad
+    links: tuple[int, int]
+    c: str
+    d: str
+    e: str
+    bars: tuple[str, ...]
+    offset: str
+    slide_angle: str
+    assembly: str
+
+    @property
+    def pinned(self) -> bool:
+        """Whether D is a pin."""
+        return self.dyad.kind is not DyadKind.RRP
+
+
 # Names of the points C, D and E of each dyad of a linkage, and of its two links where they are bars.
 LOOP_POINTS = (("a", "o4", "b"), ("c", "d", "e"))
 _NAMES = (("coupler", "output"), ("coupler-2", "output-2"))
@@ -91,20 +114,33 @@ class Mechanism:
     carries: int = 3
 
     @cached_property
+    def loops(self) -> tuple[LoopNames, ...]:
+        """Names of what each dyad adds."""
+        found = []
+        for index, (dyad, points) in enumerate(zip(self.dyads, LOOP_POINTS, strict=False)):
+            ending, links = "_2" if index else "", (2 * index + 3, 2 * index + 4)
+            count = {DyadKind.RRR: 2, DyadKind.RRP: 1, DyadKind.RPR: 0}[dyad.kind]
+            bars = tuple(f"r{number}" for number in links[:count])
+            offset = f"offset{ending}" if dyad.slides else ""
+            angle = f"slide_angle{ending}" if dyad.kind is DyadKind.RRP else ""
+            found.append(LoopNames(dyad, links, *points, bars, offset, angle, f"assembly{ending}"))
+        return tuple(found)
+
+    @cached_property
     def links(self) -> tuple[Link, ...]:
         """The links in order, the ground first."""
         points: dict[int, list[str]] = {1: ["o2"], 2: ["o2", "a"]}
         names = {1: "ground", 2: "driver"}
-        for (first, second), dyad in self._numbered():
-            index = first // 2 - 1
-            (c, d, e), (names[first], names[second]) = LOOP_POINTS[index], _NAMES[index]
-            points[first] = [c, e] if dyad.kind is not DyadKind.RPR else [c]
-            points[second] = [e] if dyad.kind is DyadKind.RRP else [d, e]
-            if dyad.slides:
-                word = "slider" if dyad.kind is DyadKind.RRP else "block"
+        for loop, words in zip(self.loops, _NAMES, strict=False):
+            (first, second), kind = loop.links, loop.dyad.kind
+            names[first], names[second] = words
+            points[first] = [loop.c, loop.e] if kind is not DyadKind.RPR else [loop.c]
+            points[second] = [loop.d, loop.e] if loop.pinned else [loop.e]
+            if loop.dyad.slides:
+                word = "block" if loop.pinned else "slider"
                 names[second] = names[second].replace("output", word)
-            for host, point in zip(dyad.hosts, (c, d), strict=True):
-                if point not in points[host] and not (point == d and dyad.kind is DyadKind.RRP):
+            for host, point in zip(loop.dyad.hosts, (loop.c, loop.d), strict=True):
+                if point not in points[host] and (loop.pinned or point == loop.c):
                     points[host].append(point)
         points[self.carries].append("p")
         return tuple(Link(number, names[number], tuple(points[number])) for number in sorted(points))
@@ -113,28 +149,21 @@ class Mechanism:
     def parameters(self) -> tuple[Parameter, ...]:
         """What its linkages are given by, in the order of constructors and tables."""
         pivots, sizes = [Parameter("o2", "place")], [Parameter("r2", "length")]
-        for (first, second), dyad in self._numbered():
-            ending = "" if first == 3 else f"_{first // 2}"
-            if first == 3 and dyad.kind is not DyadKind.RRP:
-                pivots.append(Parameter("o4", "place"))
-            if first > 3:
-                sizes.append(Parameter("c", "arm"))
-                if dyad.kind is not DyadKind.RRP:
-                    sizes.append(Parameter("d", "station" if dyad.hosts[1] == 1 else "arm"))
-            if dyad.kind is not DyadKind.RPR:
-                sizes.append(Parameter(f"r{first}", "length"))
-            if dyad.kind is DyadKind.RRR:
-                sizes.append(Parameter(f"r{second}", "length"))
-            if dyad.slides:
-                sizes.append(Parameter(f"offset{ending}", "distance"))
-            if dyad.kind is DyadKind.RRP:
-                sizes.append(Parameter(f"slide_angle{ending}", "angle"))
-        signs = (f"assembly_{index}" if index > 1 else "assembly" for index in range(1, len(self.dyads) + 1))
+        for loop in self.loops:
+            if loop is not self.loops[0]:
+                sizes.append(Parameter(loop.c, "arm"))
+                if loop.pinned:
+                    sizes.append(Parameter(loop.d, "station" if loop.dyad.hosts[1] == 1 else "arm"))
+            elif loop.pinned:
+                pivots.append(Parameter(loop.d, "place"))
+            sizes += [Parameter(name, "length") for name in loop.bars]
+            sizes += [Parameter(loop.offset, "distance")] if loop.offset else []
+            sizes += [Parameter(loop.slide_angle, "angle")] if loop.slide_angle else []
         return (
             *pivots,
             *sizes,
             Parameter("coupler_point", "arm", column="p"),
-            *(Parameter(name, "sign") for name in signs),
+            *(Parameter(loop.assembly, "sign") for loop in self.loops),
             Parameter("body_angle", "angle"),
         )
 
@@ -155,11 +184,11 @@ class Mechanism:
     def every_joint(self) -> tuple[Joint, ...]:
         """The pins and slides, in the order of arrays that have an axis for them: three of a dyad."""
         found = [Joint("O2", (1, 2))]
-        for (first, second), dyad in self._numbered():
-            c, d, e = (name.upper() for name in LOOP_POINTS[first // 2 - 1])
-            found.append(Joint(c, (dyad.hosts[0], first)))
-            found.append(Joint(e, (first, second), slides=dyad.kind is DyadKind.RPR))
-            found.append(Joint(d, (dyad.hosts[1], second), slides=dyad.kind is DyadKind.RRP))
+        for loop in self.loops:
+            (first, second), (on_c, on_d), kind = loop.links, loop.dyad.hosts, loop.dyad.kind
+            found.append(Joint(loop.c.upper(), (on_c, first)))
+            found.append(Joint(loop.e.upper(), (first, second), slides=kind is DyadKind.RPR))
+            found.append(Joint(loop.d.upper(), (on_d, second), slides=kind is DyadKind.RRP))
         return tuple(found)
 
     @cached_property
@@ -191,10 +220,6 @@ class Mechanism:
     def pivots(self) -> tuple[str, ...]:
         """The same points in the order of `points`."""
         return tuple(filter(self.joints.__contains__, self.points))
-
-    def _numbered(self) -> Iterator[tuple[tuple[int, int], Dyad]]:
-        """The dyads with the numbers of their two links."""
-        return (((2 * index + 3, 2 * index + 4), dyad) for index, dyad in enumerate(self.dyads))
 
 
 _RRR, _RRP, _RPR = DyadKind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+from typing import Any
 
 from grashof.problems.values.checks import near_miss, noted, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
@@ -32,7 +32,6 @@ DIMENSIONS: tuple[str, ...] = (
 )
 _ANY = f"{', '.join(list(ONE_LOOP)[:-1])} or {list(ONE_LOOP)[-1]}"
 ANY_KINDS = f"{_ANY}, or a list of these"
-Kind = TypeVar("Kind", bound=Linkage)
 
 
 # What makes them in Python, and describes their parameters; six-bars are `SixBar`.
@@ -60,11 +59,6 @@ def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
     return linkage
 
 
-def as_kind(linkage: Linkage, kind: type[Kind]) -> Kind | None:
-    """The linkage where it is of a kind: what only linkages of that kind have goes by it."""
-    return linkage if isinstance(linkage, kind) else None
-
-
 def kinds_text(words: Sequence[str]) -> str:
     """Kinds in words; empty of a four-bar alone, which is meant where none is named.
 
@@ -76,7 +70,7 @@ def kinds_text(words: Sequence[str]) -> str:
     return "" if list(words) == [FOUR_BAR] else " or ".join(words)
 
 
-def among(linkage: Linkage, words: Sequence[str]) -> bool:
+def is_of(linkage: Linkage, words: Sequence[str]) -> bool:
     """Whether a linkage is of one of some kinds."""
     return linkage.mechanism.word in words
 

@@ -20,7 +20,7 @@ from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, among
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, is_of
 from grashof.synth import Candidate, Progress, Result, synthesize, track
 from grashof.synth.designs.table import LISTED, rows_of
 from grashof.wording.problem import summary
@@ -127,7 +127,7 @@ def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
     order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
     kept = {key: design for key, design in shown.designs.items() if key in order}
-    kept = {key: design for key, design in kept.items() if among(design.linkage, problem.mechanism)}
+    kept = {key: design for key, design in kept.items() if is_of(design.linkage, problem.mechanism)}
     moved = dict(zip(kept, track(list(kept.values()), problem), strict=True))
     there = {key: design for key, design in moved.items() if design.verdict.ok}
     lost = {

@@ -18,11 +18,10 @@ from grashof.analysis import (
     balance_turn,
     inverse_dynamics,
 )
-from grashof.problems import Linkage, ProblemError, SliderCrank
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkages.mechanisms import as_kind
 from grashof.study.columns import Columns, curves, over_driver, table
-from grashof.study.kinds import plain
+from grashof.study.kinds import output_turns, plain
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import turn_means, turn_peaks
@@ -99,12 +98,13 @@ def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, 
 def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Way, str]:
     """Masses with counterweights against the shaking force, and what to know of them."""
     same = "others of the same mass times radius do"
-    if (engine := as_kind(linkage, SliderCrank)) is not None:
-        half = balance_reciprocating(engine, masses, 0.5)
+    kind = linkage.mechanism
+    if len(kind.dyads) == 1 and not output_turns(kind):
+        half = balance_reciprocating(linkage, masses, 0.5)
         what = "what turns with the crank and half of what goes to and fro"
         return _Way(half.masses, {2: half.crank_weight}), f"the counterweight at r2 is against {what}; {same}"
     whole = balance_force(linkage, masses)
-    place = "r4" if plain(linkage.mechanism) else "r2"
+    place = "r4" if plain(kind) else "r2"
     weights = {2: whole.crank_weight, 4: whole.output_weight}
     return _Way(whole.masses, weights), f"counterweights are points at r2 from O2 and {place} from O4; {same}"
 

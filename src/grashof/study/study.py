@@ -13,7 +13,6 @@ from grashof.problems import FourBar, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.dynamics_spec import metres
-from grashof.problems.values.linkages.mechanisms import as_kind
 from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import INSET, Sweep
 
@@ -56,9 +55,7 @@ class LinkageStudy:
     @property
     def four_bar(self) -> FourBar:
         """The linkage as a four-bar; `ProblemError` where it is none."""
-        if (four_bar := as_kind(self.linkage, FourBar)) is None:
-            raise ProblemError(f"{self.spec.name} is a {self.linkage.mechanism.word}; it must be a four-bar")
-        return four_bar
+        return self.spec.four_bar
 
     @property
     def masses(self) -> Masses | None:

@@ -28,7 +28,6 @@ from grashof.analysis.mechanism.means import mean_in_time
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanisms import as_kind
 from grashof.study.kinds import LIMIT_POSITIONS, SHARES, output_turns, plain, turning
 from grashof.study.quantities import counted_with, dynamic_quantities
 from grashof.study.section import Fact
@@ -154,8 +153,8 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
                 yield Fact(f"fourier_share_{number}", f"share of harmonic {number} in the path of P", share)
         label = f"path of P from {_HARMONICS} harmonics errs by"
         yield Fact(f"fourier_error_{_HARMONICS}", label, float(series.error_max[_HARMONICS]), unit)
-    if (four_bar := as_kind(linkage, FourBar)) is not None:
-        yield from _double_points(four_bar, unit)
+    if plain(linkage.mechanism):
+        yield from _double_points(spec.four_bar, unit)
     still = np.degrees(cusps(linkage))
     yield Fact("cusps", "cusps of the path of P", len(still))
     for number, angle in enumerate(still, start=1):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from grashof.problems.values.checks import counted
-from grashof.problems.values.linkages.mechanisms import among
+from grashof.problems.values.linkages.mechanisms import is_of
 from grashof.synth import Result
 from grashof.synth.proof.claims.proof import Claim, Proof, quantity_of
 
@@ -106,7 +106,7 @@ def _rank(result: Result, proof: Proof) -> int:
     key = quantity_of(result.problem).key
     least = math.inf if proof.lower is None else proof.lower - _SAME
     for rank, one in enumerate(result.candidates, start=1):
-        if among(one.linkage, [proof.mechanism]) and math.degrees(one.values[key]) >= least:
+        if is_of(one.linkage, [proof.mechanism]) and math.degrees(one.values[key]) >= least:
             return rank
     return 0
 
