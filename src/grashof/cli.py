@@ -374,7 +374,7 @@ def analyse(
     fit_points: Annotated[int, typer.Option(help="Points through which they are.")] = FIT_POINTS,
     dwell_deg: Annotated[
         float | None,
-        typer.Option(help="Report how long link 4 dwells in a band so wide.", show_default=False),
+        typer.Option(help="Report how long link 4 (link 6) dwells in a band so wide.", show_default=False),
     ] = None,
     balance: Annotated[
         bool, typer.Option("--balance", help="Report counterweights, before and after.")
@@ -386,7 +386,7 @@ def analyse(
     tolerance: Annotated[
         float | None,
         typer.Option(
-            help="Report how far P and link 4 move where dimensions are off by so much (length unit).",
+            help="Report how far P and link 4 (6) move where dimensions are off by so much (length unit).",
             show_default=False,
         ),
     ] = None,

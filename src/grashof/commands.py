@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
-from grashof.problems import Problem, ProblemError, Search, load, load_linkage_spec
+from grashof.problems import AssemblyError, Problem, ProblemError, Search, load, load_linkage_spec
 from grashof.problems.values.checks import counted
 
 if TYPE_CHECKING:
@@ -299,7 +299,10 @@ def analyse(linkage: str, out: Path | None, *, pictures: bool = False, **asked: 
     spec = load_linkage_spec(linkage)
     folder = out if out is not None else Path(f"{spec.name}-analysis")
     check_writable(folder, record=ANALYSIS_RECORD)
-    report = report_on(spec, Asked(**asked))
+    try:
+        report = report_on(spec, Asked(**asked))
+    except AssemblyError as error:  # lengths so unlike that every position is dead but for rounding
+        raise ProblemError(f"{spec.name}: its lengths are too unlike to be analysed: {error}") from None
     files = write_report(folder, report, pictures=pictures)
     for note in report.notes:
         say(note, err=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
+from grashof.commands import analyse
 from grashof.problems import LinkageSpec, ProblemError, SixBar, load, load_linkage_spec
 from grashof.study.asked import ON_REQUEST
 from grashof.survey import Asked, LinkageReport, report_on
@@ -137,3 +139,13 @@ def test_a_six_bar_is_not_judged_by_tasks_yet() -> None:
         ProblemError, match="klann is a stephenson-3; only linkages of one loop can be judged"
     ):
         judged_for(load("luggage"), spec)
+
+
+def test_bars_that_are_dead_everywhere_but_for_rounding_are_told_in_one_line(tmp_path: Path) -> None:
+    file = tmp_path / "long.toml"
+    dyad = "[dyad]\nhosts = [3, 1]\nc = [5, 1]\nd = [6, 2]\nr5 = 1e8\nr6 = 1e8\n"
+    four = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\n"
+    file.write_text(f'mechanism = "stephenson-3"\n{four}{dyad}')
+    with pytest.raises(ProblemError, match="long: its lengths are too unlike to be analysed"):
+        analyse(str(file), tmp_path / "made")
+    assert not (tmp_path / "made").exists()
