@@ -20,20 +20,10 @@ _ENDS_MEET = 1e-6  # share of a drawing's size, of what is one place
 
 
 def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
-    """Areas of a drawing: what its lines enclose, each a polygon.
+    """What the lines of a drawing enclose, each a polygon; `ProblemError` where they enclose nothing.
 
-    Parameters
-    ----------
-    name : str
-        A file, .dxf or .svg; ``machine.dxf#KEEP_OUT`` are the lines of a layer, of an SVG those of a group.
-    folder : Path
-    length_unit : str
-        Of the problem; a drawing that states its own is converted.
-
-    Raises
-    ------
-    ProblemError
-        It cannot be read, has no lines, or lines that enclose nothing.
+    In `name` ``machine.dxf#KEEP_OUT`` are the lines of a layer, of an SVG those of a group; a drawing that
+    states its own unit is converted to that of the problem, `length_unit`.
     """
     import shapely
 

@@ -29,23 +29,10 @@ _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE"
 
 
 def dxf_polylines(text: str) -> list[FloatArray]:
-    """Lines and curves of the model space as polylines, in the units of the drawing.
+    """Lines and curves of the model space as polylines (N, 2), in the units of the drawing.
 
-    Blocks are taken apart; text, dimensions and hatches are left out.
-
-    Parameters
-    ----------
-    text : str
-        The file.
-
-    Returns
-    -------
-    list of ndarray, shape (N, 2)
-
-    Raises
-    ------
-    ProblemError
-        It is no DXF file, has no lines, or too many; or ezdxf is not installed.
+    Blocks are taken apart; text, dimensions and hatches are left out. `ProblemError` where it is no DXF file,
+    has no lines, or too many; or ezdxf is not installed.
     """
     return dxf_drawing(text.encode("utf-8", "surrogateescape"))[0]
 

@@ -14,17 +14,7 @@ _DEEPEST = 32  # blocks within blocks, groups within groups
 
 @contextmanager
 def read_by_others(wanted: str) -> Iterator[None]:
-    """Whatever a library raises on a file that is not what it should be, in one line; no warnings of it.
-
-    Parameters
-    ----------
-    wanted : str
-        What the file should be: "a DXF file".
-
-    Raises
-    ------
-    ProblemError
-    """
+    """What a library raises on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -39,11 +29,7 @@ def read_by_others(wanted: str) -> Iterator[None]:
 class Budget:
     """How many parts a drawing may have once what it repeats is written out.
 
-    Parameters
-    ----------
-    most : int
-    part, level : str
-        What they are, and what of them may contain others, in the plural: "entities", "blocks".
+    `part` is what they are, `level` what of them may contain others, in the plural: "entities", "blocks".
     """
 
     def __init__(self, most: int, part: str, level: str) -> None:

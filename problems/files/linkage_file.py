@@ -100,20 +100,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
-    """Design of a list that `grashof solve` wrote, with its targets.
-
-    Parameters
-    ----------
-    path : Path
-        A candidates.json.
-    which : str
-        Rank or id.
-
-    Raises
-    ------
-    ProblemError
-        As for `load_linkage`, or a design without targets.
-    """
+    """Design of a list of `grashof solve`, by rank or id; `ProblemError` also where it states no targets."""
     spec, design = _candidate(path, which)
     try:
         return ListedDesign(

@@ -38,30 +38,9 @@ from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
 
 def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None) -> LinkageSpec:
-    """Linkage stated by a parsed linkage file.
+    """Linkage stated by a parsed linkage file; `ProblemError` with all errors, a line and key path each.
 
-    Parameters
-    ----------
-    document : dict
-        The file as `tomllib` gives it.
-    name : str
-    folder : Path, optional
-        Where the file is; without it the document may name no other file.
-
-    Raises
-    ------
-    ProblemError
-        All errors found, a line each, with their key paths.
-
-    Examples
-    --------
-    >>> given = {"o4": [4, 0], "r2": 1, "r3": 4, "r4": 3}
-    >>> float(linkage_from(given, "mine").linkage.r1)
-    4.0
-    >>> linkage_from(given | {"coupler": [1, 1]}, "mine")
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: coupler is unknown; did you mean coupler_point?
+    Without the folder of the file the document may name no other file.
     """
     kind = mechanism(document.get("mechanism", FOUR_BAR), among=WORDS)
     wrong = dict(_of_other_kinds(document, kind))
@@ -75,13 +54,7 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 
 def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `Linkage.stated` has, but angles, by the keys of a linkage file.
-
-    Examples
-    --------
-    >>> as_document({"r2": 1.0, "r5": 3.0, "offset_2": 0.5, "hosts": [3, 1]})
-    {'r2': 1.0, 'dyad': {'kind': 'RRP', 'hosts': [3, 1], 'r5': 3.0, 'offset': 0.5}}
-    """
+    """What `Linkage.stated` has, but angles, by the keys of a linkage file."""
     inner = {key: given[row.name] for key, row in _OF_DYAD.items() if row.name in given}
     names = ("hosts", *(row.name for row in _OF_DYAD.values()))
     rest = {name: value for name, value in given.items() if name not in names}

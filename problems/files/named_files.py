@@ -40,19 +40,10 @@ FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
 
 
 def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """A parsed problem file with what it names in place of the names.
+    """A copy of a parsed problem file with what it names in place of the names.
 
-    Parameters
-    ----------
-    document : dict
-        It stays as it is.
-    folder : Path, optional
-        That names are relative to; without it none may be given.
-
-    Raises
-    ------
-    ProblemError
-        What a file lacks, after the key that names it; a line each.
+    Names are relative to a folder; without it none may be given. `ProblemError` has what a file lacks, after
+    the key that names it, a line each.
     """
     found, wrong = dict(document), list[str]()
     unit = document.get("length_unit", "")

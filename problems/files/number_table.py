@@ -16,20 +16,8 @@ _MOST_ROWS = 10_000
 def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
     """The rows of a CSV file whose first line names its columns.
 
-    Parameters
-    ----------
-    path : Path
-    kinds : sequence of sequences of names
-        The columns that it may have, each kind of table by the names that each column may have.
-
-    Returns
-    -------
-    list of rows
-
-    Raises
-    ------
-    ProblemError
-        It cannot be read, has other columns, or what is no number; a line each.
+    `kinds` are the tables that it may be, each by the names that each column may have. `ProblemError` where
+    it cannot be read, has other columns, or what is no number; a line each.
     """
     lines = rows_of(path.name, path.parent)
     given = [name.strip().casefold() for name in lines[0]] if lines else []

@@ -24,10 +24,7 @@ def versions() -> dict[str, str]:
 def write_whole(path: Path, content: Mapping[str, Any] | str) -> None:
     """A file, JSON or text, that is there whole or not at all, whenever the machine stops.
 
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost; nothing is left of the file then.
+    `OSError` where the disk is full or the folder is lost; nothing is left of the file then.
     """
     beside = path.with_name(f"{WRITING}{os.getpid()}-{path.name}")
     try:

@@ -57,32 +57,9 @@ from grashof.problems.values.tasks.task import Task
 
 
 def problem_from(document: dict[str, Any], name: str, folder: Path | None = None) -> Problem:
-    """Problem stated by a parsed problem file.
+    """Problem stated by a parsed problem file; `ProblemError` with all errors, a line and key path each.
 
-    Parameters
-    ----------
-    document : dict
-        The file as `tomllib` gives it.
-    name : str
-        What the problem is called, `Problem.name`.
-    folder : Path, optional
-        Where the file is; without it the document may name no other file.
-
-    Raises
-    ------
-    ProblemError
-        All errors found, a line each, with their key paths.
-
-    Examples
-    --------
-    >>> poses = [[0, 0, 0], [3, 4, 90]]
-    >>> problem_from({"kind": "motion", "motion": {"poses": poses}}, "two poses").task.size
-    5.0
-    >>> problem_from({"kind": "motion", "motion": {"pose": poses}}, "two poses")
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: motion.pose is unknown; did you mean poses?
-    motion.poses is missing
+    Without the folder of the file the document may name no other file.
     """
     document = with_files(document, folder)
     wrong: list[str] = []

@@ -22,21 +22,6 @@ def problem_toml(problem: Problem) -> str:
     """The problem as TOML, complete, with numbers in full precision.
 
     Angles are in degrees there: what a file stated comes back to the last bit, other radians to rounding.
-
-    Examples
-    --------
-    >>> from grashof.problems import PathTask
-    >>> print(problem_toml(Problem(task=PathTask([[0, 0], [3, 0], [3, 4]]))).partition("[requirements]")[0])
-    kind = "path"
-    title = ""
-    source = ""
-    length_unit = ""
-    <BLANKLINE>
-    [path]
-    points = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]]
-    closed = false
-    <BLANKLINE>
-    <BLANKLINE>
     """
     kinds = problem.mechanism
     asked = {} if kinds == (FOUR_BAR,) else {"mechanism": kinds[0] if len(kinds) == 1 else kinds}

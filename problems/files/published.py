@@ -15,7 +15,11 @@ from grashof.problems.values.linkages.four_bar import FourBar
 
 
 class ErrorDefinition(StrEnum):
-    """How a published sum of squared distances is meant."""
+    """How a published sum of squared distances is meant.
+
+    At the printed driver angles, at the best driver angle for the first of the timed points, or over the
+    closest points of the coupler curve in whatever order.
+    """
 
     PRINTED_ANGLES = "printed angles"
     BEST_START = "best start"
@@ -24,51 +28,21 @@ class ErrorDefinition(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PublishedDesign:
-    """A design from the literature.
+    """A design from the literature."""
 
-    Parameters
-    ----------
-    problem : str
-        Name in the catalogue.
-    method : str
-        Who found it, and how.
-    year : int
-    linkage : FourBar
-        As printed, so with few digits.
-    error : float, length squared
-        Sum of squared distances of the linkage as printed.
-    reported : float or None, length squared
-        The sum that its authors state, where it is another one.
-    error_definition : ErrorDefinition
-        The sum is meant at the printed driver angles, at the best driver angle for the first of
-        the timed points, or over the closest points of the coupler curve in whatever order.
-    theta2 : ndarray, shape (N,), rad, or None
-        Printed driver angle at each point.
-    source : str
-    """
-
-    problem: str
-    method: str
+    problem: str  # name in the catalogue
+    method: str  # who found it, and how
     year: int
-    linkage: FourBar
-    error: float
-    reported: float | None
+    linkage: FourBar  # as printed, so with few digits
+    error: float  # length squared: sum of squared distances of the linkage as printed
+    reported: float | None  # length squared: the sum that its authors state, where it is another one
     error_definition: ErrorDefinition
-    theta2: FloatArray | None
+    theta2: FloatArray | None  # (N,), rad: printed driver angle at each point
     source: str
 
 
 def published(problem: str) -> tuple[PublishedDesign, ...]:
-    """Published designs for a problem of the catalogue, the best first.
-
-    Examples
-    --------
-    >>> best = published("path-ellipse")[0]
-    >>> best.method, best.year, float(best.linkage.r1.round(6)), round(best.error, 9)
-    ('Lin, GA-DE', 2010, 80.0, 0.000401992)
-    >>> published("luggage")
-    ()
-    """
+    """Published designs for a problem of the catalogue, the best first."""
     return tuple(design for design in _every() if design.problem == problem)
 
 

@@ -20,19 +20,10 @@ ENDINGS = (".csv", ".xlsx")
 
 
 def rows_of(name: str, folder: Path) -> list[list[str]]:
-    """The rows of a table that are not empty.
+    """The rows of a table, .csv or .xlsx, that are not empty.
 
-    Parameters
-    ----------
-    name : str
-        A file, .csv or .xlsx; of a workbook ``points.xlsx#Sheet`` is a sheet, the first one by default.
-    folder : Path
-        That the name is relative to.
-
-    Raises
-    ------
-    ProblemError
-        It cannot be read, is no workbook or has no such sheet; or openpyxl is not installed.
+    Of a workbook ``points.xlsx#Sheet`` is a sheet, the first one by default. `ProblemError` where it cannot
+    be read, is no workbook or has no such sheet; or openpyxl is not installed.
     """
     file, _, sheet = name.partition("#")
     path = folder / file

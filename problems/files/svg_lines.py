@@ -33,18 +33,9 @@ _SVG = "{http://www.w3.org/2000/svg}"
 
 
 def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], float | None]:
-    """Lines of an SVG with y upwards, in mm (and a mm in metres) where its size is stated so.
+    """Lines of an SVG, or of a group, with y upwards, in mm (and a mm in metres) where its size is stated so.
 
-    Parameters
-    ----------
-    content : bytes
-    group : str
-        Of whose lines; of all without it.
-
-    Raises
-    ------
-    ProblemError
-        It is no SVG file, has no lines, or too many; or svgelements is not installed.
+    `ProblemError` where it is no SVG file, has no lines, or too many; or svgelements is not installed.
     """
     try:
         import svgelements  # type: ignore[import-untyped]

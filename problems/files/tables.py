@@ -61,21 +61,9 @@ def stated(
     document: dict[str, Any],
     folder: Path | None = None,
 ) -> AnyTable:
-    """What a parsed file states, as its table.
+    """What a parsed file states, as its table; `ProblemError` with all errors, a line and key path each.
 
-    Parameters
-    ----------
-    table : type
-        Of the whole file.
-    document : dict
-        The file as `tomllib` gives it.
-    folder : Path, optional
-        That the names of other files in it are relative to; without it none may be named.
-
-    Raises
-    ------
-    ProblemError
-        All errors found, a line each, with their key paths.
+    Names of other files in it are relative to the folder; without one none may be named.
     """
     try:
         return table.model_validate(document, context={"folder": folder})

@@ -16,23 +16,10 @@ Rows = list[list[float | None]]
 
 
 def poses_of(name: str, folder: Path) -> dict[str, Any]:
-    """Poses, and their timing where a column has it; empty cells leave parts of a pose free.
+    """``poses``, as a problem file has them, and ``timing_deg`` where a column has it.
 
-    Parameters
-    ----------
-    name : str
-        A file with the columns x, y and angle_deg, and perhaps timing_deg.
-    folder : Path
-
-    Returns
-    -------
-    dict
-        ``poses``, as a problem file has them, and perhaps ``timing_deg``.
-
-    Raises
-    ------
-    ProblemError
-        Other columns, or what is no number, a line each.
+    The columns are x, y and angle_deg; empty cells leave parts of a pose free. `ProblemError` where there are
+    others, or what is no number, a line each.
     """
     rows, timing = _table(name, folder, ("x", "y", "angle_deg"))
     wrong: list[str] = []

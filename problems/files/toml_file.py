@@ -20,18 +20,10 @@ MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
 
 @dataclass(frozen=True, slots=True)
 class Catalogue:
-    """Files shipped with the package, each under the name of its stem.
+    """Files shipped with the package, each under the name of its stem."""
 
-    Parameters
-    ----------
-    what : str
-        One of them, in messages.
-    folder : str
-        Below the data of the problems; empty for these themselves.
-    """
-
-    what: str
-    folder: str = ""
+    what: str  # one of them, in messages
+    folder: str = ""  # below the data of the problems; empty for these themselves
 
     @property
     def names(self) -> tuple[str, ...]:

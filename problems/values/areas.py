@@ -22,17 +22,8 @@ _FLAT = 1e-12  # share of the square of its extent below which a polygon has no 
 def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, ...]:
     """Corners of polygons, read-only arrays of shape (M, 2); a polygon may repeat its first corner last.
 
-    Raises
-    ------
-    ProblemError
-        A polygon has fewer than three corners, no area, a number that is not finite, or crosses itself.
-
-    Examples
-    --------
-    >>> polygons([[[0, 0], [2, 2], [0, 0]]], "areas")
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: areas[0] has 2 distinct corners; it must have three or more
+    `ProblemError` where one has fewer than three corners, no area, a number that is not finite, or crosses
+    itself.
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a list of polygons")
@@ -46,23 +37,7 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
 
 
 def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
-    """All areas as one: no gap is left where two of them share a side.
-
-    Parameters
-    ----------
-    areas : sequence of ndarray, shape (M, 2), length
-
-    Returns
-    -------
-    shapely.Geometry
-        A polygon or several, prepared for many queries.
-
-    Examples
-    --------
-    >>> halves = [np.array([[0, 0], [1, 0], [1, 2], [0, 2]]), np.array([[1, 0], [2, 0], [2, 2], [1, 2]])]
-    >>> solid(halves).area, solid(halves).contains(shapely.Point(1, 1))
-    (4.0, True)
-    """
+    """All areas, corners (M, 2), as one, prepared for many queries: no gap is left where two share a side."""
     joined = shapely.union_all(np.array([shapely.Polygon(corners) for corners in areas]))
     shapely.prepare(joined)
     return joined

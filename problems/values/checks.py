@@ -168,17 +168,7 @@ def one_or_each(
     least: float = LEAST,
     greatest: float = GREATEST,
 ) -> float | tuple[float, ...]:
-    """A number greater than zero, between limits; or a tuple with one for each of its owners.
-
-    Examples
-    --------
-    >>> one_or_each(2, ("O2", "O4"), "radius"), one_or_each([1, 2], ("O2", "O4"), "radius")
-    (2.0, (1.0, 2.0))
-    >>> one_or_each([1], ("O2", "O4"), "radius")
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: radius has 1 entry; it must be a number, or 2 (O2, O4)
-    """
+    """A number greater than zero, between limits; or a tuple with one for each of its owners."""
     if isinstance(value, (str, bytes)):
         raise wrong_value(where, value, "a number")
     if not isinstance(value, Iterable):
@@ -250,13 +240,7 @@ def near_miss(word: str, words: Sequence[str]) -> str | None:
 
 
 def readable(text: str) -> str:
-    r"""Text that every file and terminal can hold, such as of a file name that is not UTF-8.
-
-    Examples
-    --------
-    >>> readable("caf\udce9")
-    'caf?'
-    """
+    """Text that every file and terminal can hold, such as of a file name that is not UTF-8."""
     return "".join("?" if _unprintable(character) else character for character in text)
 
 
@@ -274,17 +258,7 @@ def no_formula(text: str) -> str:
 
 
 def plain_text(text: str, where: str) -> str:
-    r"""`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones.
-
-    Examples
-    --------
-    >>> plain_text("Étage 2", "title")
-    'Étage 2'
-    >>> plain_text("two\nlines", "title")
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: title has control character U+000A; it must be plain text
-    """
+    """`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones."""
     if not isinstance(text, str):
         raise ProblemError(f"{where} is {shown(text)}; it must be text")
     for character in filter(_unprintable, text):

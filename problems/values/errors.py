@@ -21,13 +21,7 @@ def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
 
 
 def shown(value: object) -> str:
-    """A value as a message shows it: Python, and short whatever it is.
-
-    Examples
-    --------
-    >>> shown([1, "two"]), shown(16**5000), len(shown("x" * 10_000))
-    ("[1, 'two']", 'a whole number of about 6021 digits', 80)
-    """
+    """A value as a message shows it: Python, and short whatever it is."""
     text = " ".join(_SHORT.repr(value).splitlines())
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 43]}...{text[-40:]}"
 

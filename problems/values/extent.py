@@ -14,16 +14,9 @@ FEW = 64  # points of which every pair is looked at
 def span(points: FloatArray) -> float:
     """Greatest distance between two of N points (N, 2).
 
-    Notes
-    -----
-    The two are corners of the convex hull, and parallel lines through them hold the whole of it
-    between them. Such pairs are no more than the corners are, so that memory grows as N does and
-    time as N log N (Shamos 1978; Preparata & Shamos, *Computational Geometry*, 1985, section 4.2).
-
-    Examples
-    --------
-    >>> span(np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]]))
-    5.0
+    The two are corners of the convex hull, and parallel lines through them hold the whole of it between them.
+    Such pairs are no more than the corners are, so that memory grows as N does and time as N log N (Shamos
+    1978; Preparata & Shamos, *Computational Geometry*, 1985, section 4.2).
     """
     if len(points) <= FEW or not np.isfinite(points).all():
         return _greatest(points[:, None] - points[None])
@@ -51,16 +44,7 @@ def _known_span(data: bytes) -> float:
 def convex_corners(points: FloatArray) -> FloatArray:
     """Corners of the convex hull of N finite points (N, 2), counter-clockwise.
 
-    Two points where all lie on a line, one where all are at one place.
-
-    Notes
-    -----
-    Andrew's monotone chain (1979).
-
-    Examples
-    --------
-    >>> convex_corners(np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 5.0]])).tolist()
-    [[0.0, 0.0], [2.0, 2.0], [1.0, 5.0]]
+    Andrew's monotone chain (1979). Two points where all lie on a line, one where all are at one place.
     """
     ordered = np.unique(points, axis=0)
     low, high = ordered.min(axis=0), ordered.max(axis=0)

@@ -9,15 +9,7 @@ import numpy as np
 
 
 class ReadOnly:
-    """Base of a frozen dataclass that holds arrays: NumPy gives out writeable ones from pickles and copies.
-
-    Examples
-    --------
-    >>> import copy
-    >>> from grashof.problems import PathTask
-    >>> copy.deepcopy(PathTask([[0, 0], [3, 0], [3, 4]])).points.flags.writeable
-    False
-    """
+    """Base of a frozen dataclass that holds arrays: from pickles and copies NumPy gives writeable ones."""
 
     __slots__ = ()
 

@@ -13,14 +13,7 @@ class Stated:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """The keys with their values, as a file has them, but those at their defaults.
-
-        Examples
-        --------
-        >>> from grashof.problems.values.dynamics.motor import MotorSpec
-        >>> MotorSpec(gear_ratio=30).stated
-        {'gear_ratio': 30.0}
-        """
+        """The keys with their values, as a file has them, but those at their defaults."""
         found = {}
         for each in fields(self):  # type: ignore[arg-type]
             value = getattr(self, each.name)

@@ -18,24 +18,7 @@ def zone_sizes(
 ) -> FloatArray | None:
     """How far each of `count` targets may be missed, shape (count,), from one number or one for each.
 
-    Parameters
-    ----------
-    values : array_like or None
-    count : int
-    where : str
-        Its key, for messages.
-    least, most : float
-        The least and the greatest that may be given.
-
-    Raises
-    ------
-    ProblemError
-        Not numbers, not as many as there are targets, or out of range.
-
-    Examples
-    --------
-    >>> zone_sizes(2.0, 3, "path.within", least=1e-12)
-    array([2., 2., 2.])
+    `ProblemError` where they are not numbers, not as many as targets, or out of range.
     """
     if values is None:
         return None

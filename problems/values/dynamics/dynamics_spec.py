@@ -208,18 +208,7 @@ class DynamicsSpec(Stated):
 
 
 def metres(length_unit: str, needed_by: str = "dynamics") -> float:
-    """Length of a unit in metres.
-
-    Raises
-    ------
-    ProblemError
-        The unit is none of those known.
-
-    Examples
-    --------
-    >>> metres("in")
-    0.0254
-    """
+    """Length of a unit in metres; `ProblemError` where it is none of `METRES`."""
     if length_unit not in METRES:
         raise wrong_value("length_unit", length_unit, f"one of {', '.join(METRES)} with {needed_by}")
     return METRES[length_unit]

@@ -128,13 +128,7 @@ class StrengthSpec(Stated):
 
 
 def check_strength(section: SectionSpec | None, strength: StrengthSpec | None) -> None:
-    """Refuse a strength without the sections that it needs.
-
-    Raises
-    ------
-    ProblemError
-        No section, or neither height nor thickness of a link whose pins are given.
-    """
+    """Refuse a strength without sections, or with pins but neither height nor thickness of a link."""
     if strength is None:
         return
     if section is None:

@@ -21,20 +21,13 @@ _ENDINGS = {"place": ("_x", "_y"), "station": ("_u", "_v"), "arm": ("_u", "_v"),
 class Parameter:
     """One of the parameters that a linkage is given by.
 
-    Parameters
-    ----------
-    name : str
-        In Python and JSON.
-    kind : {"place", "station", "arm", "length", "distance", "sign", "angle"}
-        x and y; the same of a point on a link that is the ground, as u and v; u and v in the frame of a link;
-        a distance may be negative or zero; angles are in rad, in files and tables in deg.
-    column : str
-        What its columns in tables begin with, where that is not the name.
+    A place is x and y; a station the same of a point on a link that is the ground, as u and v; an arm u and v
+    in the frame of a link; a distance may be negative or zero; angles are in rad, in files and tables in deg.
     """
 
-    name: str
+    name: str  # in Python and JSON
     kind: Literal["place", "station", "arm", "length", "distance", "sign", "angle"]
-    column: str = ""
+    column: str = ""  # what its columns in tables begin with, where that is not the name
 
     @property
     def paired(self) -> bool:
@@ -59,10 +52,8 @@ class Parameter:
     def array(self, value: npt.ArrayLike) -> FloatArray:
         """A value of the parameter as an array.
 
-        Raises
-        ------
-        ProblemError
-            It is not a number, not finite, not a pair, not a length, not a sign, or over 100 turns.
+        `ProblemError` where it is not a number, not finite, not a pair, not a length, not a sign, or over 100
+        turns.
         """
         try:
             array = np.asarray(value, dtype=np.float64)
@@ -85,13 +76,8 @@ class Parameter:
 class Link:
     """A link and the points on it.
 
-    Parameters
-    ----------
-    number : int
-        1 is the ground, 2 the driver. Its length is r1, r2, ..., its direction theta1, theta2, ...
-    name : str
-    points : tuple of str
-        The first is the origin of its frame, the second lies on its u-axis.
+    1 is the ground, 2 the driver; their lengths are r1, r2, ..., their directions theta1, theta2, ... The
+    first point is the origin of its frame, the second lies on its u-axis.
     """
 
     number: int

@@ -22,13 +22,9 @@ class DyadKind(StrEnum):
 class Dyad:
     """A dyad: two links that close the gap between two others.
 
-    Parameters
-    ----------
-    kind : DyadKind
-        RRR: bars C-E and D-E. RRP: a bar C-E, and a slider pinned to it in E, on a line of the second host.
-        RPR: a rod, pinned in C, through a block that is pinned in D; E is the foot of D on the rod.
-    hosts : tuple of int
-        The links that carry C and D: 1 is the ground, 2 the driver, others are of an earlier dyad.
+    RRR: bars C-E and D-E. RRP: a bar C-E, and a slider pinned to it in E, on a line of the second host. RPR:
+    a rod, pinned in C, through a block that is pinned in D; E is the foot of D on the rod. The hosts carry C
+    and D: 1 is the ground, 2 the driver, others are of an earlier dyad.
     """
 
     kind: DyadKind
@@ -42,16 +38,9 @@ class Dyad:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """What joins two links.
+    """A pin, or a slide, between two links; motions in it are those of the second relative to the first.
 
-    Parameters
-    ----------
-    name : str
-        O2, A, B, ...; of a slide the name of the point that would be its pin.
-    links : pair of int
-        Motions in it are those of the second relative to the first.
-    slides : bool
-        Whether it is a slide instead of a pin.
+    It is named after its point, O2, A, B, ...; a slide after the point that would be its pin.
     """
 
     name: str
@@ -89,16 +78,7 @@ _NAMES = (("coupler", "output"), ("coupler-2", "output-2"))
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A kind of linkage.
-
-    Parameters
-    ----------
-    word : str
-        In files and tables.
-    dyads : tuple of Dyad
-        Links 3 and 4 are of the first, 5 and 6 of the second.
-    carries : int
-        The link that carries the coupler point P.
+    """A kind of linkage: links 3 and 4 are of its first dyad, 5 and 6 of its second, and one carries P.
 
     Examples
     --------

@@ -43,15 +43,7 @@ CLASSES: dict[str, type[Linkage]] = dict(
 def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
     """A linkage by the word for its kind, and its parameters by name, as `Linkage.stated` has them.
 
-    Raises
-    ------
-    ProblemError
-        The parameters make no linkage, or one of another kind.
-
-    Examples
-    --------
-    >>> linkage_of("slider-crank", {"o2": (0, 0), "r2": 1, "r3": 4}).mechanism.lengths
-    ('r2', 'r3')
+    `ProblemError` where they make no linkage, or one of another kind.
     """
     linkage = CLASSES.get(word, SixBar)(**given)
     if (made := linkage.mechanism.word) != word:
@@ -76,13 +68,7 @@ def is_of(linkage: Linkage, words: Sequence[str]) -> bool:
 
 
 def having(column: str) -> tuple[str, ...]:
-    """The kinds that have a length or parameter, by its name or its column in tables.
-
-    Examples
-    --------
-    >>> having("r4"), having("offset")
-    (('four-bar',), ('slider-crank', 'inverted-slider-crank'))
-    """
+    """The kinds that have a length or parameter, by its name or its column in tables."""
     return tuple(
         word
         for word, kind in ONE_LOOP.items()
@@ -92,13 +78,7 @@ def having(column: str) -> tuple[str, ...]:
 
 
 def freedoms(kind: str) -> int:
-    """How many numbers describe a linkage of a kind, how the guided body sits on it apart.
-
-    Examples
-    --------
-    >>> [freedoms(kind) for kind in ONE_LOOP]
-    [9, 8, 8]
-    """
+    """How many numbers describe a linkage of a kind, how the guided body sits on it apart."""
     rows = [row for row in ONE_LOOP[kind].parameters if row.kind != "sign" and row.name != "body_angle"]
     return sum(1 + row.paired for row in rows)
 
@@ -140,22 +120,7 @@ def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
 
 
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
-    """Words for kinds of linkages, checked: one of them, or a list.
-
-    Raises
-    ------
-    ProblemError
-        No such kind, none at all, or one twice.
-
-    Examples
-    --------
-    >>> mechanisms("slider-crank"), mechanisms(["four-bar", "slider-crank"])
-    (('slider-crank',), ('four-bar', 'slider-crank'))
-    >>> mechanisms(["four-bar", "slider-crnk"])
-    Traceback (most recent call last):
-        ...
-    grashof.problems.values.errors.ProblemError: mechanism[1] is 'slider-crnk'; did you mean slider-crank?
-    """
+    """Words for kinds of linkages, one or several; `ProblemError` for no such kind, none, or one twice."""
     if isinstance(given, str):
         return (mechanism(given),)
     if not isinstance(given, Sequence) or not len(given):

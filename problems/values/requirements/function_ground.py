@@ -20,17 +20,6 @@ _ROUNDING = 1e-9  # share: where pivots are given, both axes have the same lengt
 class FunctionGround:
     """The ground line of a function generator: O2 = (0, 0), O4 = (1, 0) unless limits say otherwise.
 
-    Parameters
-    ----------
-    theta1 : float, rad
-        Direction O2->O4.
-    lengths : tuple of float, length
-        Least and greatest r1 in this direction; the first is the greater where there is none.
-    length : float, length
-        The r1 that is usual.
-    o2, o4 : Box
-        Where the pivots may lie.
-
     Examples
     --------
     >>> from grashof.problems import Box, Requirements
@@ -39,10 +28,10 @@ class FunctionGround:
     (90.0, 200.0, ((0.0, 0.0), (0.0, 250.0)))
     """
 
-    theta1: float
-    lengths: Limits
-    length: float
-    o2: Box
+    theta1: float  # rad, direction O2->O4
+    lengths: Limits  # least and greatest r1 in this direction; the first is the greater where there is none
+    length: float  # the r1 that is usual
+    o2: Box  # where the pivots may lie
     o4: Box
 
     @classmethod

@@ -49,50 +49,22 @@ class Needs(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A quantity of a design.
-
-    Parameters
-    ----------
-    key : str
-    label : str
-        Heading in tables.
-    unit : Unit
-    over : Over
-    better : int
-        +1 where more is better, -1 where less is, 0 for neither.
-    needs : Needs
-    digits : int
-        Significant digits of the largest value in a table; 0 where it is listed in files only.
-    about : str
-        What it is, where its label does not show it.
-    listed : bool
-        Whether it is a column; what has several parts, such as a place, is not.
-    words : str
-        What it is called in a sentence, where that is not its label.
-    short : str
-        Heading where there is little room, where that is not its label.
-    kinds : tuple of str
-        The kinds of linkages that have it.
-    named : str
-        Its name in candidates.csv, where that is not its key.
-    full : str
-        Its name in words in a list of all values, where that is not `words`.
-    """
+    """A quantity of a design."""
 
     key: str
-    label: str
+    label: str  # heading in tables
     unit: Unit
     over: Over = Over.DESIGN
-    better: int = 0
+    better: int = 0  # +1 where more is better, -1 where less is, 0 for neither
     needs: Needs = Needs.NOTHING
-    digits: int = 0
-    about: str = ""
-    listed: bool = True
-    words: str = ""
-    short: str = ""
-    kinds: tuple[str, ...] = tuple(ONE_LOOP)
-    named: str = ""
-    full: str = ""
+    digits: int = 0  # significant ones of the largest value in a table; 0 where it is listed in files only
+    about: str = ""  # what it is, where its label does not show it
+    listed: bool = True  # whether it is a column; what has several parts, such as a place, is not
+    words: str = ""  # what it is called in a sentence, where that is not its label
+    short: str = ""  # heading where there is little room, where that is not its label
+    kinds: tuple[str, ...] = tuple(ONE_LOOP)  # of linkages that have it
+    named: str = ""  # its name in candidates.csv, where that is not its key
+    full: str = ""  # its name in words in a list of all values, where that is not `words`
 
     def __post_init__(self) -> None:
         for name in ("words", "short"):
@@ -274,25 +246,13 @@ class Kind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """How a field of `Requirements` limits a quantity.
-
-    Parameters
-    ----------
-    quantity : Quantity
-    kind : Kind
-    allowed : tuple of float
-        Least and greatest number that may be asked for, as files state it.
-    usual : tuple of float, optional
-        Limits where none are given, in sizes of the task.
-    words : mapping of str to tuple of float
-        What each word allows.
-    """
+    """How a field of `Requirements` limits a quantity."""
 
     quantity: Quantity
     kind: Kind
-    allowed: tuple[float, float]
-    usual: tuple[float, float] | None = None
-    words: Mapping[str, Limits] = field(default_factory=dict)
+    allowed: tuple[float, float]  # least and greatest number that may be asked for, as files state it
+    usual: tuple[float, float] | None = None  # limits where none are given, in sizes of the task
+    words: Mapping[str, Limits] = field(default_factory=dict)  # what each word allows
 
     @property
     def widest(self) -> str:
@@ -300,13 +260,7 @@ class Limit:
         return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
-        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by "".
-
-        Examples
-        --------
-        >>> Limit(MEASURED["theta2_end"], Kind.AT_LEAST, (0, 360)).ranges(180.0)
-        {'': (3.141592653589793, inf)}
-        """
+        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by ""."""
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
         if self.kind is Kind.WORD:

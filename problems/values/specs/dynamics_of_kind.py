@@ -20,35 +20,13 @@ _WORDS = {3: "three", 4: "four", 5: "five", 7: "seven"}
 
 
 def misplaced(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
-    """What of some dynamics does not go with a kind of linkage, a line each.
-
-    Parameters
-    ----------
-    spec : DynamicsSpec
-    kind : Mechanism
-
-    Examples
-    --------
-    >>> from grashof.problems import SliderCrank
-    >>> from grashof.problems.values.dynamics.acting import TorsionSpringSpec
-    >>> given = DynamicsSpec(mass_per_length=1.0, torsion_springs=(TorsionSpringSpec((1, 4), 2.0),))
-    >>> misplaced(given, SliderCrank.mechanism)[0]
-    'torsion_springs[0].between is [1, 4]; a slider-crank has a slide there, so it must be at a pin'
-    """
+    """What of some dynamics does not go with a kind of linkage, a line each."""
     slides = (*_loads(spec, kind), *_torsion_springs(spec, kind), *_friction(spec, kind))
     return [*without_place(spec, kind), *slides]
 
 
 def without_place(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
-    """The same of links, joints and angles alone, by their numbers and names.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> from grashof.problems.values.dynamics.acting import LoadSpec
-    >>> without_place(DynamicsSpec(loads=(LoadSpec(5, moment=1.0),)), FourBar.mechanism)
-    ['loads[0].link is 5; it must be 2, 3 or 4']
-    """
+    """The same of links, joints and angles alone, by their numbers and names."""
     return [*_sizes(spec, kind), *_links(spec, kind), *_angles(spec, kind), *_joints(spec, kind)]
 
 

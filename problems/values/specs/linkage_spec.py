@@ -75,30 +75,15 @@ class LinkageSpec(Displayed):
 
 @dataclass(frozen=True, slots=True)
 class ListedDesign:
-    """A design of a candidates list, with what the list states of its targets.
-
-    Parameters
-    ----------
-    spec : LinkageSpec
-    rank : int
-    id : str
-    theta2 : tuple of float, rad
-        Driver angle at each target.
-    assembly : tuple of int
-        Of the linkage at each target.
-    position_error : tuple of float or None, length
-        Distance from each target; None where it has no position.
-    angle_error : tuple of float or None, rad
-        The same of its angle; empty for a path.
-    """
+    """A design of a candidates list, with what the list states of its targets."""
 
     spec: LinkageSpec
     rank: int
     id: str
-    theta2: tuple[float, ...]
-    assembly: tuple[int, ...]
-    position_error: tuple[float | None, ...]
-    angle_error: tuple[float | None, ...]
+    theta2: tuple[float, ...]  # rad, driver angle at each target
+    assembly: tuple[int, ...]  # of the linkage at each target
+    position_error: tuple[float | None, ...]  # distance from each target; None where it has no position
+    angle_error: tuple[float | None, ...]  # rad, the same of its angle; empty for a path
 
     def __post_init__(self) -> None:
         counts = {len(self.theta2), len(self.assembly), len(self.position_error)}

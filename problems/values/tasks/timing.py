@@ -11,20 +11,10 @@ from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
 
 def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: str) -> FloatArray | None:
-    """Driver rotations from the first of `count` targets, shape (count,), rad.
+    """Driver rotations from the first of `count` targets, shape (count,), rad; `ProblemError` for others.
 
-    Parameters
-    ----------
-    values : array_like or None
-        Zero at the first target, then growing or falling throughout, over at most one turn.
-    count : int
-    kind, target : str
-        The table in problem files and what it calls a target, for messages; these are in degrees.
-
-    Raises
-    ------
-    ProblemError
-        Not such numbers.
+    Zero at the first target, then growing or falling throughout, over at most one turn. Messages name the
+    table of problem files and what it calls a target, and are in degrees.
     """
     if values is None:
         return None
