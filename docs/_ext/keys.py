@@ -102,8 +102,6 @@ def _sources(table: type[Table]) -> Iterator[object]:
     """What describes the keys of a table: its own docstring first, then that of the value it makes."""
     tables = (each for each in table.__mro__ if issubclass(each, Table) and each is not Table)
     yield from (each for each in tables if each.__dict__.get("__doc__"))
-    if task := getattr(table, "task", None):
-        yield from (task.from_degrees, task)
     if issubclass(table, SearchOptions):
         yield Search
     if issubclass(table, ProblemFile):
@@ -120,7 +118,7 @@ def _sources(table: type[Table]) -> Iterator[object]:
 def _summary(table: type[Table]) -> str:
     """What a table states: the first line of its own docstring, or of the value that it makes."""
     own = table.__dict__.get("__doc__")
-    return summary_of(table if own else getattr(table, "task", _made(table)))
+    return summary_of(table if own else _made(table))
 
 
 def _key(name: str, given: FieldInfo, known: Described | None, table: type[Table]) -> Key:
@@ -166,7 +164,9 @@ def _declared(table: type[Table], name: str) -> Any:
     """The default of a key in the value that a table makes; None where there is none."""
     made = _made(table)
     known = fields(made) if is_dataclass(made) else ()
-    return next((each.default for each in known if each.name == name and each.default is not MISSING), None)
+    found = next((each.default for each in known if each.name == name), MISSING)
+    # Fields of a task that have a property of `Task` for a default are computed where they are not given.
+    return None if found is MISSING or isinstance(found, property) else found
 
 
 def _quantity_text(quantity: Quantity) -> str:

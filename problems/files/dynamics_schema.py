@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.number_table import Names, number_table
+from grashof.problems.files.spec_table import SpecTable, keys_of, spec_table
 from grashof.problems.files.tables import Table, listed
 from grashof.problems.values.checks import located, refuse
 from grashof.problems.values.dynamics.acting import (
@@ -31,80 +33,36 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.specs.dynamics_of_kind import without_place
 
-Point = Annotated[list[float], listed("[u, v]")]
+_POINT = Annotated[list[float], listed("[u, v]")]
+_Kinds = Sequence[Sequence[Names]]
 # Columns of files, with or without their units.
 _ENDINGS = {"time": "_s", **dict.fromkeys(TURNING, "_deg")}
-_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
-_ROD_LOADS = {
-    CRANK: (("crank", "crank_deg"), ("load", "load_n")),
-    POSITION: (("position",), ("up", "up_n"), ("down", "down_n")),
+_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
+_LOADS: dict[str, _Kinds] = {
+    over: ((places, *_FORCE), (places, *_MOMENT)) for over, places in _PLACES.items()
+}
+_ROD_LOADS: dict[str, _Kinds] = {
+    CRANK: ((("crank", "crank_deg"), ("load", "load_n")),),
+    POSITION: ((("position",), ("up", "up_n"), ("down", "down_n")),),
 }
 _MOTION = (("time", "time_s"), ("angle", "angle_deg"))
 
 
-class _Spec(Table):
-    """A table whose keys are the arguments of a value."""
+class _Acting(SpecTable):
+    """A table of numbers, lists and places, which become tuples."""
 
-    spec: ClassVar[Callable[..., Any]]
-
-    def given(self) -> dict[str, Any]:
-        """The keys that are given, as arguments."""
-        return {key: _argument(getattr(self, key)) for key in self.model_fields_set}
-
-    def value(self) -> Any:
-        return type(self).spec(**self.given())
-
-
-def _argument(value: Any) -> Any:
-    if isinstance(value, Table):
-        return value.value()
-    return tuple(_argument(each) for each in value) if isinstance(value, list) else value
-
-
-class DynamicsTable(_Spec):
-    speed_rpm: float | None = None
-    gravity: Annotated[list[float], listed("[x, y] in m/s2")] | None = None
-    mass_per_length: float | None = None
-    density: float | None = None
-    masses: Annotated[list[float], listed("[m2, m3, m4]")] | None = None
-    inertias: Annotated[list[float], listed("[I2, I3, I4]")] | None = None
-    centres: Annotated[list[Point], listed("[[u2, v2], [u3, v3], [u4, v4]]")] | None = None
-    payload: float | None = None
-
-    @field_validator("*")
     @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        pair: dict[str, Any] = {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
-        besides = pair if key.field_name in (*pair, "centres") else {}
-        DynamicsSpec(**{**besides, **_SECTION, str(key.field_name): _argument(given)})
-        return given
-
-    def value(self) -> DynamicsSpec:
-        return DynamicsSpec(**_SECTION | self.given())  # the file as a whole says whether there is a section
+    def argument(cls, given: Any) -> Any:
+        if isinstance(given, Table):
+            return given.value()
+        return tuple(cls.argument(each) for each in given) if isinstance(given, list) else given
 
 
-_SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
+class _FromFile(_Acting):
+    """A table whose `values` may be in a CSV file beside it; its columns depend on what they are over."""
 
-
-class LoadTable(_Spec):
-    """A force or moment on a link.
-
-    Parameters
-    ----------
-    table : str
-        Instead of `values`: a CSV file beside this one, with the columns over, fx, fy or over, moment.
-    """
-
-    spec = LoadSpec
-    link: int
-    at: Point = Field(default=[0.0, 0.0])
-    force: Annotated[list[float], listed("[fx, fy] in N")] | None = None
-    moment: float | None = None
-    values: Annotated[list[list[float]], listed("rows [place, fx, fy] or [place, moment]")] | None = None
-    over: str = "theta2"
-    table: str | None = None
-    frame: str = "global"
+    columns: ClassVar[Mapping[str, _Kinds]]
 
     def given(self) -> dict[str, Any]:
         given = super().given()
@@ -114,63 +72,66 @@ class LoadTable(_Spec):
             given["values"] = rows
         return given
 
-    @field_validator("table", mode="after")
+    @field_validator("table", mode="after", check_fields=False)
     @classmethod
     def _read(cls, name: str | None, info: ValidationInfo) -> Any:
-        places = _PLACES.get(info.data.get("over", "theta2"), _PLACES["theta2"])
-        return None if name is None else _rows(name, info, ((places, *_FORCE), (places, *_MOMENT)))
+        usual = next(iter(cls.columns.values()))
+        return None if name is None else _rows(name, info, cls.columns.get(info.data.get("over", ""), usual))
 
 
-class PlaceTable(_Spec):
-    telling = False
-    spec = Place
-    link: int
-    at: Point = Field(default=[0.0, 0.0])
+@keys_of(
+    LoadSpec,
+    {
+        "at": _POINT,
+        "force": Annotated[list[float], listed("[fx, fy] in N")],
+        "values": Annotated[list[list[float]], listed("rows [place, fx, fy] or [place, moment]")],
+        "table": (str | None, None),
+    },
+    ("link", "at", "force", "moment", "values", "over", "table", "frame"),
+)
+class LoadTable(_FromFile):
+    """A force or moment on a link.
+
+    Parameters
+    ----------
+    table : str
+        Instead of `values`: a CSV file beside this one, with the columns over, fx, fy or over, moment.
+    """
+
+    columns = _LOADS
 
 
-Between = Annotated[list[PlaceTable], listed("two places such as [{ link = 1, at = [0, 2] }, { link = 4 }]")]
+@keys_of(
+    PumpingUnitSpec,
+    {
+        "values": Annotated[list[list[float]], listed("rows [crank angle, load]")],
+        "table": (str | None, None),
+    },
+    (
+        *("well", "crank", "structural_unbalance", "counterbalance", "counterbalance_phase_deg", "rating"),
+        *("rod_load", "over", "values", "table"),
+    ),
+)
+class PumpingUnitTable(_FromFile):
+    """A linkage as a beam pumping unit; its `output_arm` is that of the horsehead.
+
+    Parameters
+    ----------
+    table : str
+        Instead of `values`: a CSV file beside this one, with the columns crank, load or position, up, down.
+    """
+
+    columns = _ROD_LOADS
 
 
-class SpringTable(_Spec):
-    spec = SpringSpec
-    between: Between
-    stiffness: float
-    free_length: float = 0.0
-
-
-class DamperTable(_Spec):
-    spec = DamperSpec
-    between: Between
-    damping: float
-
-
-class TorsionSpringTable(_Spec):
-    spec = TorsionSpringSpec
-    between: Annotated[list[int], listed("two links of a joint, such as [2, 3]")]
-    stiffness: float
-    free_angle_deg: float = 0.0
-
-
-class CounterweightTable(_Spec):
-    spec = CounterweightSpec
-    link: int
-    mass: float
-    at: Point
-
-
-class FrictionTable(_Spec):
-    spec = FrictionSpec
-    coulomb: Any = 0.0
-    pin_radius: Any = 0.0
-    viscous: Any = 0.0
-    moment: Any = 0.0
-    slide_mu: float = 0.0
-    slide_length: float = 0.0
-    slide_viscous: float = 0.0
-    slide_force: float = 0.0
-
-
-class MotorTable(_Spec):
+@keys_of(
+    MotorSpec,
+    {
+        "profile": Any,
+        "values": Annotated[list[list[float]], listed("rows [time in s, angle in deg]")],
+    },
+)
+class MotorTable(_Acting):
     """The drive of link 2.
 
     Parameters
@@ -182,14 +143,6 @@ class MotorTable(_Spec):
         other; `speed_rpm` is the mean.
     """
 
-    spec = MotorSpec
-    profile: Any = "constant"
-    ramp: float = 1 / 3
-    values: Annotated[list[list[float]], listed("rows [time in s, angle in deg]")] | None = None
-    gear_ratio: float = 1.0
-    gear_efficiency: float = 1.0
-    inertia: float = 0.0
-
     def given(self) -> dict[str, Any]:
         given = super().given()
         if isinstance(given.get("profile"), tuple):
@@ -198,69 +151,38 @@ class MotorTable(_Spec):
             given["values"] = given.pop("profile")
         return given
 
-    @field_validator("profile", mode="after")
+    @field_validator("profile", mode="after", check_fields=False)
     @classmethod
     def _read(cls, profile: Any, info: ValidationInfo) -> Any:
         is_file = isinstance(profile, str) and profile not in PROFILES and profile.endswith(".csv")
         return _rows(profile, info, (_MOTION,)) if is_file else profile
 
 
-class PumpingUnitTable(_Spec):
-    """A linkage as a beam pumping unit; its `output_arm` is that of the horsehead.
-
-    Parameters
-    ----------
-    table : str
-        Instead of `values`: a CSV file beside this one, with the columns crank, load or position, up, down.
-    """
-
-    spec = PumpingUnitSpec
-    well: str = "right"
-    crank: str = "clockwise"
-    structural_unbalance: float = 0.0
-    counterbalance: float = 0.0
-    counterbalance_phase_deg: float = 0.0
-    rating: float | None = None
-    rod_load: float | None = None
-    over: str = CRANK
-    values: Annotated[list[list[float]], listed("rows [crank angle, load]")] | None = None
-    table: str | None = None
-
-    def given(self) -> dict[str, Any]:
-        given = super().given()
-        if (rows := given.pop("table", None)) is not None:
-            if "values" in given:
-                raise ProblemError("table is given besides values; give one of them")
-            given["values"] = rows
-        return given
-
-    @field_validator("table", mode="after")
-    @classmethod
-    def _read(cls, name: str | None, info: ValidationInfo) -> Any:
-        columns = _ROD_LOADS.get(info.data.get("over", CRANK), _ROD_LOADS[CRANK])
-        return None if name is None else _rows(name, info, (columns,))
+@keys_of(Place, {"at": _POINT})
+class PlaceTable(_Acting):
+    telling = False
 
 
-class SectionTable(_Spec):
-    spec = SectionSpec
-    width: Any = None
-    height: Any = None
-    area: Any = None
-    inertia: Any = None
-    extreme_fibre: Any = None
-    inertia_across: Any = None
-    shear_factor: Any = None
+_SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
+_LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
 
 
-class StrengthTable(_Spec):
-    spec = StrengthSpec
-    yield_stress: float
-    elastic_modulus: float | None = None
-    pin_diameter: Any = None
-    pin_shear_strength: float | None = None
-    bearing_strength: float | None = None
-    pin_thickness: Any = None
-    double_shear: bool = False
+@keys_of(
+    DynamicsSpec,
+    {
+        "gravity": Annotated[list[float], listed("[x, y] in m/s2")],
+        "masses": Annotated[list[float], listed("[m2, m3, m4]")],
+        "inertias": Annotated[list[float], listed("[I2, I3, I4]")],
+        "centres": Annotated[list[_POINT], listed("[[u2, v2], [u3, v3], [u4, v4]]")],
+    },
+    ("speed_rpm", "gravity", "mass_per_length", "density", "masses", "inertias", "centres", "payload"),
+)
+class DynamicsTable(_Acting):
+    # The file as a whole says whether there is a section.
+    beside = MappingProxyType({"*": _SECTION, **dict.fromkeys(("masses", "inertias", "centres"), _LINKS)})
+
+    def value(self) -> DynamicsSpec:
+        return DynamicsSpec(**_SECTION | self.given())
 
 
 def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
@@ -276,21 +198,37 @@ def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> 
 
 # More would take minutes to analyse; a load with a table of values counts once.
 _TABLES = listed("a list of tables", 100)
+_BETWEEN = Annotated[list[PlaceTable], listed("two places such as [{ link = 1, at = [0, 2] }, { link = 4 }]")]
+_JOINT = Annotated[list[int], listed("two links of a joint, such as [2, 3]")]
+_ONE_OR_EACH = dict.fromkeys(("coulomb", "pin_radius", "viscous", "moment"), (Any, 0.0))
 
 
-class MachineTables(Table):
+def _one(table: Any) -> Any:
+    return table | None, None
+
+
+def _some(table: Any) -> Any:
+    return Annotated[list[table], _TABLES], Field(default=[])
+
+
+_Machine = create_model(
+    "_Machine",
+    __base__=Table,
+    dynamics=_one(DynamicsTable),
+    loads=_some(LoadTable),
+    springs=_some(spec_table(SpringSpec, _Acting, {"between": _BETWEEN})),
+    dampers=_some(spec_table(DamperSpec, _Acting, {"between": _BETWEEN})),
+    torsion_springs=_some(spec_table(TorsionSpringSpec, _Acting, {"between": _JOINT})),
+    counterweights=_some(spec_table(CounterweightSpec, _Acting, {"at": _POINT})),
+    friction=_one(spec_table(FrictionSpec, _Acting, _ONE_OR_EACH)),
+    motor=_one(MotorTable),
+    section=_one(spec_table(SectionSpec, _Acting)),
+    strength=_one(spec_table(StrengthSpec, _Acting)),
+)
+
+
+class MachineTables(_Machine):  # type: ignore[misc, valid-type]
     """What problem and linkage files have in common."""
-
-    dynamics: DynamicsTable | None = None
-    loads: Annotated[list[LoadTable], _TABLES] = Field(default=[])
-    springs: Annotated[list[SpringTable], _TABLES] = Field(default=[])
-    dampers: Annotated[list[DamperTable], _TABLES] = Field(default=[])
-    torsion_springs: Annotated[list[TorsionSpringTable], _TABLES] = Field(default=[])
-    counterweights: Annotated[list[CounterweightTable], _TABLES] = Field(default=[])
-    friction: FrictionTable | None = None
-    motor: MotorTable | None = None
-    section: SectionTable | None = None
-    strength: StrengthTable | None = None
 
     def dynamics_spec(self, *kinds: Mechanism) -> DynamicsSpec | None:
         """All of it as one value, for some kinds of linkages; None where nothing is stated."""
@@ -299,7 +237,7 @@ class MachineTables(Table):
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
         spec = DynamicsSpec(
-            **own, **{name: _argument(getattr(self, name)) for name in names if name != "dynamics"}
+            **own, **{name: _Acting.argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
         refuse([line for kind in kinds for line in without_place(spec, kind)])
         return spec

@@ -5,9 +5,10 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
 from pydantic import (
@@ -23,6 +24,7 @@ from pydantic_core import PydanticCustomError
 
 from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
+from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
 from grashof.problems.files.tables import (
     LIST,
     NUMBER,
@@ -102,102 +104,67 @@ Zone = Annotated[
 ]
 
 
-class TargetsTable(Table):
+class TargetsTable(SpecTable):
     """Targets, and what goes with them. Each key is tried by itself, on plain targets."""
 
-    task: ClassVar[type[MotionTask | PathTask]]
     plain: ClassVar[list[float]]  # a target, but for its x
     fewest: ClassVar[int]
-    besides: ClassVar[dict[str, Any]] = {}  # what targets need to be a task
 
-    @field_validator("*")
     @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        name, targets = str(key.field_name), next(iter(cls.model_fields))
-        one_each = isinstance(given, list) and name != "body"
-        count = len(given) if one_each else cls.fewest
-        if name == targets:
-            cls.task.from_degrees(given, **cls.besides)
-        elif given is not None and count >= cls.fewest:
-            cls.task.from_degrees([[k, *cls.plain] for k in range(count)], **{name: given})
-        return given
-
-    def value(self) -> MotionTask | PathTask:
-        return self.task.from_degrees(**dict(self))
+    def needed(cls, key: str, given: Any) -> Mapping[str, Any] | None:
+        targets = next(iter(cls.model_fields))
+        if key == targets:
+            return cls.beside.get(key, {})
+        count = len(given) if isinstance(given, list) and key != "body" else cls.fewest
+        return None if count < cls.fewest else {targets: [[k, *cls.plain] for k in range(count)]}
 
 
+Numbers = Annotated[list[float], listed("a list of numbers")]
 Angles = Annotated[list[float], listed("a list of angles", MOST_TARGETS)]
+Poses = Annotated[
+    list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
+]
+Points = Annotated[
+    list[Annotated[list[float], listed("a point [x, y]")]],
+    listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
+]
+_OF_TARGETS = {
+    **{"poses": Poses, "points": Points, "weights": Numbers, "body": Drawn, "timing_deg": Angles},
+    **dict.fromkeys(("within", "angle_within_deg"), Zone),
+}
 
 
+@keys_of(MotionTask, _OF_TARGETS)
 class MotionTable(TargetsTable):
-    task = MotionTask
-    plain, fewest, besides = [0.0, 0.0], 2, {"angle_length": 1.0}
-    poses: Annotated[
-        list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
-    ]
-    weights: Annotated[list[float], listed("a list of numbers")] | None = None
-    angle_length: float | None = None
-    body: Drawn | None = None
-    within: Zone | None = None
-    angle_within_deg: Zone | None = None
-    timing_deg: Angles | None = None
-    closed: bool = False
+    plain, fewest = [0.0, 0.0], 2
+    beside = MappingProxyType({"poses": {"angle_length": 1.0}})
 
 
+@keys_of(PathTask, _OF_TARGETS)
 class PathTable(TargetsTable):
-    task = PathTask
     plain, fewest = [0.0], 3
-    points: Annotated[
-        list[Annotated[list[float], listed("a point [x, y]")]],
-        listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
-    ]
-    timing_deg: Angles | None = None
-    closed: bool = False
-    within: Zone | None = None
 
 
-class StrokeTable(Table):
-    swing_deg: float | None = None
-    stroke: float | None = None
-    time_ratio: float
-
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, given: float | None, key: ValidationInfo) -> float | None:
-        name = str(key.field_name)
-        if given is not None:
-            others = {"swing_deg": 60.0} if name == "time_ratio" else {}
-            StrokeTask.from_degrees(**{**others, name: given})
-        return given
-
-    def value(self) -> StrokeTask:
-        return StrokeTask.from_degrees(**dict(self))
+@keys_of(StrokeTask, {"time_ratio": (float, ...)})
+class StrokeTable(SpecTable):
+    beside = MappingProxyType({**EACH, "time_ratio": {"swing_deg": 60.0}})
 
 
-class FunctionTable(Table):
-    input_deg: Angles | None = None
-    output_deg: Angles | None = None
-    output: Annotated[list[float], listed("a list of lengths", MOST_TARGETS)] | None = None
-    law: str | None = None
-    x: Pair | None = None
-    exponent: float | None = None
-    input_range_deg: float | None = None
-    output_range_deg: float | None = None
-    output_range: float | None = None
-    pairs: int | None = None
-    sampled: Annotated[list[float], listed("a list of numbers", MOST_TARGETS)] | None = None
-    sense: str = "given"
-    norm: str = "rms"
+_PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
 
-    @field_validator("sense", "norm")
-    @classmethod
-    def _by_itself(cls, word: str, key: ValidationInfo) -> str:
-        words: dict[str, Any] = {str(key.field_name): word}
-        FunctionTask([0, 1, 2], [0, 1, 2], **words)
-        return word
 
-    def value(self) -> FunctionTask:
-        return FunctionTask.from_degrees(**dict(self))
+@keys_of(
+    FunctionTask,
+    {
+        **dict.fromkeys(("input_deg", "output_deg"), Angles),
+        "output": Annotated[list[float], listed("a list of lengths", MOST_TARGETS)],
+        "law": str,
+        "x": Pair,
+        "sampled": Annotated[list[float], listed("a list of numbers", MOST_TARGETS)],
+    },
+)
+class FunctionTable(SpecTable):
+    beside = MappingProxyType({"sense": _PAIRS, "norm": _PAIRS})
 
 
 Outlines = Annotated[
@@ -226,39 +193,29 @@ class SceneTable(Table):
         return tuple(drawn)
 
 
-class BoxTable(Table):
+@keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
+class BoxTable(SpecTable):
     telling: ClassVar[bool] = False  # x and y do not show where they belong
-    x: Pair | None = None
-    y: Pair | None = None
 
-    @field_validator("x", "y", mode="before")
+    @field_validator("x", "y", mode="before", check_fields=False)
     @classmethod
     def _line(cls, given: Any) -> Any:
         """A number alone is a side of no width."""
         return [given, given] if tag(given) == NUMBER else given
 
-    def value(self) -> Box:
-        sides: dict[str, Any] = {axis: getattr(self, axis) for axis in self.model_fields_set}
-        return Box(**sides)
 
-
-def _box(place: BoxTable | list[float]) -> Box:
-    if isinstance(place, BoxTable):
-        return place.value()
-    x, y = place
-    return Box((x, x), (y, y))
-
-
-def _point(point: list[float]) -> list[float]:
+def _at(point: list[float]) -> Box:
+    """The box of a single point."""
     if len(point) != 2:
         raise PydanticCustomError(WRONG, _PLACE_SHAPES)
-    _box(point)
-    return point
+    x, y = point
+    return Box((x, x), (y, y))
 
 
 _PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
 Place = Annotated[
-    Annotated[BoxTable, Tag(TABLE)] | Annotated[list[float], AfterValidator(_point), Tag(LIST)],
+    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(TABLE)]
+    | Annotated[list[float], AfterValidator(_at), Tag(LIST)],
     Discriminator(tag, custom_error_type=WRONG, custom_error_message=_PLACE_SHAPES),
 ]
 
@@ -279,10 +236,9 @@ def _is_corner(given: Any) -> bool:
 
 Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
-_ANGLES = "a number or [lo, hi]"
 Direction = Annotated[
     Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
-    Discriminator(tag, custom_error_type=WRONG, custom_error_message=_ANGLES),
+    Discriminator(tag, custom_error_type=WRONG, custom_error_message="a number or [lo, hi]"),
 ]
 _BY_KIND = {
     Kind.DIRECTION: Direction,
@@ -297,7 +253,6 @@ _MODES: dict[str, Any] = {
     "keep_out": Areas,
     "keep_out_for": Parts,
 }
-_PLACES = {name for name, limit in LIMITS.items() if _BY_KIND.get(limit.kind) is Place}
 
 
 def _type_of(name: str) -> Any:
@@ -305,24 +260,9 @@ def _type_of(name: str) -> Any:
     return _BY_KIND.get(LIMITS[name].kind, float) if name in LIMITS else _MODES.get(name, float)
 
 
-_Requirements = create_model(
-    "_Requirements", __base__=Table, **{f.name: (_type_of(f.name) | None, None) for f in fields(Requirements)}
-)  # type: ignore[call-overload]
-
-
-class RequirementsTable(_Requirements):  # type: ignore[misc, valid-type]
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        if key.field_name not in _PLACES:
-            Requirements(**{str(key.field_name): given})
-        return given
-
-    def value(self) -> Requirements:
-        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
-        for key in given.keys() & _PLACES:
-            given[key] = _box(given[key])
-        return Requirements(**given)
+@keys_of(Requirements, {each.name: (_type_of(each.name) | None, None) for each in fields(Requirements)})
+class RequirementsTable(SpecTable):
+    beside = EACH
 
 
 _Weights = create_model("_Weights", __base__=Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
@@ -371,24 +311,9 @@ class ObjectiveTable(Table):
 Carriers = Annotated[list[str], listed(f"a list of some of {', '.join(CARRIERS)}")]
 
 
-class CylinderTable(Table):
-    closed: Pair | None = None
-    ratio_max: float | None = None
-    on: Carriers | None = None
-    base: Place | None = None
-
-    @field_validator("closed", "ratio_max", "on")
-    @classmethod
-    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        if given is not None:
-            CylinderSpec(**{str(key.field_name): given})
-        return given
-
-    def value(self) -> CylinderSpec:
-        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
-        if "base" in given:
-            given["base"] = _box(given["base"])
-        return CylinderSpec(**given)
+@keys_of(CylinderSpec, {"closed": Pair, "on": Carriers, "base": Place})
+class CylinderTable(SpecTable):
+    beside = EACH
 
 
 class DriverTable(Table):
@@ -403,38 +328,18 @@ class DriverTable(Table):
     cylinder: CylinderTable
 
     def value(self) -> CylinderSpec:
-        return self.cylinder.value()
+        made: CylinderSpec = self.cylinder.value()
+        return made
 
 
-class ManufacturingTable(Table):
-    length_tolerance: float
-    band: float | None = None
-
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, length: float | None, key: ValidationInfo) -> float | None:
-        Manufacturing(**{"length_tolerance": 1.0, str(key.field_name): length})  # type: ignore[arg-type]
-        return length
-
-    def value(self) -> Manufacturing:
-        return Manufacturing(self.length_tolerance, self.band)
+@keys_of(Manufacturing)
+class ManufacturingTable(SpecTable):
+    beside = MappingProxyType({"*": {"length_tolerance": 1.0}})
 
 
-class SearchTable(Table):
-    starts: int | None = None
-    enough: int | None = None
-    seed: int | None = None
-    effort: float | None = None
-
-    @field_validator("*")
-    @classmethod
-    def _by_itself(cls, given: int, key: ValidationInfo) -> int:
-        Search(**{str(key.field_name): given})
-        return given
-
-    def value(self) -> Search:
-        given: dict[str, Any] = {key: getattr(self, key) for key in self.model_fields_set}
-        return Search(**given)
+@keys_of(Search)
+class SearchTable(SpecTable):
+    beside = EACH
 
 
 Mechanism = Annotated[

@@ -13,7 +13,14 @@ class Stated:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """The keys with their values, as a file has them, but those at their defaults."""
+        """The keys with their values, as a file has them, but those at their defaults.
+
+        Examples
+        --------
+        >>> from grashof.problems.values.dynamics.motor import MotorSpec
+        >>> MotorSpec(gear_ratio=30).stated
+        {'gear_ratio': 30.0}
+        """
         found = {}
         for each in fields(self):  # type: ignore[arg-type]
             value = getattr(self, each.name)
