@@ -5,7 +5,7 @@ The value types check what the values mean; both kinds of error leave as one `Pr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -14,7 +14,6 @@ from typing import Annotated, Any, ClassVar
 from pydantic import (
     AfterValidator,
     BeforeValidator,
-    Discriminator,
     Tag,
     ValidationInfo,
     create_model,
@@ -33,14 +32,23 @@ from grashof.problems.files.tables import (
     WRONG,
     Table,
     Text,
+    either,
     listed,
     one_of,
     stated,
     tag,
 )
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.files.task_schema import (
+    Corners,
+    FunctionTable,
+    MotionTable,
+    Pair,
+    PathTable,
+    SceneTable,
+    StrokeTable,
+)
 from grashof.problems.values.box import Box
-from grashof.problems.values.checks import near_miss, noted, outline, refuse, refused
+from grashof.problems.values.checks import near_miss, noted, refused
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
@@ -50,11 +58,7 @@ from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mec
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
-from grashof.problems.values.specs.problem import MOST_TARGETS, NO_OBJECTIVE, Problem, Search
-from grashof.problems.values.tasks.function_task import FunctionTask
-from grashof.problems.values.tasks.motion_task import MotionTask
-from grashof.problems.values.tasks.path_task import PathTask
-from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
 
 
@@ -86,113 +90,6 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     yield from wrong
 
 
-Corners = Annotated[
-    list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
-]
-Drawn = Annotated[
-    list[Annotated[list[float], listed("a corner [x, y]")]],
-    listed("a list of corners [x, y], or a .dxf or .svg file"),
-]
-Pair = Annotated[list[float], listed("[lo, hi]")]
-
-
-Zone = Annotated[
-    Annotated[float, Tag(NUMBER)] | Annotated[list[float], Tag(LIST)],
-    Discriminator(
-        tag, custom_error_type=WRONG, custom_error_message="a number, or a list of one for each target"
-    ),
-]
-
-
-class TargetsTable(SpecTable):
-    """Targets, and what goes with them. Each key is tried by itself, on plain targets."""
-
-    plain: ClassVar[list[float]]  # a target, but for its x
-    fewest: ClassVar[int]
-
-    @classmethod
-    def needed(cls, key: str, given: Any) -> Mapping[str, Any] | None:
-        targets = next(iter(cls.model_fields))
-        if key == targets:
-            return cls.beside.get(key, {})
-        count = len(given) if isinstance(given, list) and key != "body" else cls.fewest
-        return None if count < cls.fewest else {targets: [[k, *cls.plain] for k in range(count)]}
-
-
-Numbers = Annotated[list[float], listed("a list of numbers")]
-Angles = Annotated[list[float], listed("a list of angles", MOST_TARGETS)]
-Poses = Annotated[
-    list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
-]
-Points = Annotated[
-    list[Annotated[list[float], listed("a point [x, y]")]],
-    listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
-]
-_OF_TARGETS = {
-    **{"poses": Poses, "points": Points, "weights": Numbers, "body": Drawn, "timing_deg": Angles},
-    **dict.fromkeys(("within", "angle_within_deg"), Zone),
-}
-
-
-@keys_of(MotionTask, _OF_TARGETS)
-class MotionTable(TargetsTable):
-    plain, fewest = [0.0, 0.0], 2
-    beside = MappingProxyType({"poses": {"angle_length": 1.0}})
-
-
-@keys_of(PathTask, _OF_TARGETS)
-class PathTable(TargetsTable):
-    plain, fewest = [0.0], 3
-
-
-@keys_of(StrokeTask, {"time_ratio": (float, ...)})
-class StrokeTable(SpecTable):
-    beside = MappingProxyType({**EACH, "time_ratio": {"swing_deg": 60.0}})
-
-
-_PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
-
-
-@keys_of(
-    FunctionTask,
-    {
-        **dict.fromkeys(("input_deg", "output_deg"), Angles),
-        "output": Annotated[list[float], listed("a list of lengths", MOST_TARGETS)],
-        "law": str,
-        "x": Pair,
-        "sampled": Annotated[list[float], listed("a list of numbers", MOST_TARGETS)],
-    },
-)
-class FunctionTable(SpecTable):
-    beside = MappingProxyType({"sense": _PAIRS, "norm": _PAIRS})
-
-
-Outlines = Annotated[
-    list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")
-]
-
-
-class SceneTable(Table):
-    """What is drawn with the designs and limits nothing.
-
-    Parameters
-    ----------
-    outlines : list, length
-        Lines from corner to corner, such as the machine's frame.
-    """
-
-    outlines: Outlines | None = None
-
-    def value(self) -> tuple[FloatArray, ...]:
-        drawn: list[FloatArray] = []
-        wrong: list[str] = []
-        for i, corners in enumerate(self.outlines or []):
-            with noted(wrong):
-                drawn.append(outline(corners, f"scene.outlines[{i}]"))
-        refuse(wrong)
-        return tuple(drawn)
-
-
 @keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
 class BoxTable(SpecTable):
     telling: ClassVar[bool] = False  # x and y do not show where they belong
@@ -216,7 +113,7 @@ _PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
 Place = Annotated[
     Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(TABLE)]
     | Annotated[list[float], AfterValidator(_at), Tag(LIST)],
-    Discriminator(tag, custom_error_type=WRONG, custom_error_message=_PLACE_SHAPES),
+    either(_PLACE_SHAPES),
 ]
 
 
@@ -238,7 +135,7 @@ Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
 Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
 Direction = Annotated[
     Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
-    Discriminator(tag, custom_error_type=WRONG, custom_error_message="a number or [lo, hi]"),
+    either("a number or [lo, hi]"),
 ]
 _BY_KIND = {
     Kind.DIRECTION: Direction,
@@ -287,7 +184,7 @@ def _goal(word: str) -> str:
 
 Maximise = Annotated[
     Annotated[str, AfterValidator(_goal), Tag(WORD)] | Annotated[WeightsTable, Tag(TABLE)],
-    Discriminator(tag, custom_error_type=WRONG, custom_error_message=f"{_GOALS} or a table of weights"),
+    either(f"{_GOALS} or a table of weights"),
 ]
 
 
@@ -344,7 +241,7 @@ class SearchTable(SpecTable):
 
 Mechanism = Annotated[
     Annotated[str, Tag(WORD)] | Annotated[list[Any], Tag(LIST)],
-    Discriminator(tag, custom_error_type=WRONG, custom_error_message=ANY_KINDS),
+    either(ANY_KINDS),
     AfterValidator(mechanisms),
 ]
 

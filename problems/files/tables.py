@@ -13,6 +13,7 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Discriminator,
     ValidationError,
     ValidationInfo,
     model_validator,
@@ -141,6 +142,11 @@ def tag(value: object) -> str | None:
     """The tag of a value's shape."""
     shapes = (((dict, Table), TABLE), (list, LIST), (str, WORD), (bool, None), ((int, float), NUMBER))
     return next((name for types, name in shapes if isinstance(value, types)), None)
+
+
+def either(wanted: str) -> Discriminator:
+    """Distinguishes the shapes that a value may have, which `wanted` tells, by the tags of its types."""
+    return Discriminator(tag, custom_error_type=WRONG, custom_error_message=wanted)
 
 
 def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:

@@ -1,0 +1,123 @@
+"""Tables of a problem file that state the task, and the scene around it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Tag
+
+from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
+from grashof.problems.files.tables import LIST, NUMBER, Table, either, listed
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import noted, outline, refuse
+from grashof.problems.values.specs.problem import MOST_TARGETS
+from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.motion_task import MotionTask
+from grashof.problems.values.tasks.path_task import PathTask
+from grashof.problems.values.tasks.stroke_task import StrokeTask
+
+Corners = Annotated[
+    list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
+]
+Drawn = Annotated[
+    list[Annotated[list[float], listed("a corner [x, y]")]],
+    listed("a list of corners [x, y], or a .dxf or .svg file"),
+]
+Pair = Annotated[list[float], listed("[lo, hi]")]
+
+
+Zone = Annotated[
+    Annotated[float, Tag(NUMBER)] | Annotated[list[float], Tag(LIST)],
+    either("a number, or a list of one for each target"),
+]
+
+
+class TargetsTable(SpecTable):
+    """Targets, and what goes with them. Each key is tried by itself, on plain targets."""
+
+    plain: ClassVar[list[float]]  # a target, but for its x
+    fewest: ClassVar[int]
+
+    @classmethod
+    def needed(cls, key: str, given: Any) -> Mapping[str, Any] | None:
+        targets = next(iter(cls.model_fields))
+        if key == targets:
+            return cls.beside.get(key, {})
+        count = len(given) if isinstance(given, list) and key != "body" else cls.fewest
+        return None if count < cls.fewest else {targets: [[k, *cls.plain] for k in range(count)]}
+
+
+Numbers = Annotated[list[float], listed("a list of numbers")]
+Angles = Annotated[list[float], listed("a list of angles", MOST_TARGETS)]
+Poses = Annotated[
+    list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
+]
+Points = Annotated[
+    list[Annotated[list[float], listed("a point [x, y]")]],
+    listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
+]
+_OF_TARGETS = {
+    **{"poses": Poses, "points": Points, "weights": Numbers, "body": Drawn, "timing_deg": Angles},
+    **dict.fromkeys(("within", "angle_within_deg"), Zone),
+}
+
+
+@keys_of(MotionTask, _OF_TARGETS)
+class MotionTable(TargetsTable):
+    plain, fewest = [0.0, 0.0], 2
+    beside = MappingProxyType({"poses": {"angle_length": 1.0}})
+
+
+@keys_of(PathTask, _OF_TARGETS)
+class PathTable(TargetsTable):
+    plain, fewest = [0.0], 3
+
+
+@keys_of(StrokeTask, {"time_ratio": (float, ...)})
+class StrokeTable(SpecTable):
+    beside = MappingProxyType({**EACH, "time_ratio": {"swing_deg": 60.0}})
+
+
+_PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
+
+
+@keys_of(
+    FunctionTask,
+    {
+        **dict.fromkeys(("input_deg", "output_deg"), Angles),
+        "output": Annotated[list[float], listed("a list of lengths", MOST_TARGETS)],
+        "law": str,
+        "x": Pair,
+        "sampled": Annotated[list[float], listed("a list of numbers", MOST_TARGETS)],
+    },
+)
+class FunctionTable(SpecTable):
+    beside = MappingProxyType({"sense": _PAIRS, "norm": _PAIRS})
+
+
+Outlines = Annotated[
+    list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")
+]
+
+
+class SceneTable(Table):
+    """What is drawn with the designs and limits nothing.
+
+    Parameters
+    ----------
+    outlines : list, length
+        Lines from corner to corner, such as the machine's frame.
+    """
+
+    outlines: Outlines | None = None
+
+    def value(self) -> tuple[FloatArray, ...]:
+        drawn: list[FloatArray] = []
+        wrong: list[str] = []
+        for i, corners in enumerate(self.outlines or []):
+            with noted(wrong):
+                drawn.append(outline(corners, f"scene.outlines[{i}]"))
+        refuse(wrong)
+        return tuple(drawn)
