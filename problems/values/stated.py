@@ -29,6 +29,18 @@ class Stated:
         return found
 
 
+class Given(Stated):
+    """The same, stated by all keys that are given, defaults among them."""
+
+    __slots__ = ()
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The arguments that give this value, without those that are not given: a file's table."""
+        every = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+        return {name: value for name, value in every.items() if value is not None}
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Stated):
         return value.stated

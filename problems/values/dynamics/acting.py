@@ -11,7 +11,8 @@ from numbers import Integral
 
 import numpy as np
 
-from grashof.problems.values.checks import GREATEST, bounded, finite_rows, from_zero, numbers
+from grashof.problems.values.checks import bounded, from_zero, numbers
+from grashof.problems.values.dynamics.rows import Rows, as_rows, refuse_open, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.stated import Stated
@@ -19,7 +20,6 @@ from grashof.problems.values.stated import Stated
 Pair = tuple[float, float]
 TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a whole turn
 OVER = (*TURNING, "travel", "time")
-TURN_DEG = 360.0
 # The joints by the links that they join: of linkages of one loop, and of any; how many a linkage may have.
 JOINTS = tuple(joint.links for joint in MECHANISMS[0].every_joint)
 _ANY_JOINTS = tuple(joint.links for row in MECHANISMS for joint in row.every_joint)
@@ -310,25 +310,13 @@ def _two_places(given: object) -> tuple[Place, Place]:
     return places
 
 
-def _rows(values: object, over: str) -> tuple[tuple[float, ...], ...]:
+def _rows(values: object, over: str) -> Rows:
     rows = [tuple(row) if isinstance(row, Sequence) else (row,) for row in values or ()]  # type: ignore[attr-defined]
     columns = len(rows[0]) if rows else 3
     if columns not in (2, 3):
         raise wrong_value("values[0]", list(rows[0]), f"[{over}, fx, fy] or [{over}, moment]")
     means = f"[{over}, fx, fy]" if columns == 3 else f"[{over}, moment]"
-    table = finite_rows(rows, columns, "values", means, GREATEST)
-    if len(table) < 2:
-        raise ProblemError(f"values has {len(table)} rows; it must have two or more")
-    steps = np.diff(table[:, 0])
-    if not (steps > 0).all():
-        row = int(np.flatnonzero(~(steps > 0))[0]) + 1
-        raise ProblemError(f"values[{row}] has {over} {table[row, 0]:.15g}; it must rise from row to row")
+    table = rising_rows(rows, columns, means, [over])
     if over in TURNING:
-        first, last = table[0, 0], table[-1, 0]
-        if abs(last - first - TURN_DEG) > 1e-9:
-            raise ProblemError(
-                f"values cover {over} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
-            )
-        if (table[0, 1:] != table[-1, 1:]).any():
-            raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
-    return tuple(tuple(row) for row in table.tolist())
+        refuse_open(table, over)
+    return as_rows(table)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import GREATEST, finite_rows, from_zero, number_within, positive_number
+from grashof.problems.values.checks import GREATEST, from_zero, number_within, positive_number
+from grashof.problems.values.dynamics.rows import Rows, as_rows, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.stated import Stated
 
@@ -43,7 +44,7 @@ class MotorSpec(Stated):
 
     profile: str = "constant"
     ramp: float = _RAMP
-    values: tuple[tuple[float, ...], ...] | None = None
+    values: Rows | None = None
     gear_ratio: float = 1.0
     gear_efficiency: float = 1.0
     inertia: float = 0.0
@@ -62,22 +63,10 @@ class MotorSpec(Stated):
         if self.values is not None:
             if self.profile != "constant":
                 raise ProblemError("profile is given besides values; give one of them")
-            object.__setattr__(self, "values", _rising(self.values))
+            table = rising_rows(self.values, 2, "[time, angle]", ("time", "angle"), least="three")
+            object.__setattr__(self, "values", as_rows(table))
 
     @property
     def steady(self) -> bool:
         """Whether link 2 turns at a steady speed."""
         return self.profile == "constant" and self.values is None
-
-
-def _rising(values: object) -> tuple[tuple[float, ...], ...]:
-    table = finite_rows(values, 2, "values", "[time, angle]", GREATEST)  # type: ignore[arg-type]
-    if len(table) < 3:
-        raise ProblemError(f"values has {len(table)} rows; it must have three or more")
-    for column, name in enumerate(("time", "angle")):
-        for row in range(1, len(table)):
-            if not table[row, column] > table[row - 1, column]:
-                raise ProblemError(
-                    f"values[{row}] has {name} {table[row, column]:.15g}; it must rise from row to row"
-                )
-    return tuple(tuple(row) for row in table.tolist())

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from grashof.problems.values.checks import GREATEST, bounded, finite_rows, positive_number
+from grashof.problems.values.checks import bounded, positive_number
+from grashof.problems.values.dynamics.rows import Rows, as_rows, refuse_open, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.stated import Stated
 
@@ -62,7 +61,7 @@ class PumpingUnitSpec(Stated):
     counterbalance_phase_deg: float = 0.0
     rating: float | None = None
     rod_load: float | None = None
-    values: tuple[tuple[float, ...], ...] | None = None
+    values: Rows | None = None
     over: str = CRANK
 
     def __post_init__(self) -> None:
@@ -94,23 +93,12 @@ class PumpingUnitSpec(Stated):
         return 1 if self.crank == "clockwise" else -1
 
 
-def _loads(values: object, over: str) -> tuple[tuple[float, ...], ...]:
+def _loads(values: object, over: str) -> Rows:
     columns, means = _ROWS[over]
-    table = finite_rows(values, columns, "values", means, GREATEST)  # type: ignore[arg-type]
-    if len(table) < 2:
-        raise ProblemError(f"values has {len(table)} rows; it must have two or more")
-    if not (steps := np.diff(table[:, 0]) > 0).all():
-        row = int(np.flatnonzero(~steps)[0]) + 1
-        raise ProblemError(f"values[{row}] has {over} {table[row, 0]:.15g}; it must rise from row to row")
-    first, last = table[0, 0], table[-1, 0]
-    if over == POSITION:
-        if (first, last) != (0.0, 1.0):
-            raise ProblemError(f"values cover positions {first:.15g} to {last:.15g}; they must cover 0 to 1")
-    else:
-        if abs(last - first - 360.0) > 1e-9:
-            raise ProblemError(
-                f"values cover crank {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
-            )
-        if table[0, 1] != table[-1, 1]:
-            raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
-    return tuple(tuple(row) for row in table.tolist())
+    table = rising_rows(values, columns, means, [over])
+    if over == CRANK:
+        refuse_open(table, over)
+    elif (table[0, 0], table[-1, 0]) != (0.0, 1.0):
+        covered = f"values cover positions {table[0, 0]:.15g} to {table[-1, 0]:.15g}"
+        raise ProblemError(f"{covered}; they must cover 0 to 1")
+    return as_rows(table)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from dataclasses import KW_ONLY, dataclass
+from typing import TypeAlias
 
 from grashof.problems.values.checks import GREATEST, LEAST, one_or_each
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.stated import Given
 
 OneOrEach: TypeAlias = float | Sequence[float]
 LINKS = ("link 2", "link 3", "link 4")
@@ -47,8 +47,8 @@ class CrossSection:
     height: float | None = None
 
 
-@dataclass(frozen=True, slots=True, init=False)
-class SectionSpec(Stated):
+@dataclass(frozen=True, slots=True)
+class SectionSpec(Given):
     """Cross-sections of links 2, 3 and 4, in the length unit: one for all, or lists of three.
 
     Parameters
@@ -87,40 +87,22 @@ class SectionSpec(Stated):
     (0.06, 0.0002, 0.1)
     """
 
-    width: OneOrEach | None
-    height: OneOrEach | None
-    area: OneOrEach | None
-    inertia: OneOrEach | None
-    extreme_fibre: OneOrEach | None
-    inertia_across: OneOrEach | None
-    shear_factor: OneOrEach | None
+    width: OneOrEach | None = None
+    height: OneOrEach | None = None
+    _: KW_ONLY
+    area: OneOrEach | None = None
+    inertia: OneOrEach | None = None
+    extreme_fibre: OneOrEach | None = None
+    inertia_across: OneOrEach | None = None
+    shear_factor: OneOrEach | None = None
 
-    def __init__(
-        self,
-        width: OneOrEach | None = None,
-        height: OneOrEach | None = None,
-        *,
-        area: OneOrEach | None = None,
-        inertia: OneOrEach | None = None,
-        extreme_fibre: OneOrEach | None = None,
-        inertia_across: OneOrEach | None = None,
-        shear_factor: OneOrEach | None = None,
-    ) -> None:
-        given = {
-            "width": width, "height": height, "area": area, "inertia": inertia,
-            "extreme_fibre": extreme_fibre, "inertia_across": inertia_across, "shear_factor": shear_factor,
-        }  # fmt: skip
-        _check_shape([name for name, value in given.items() if value is not None])
+    def __post_init__(self) -> None:
+        given = self.stated
+        _check_shape(list(given))
         for name, value in given.items():
-            object.__setattr__(self, name, None if value is None else _checked(name, value))
+            object.__setattr__(self, name, _checked(name, value))
         for link in (2, 3, 4) if self.width is None else ():
             self._check_reach(link)
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The arguments that give this value, without those that are not given: a file's table."""
-        every = {name: getattr(self, name) for name in self.__slots__}
-        return {name: value for name, value in every.items() if value is not None}
 
     @property
     def areas(self) -> tuple[float, float, float]:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
 
 from grashof.problems.values.checks import one_or_each, size_number
 from grashof.problems.values.dynamics.section import LINKS, SHAPES, OneOrEach, SectionSpec
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.stated import Given
 
 JOINTS = tuple(joint.name for joint in MECHANISMS[0].every_joint)
 
 
-@dataclass(frozen=True, slots=True, init=False)
-class StrengthSpec(Stated):
+@dataclass(frozen=True, slots=True)
+class StrengthSpec(Given):
     """Strengths of the links and of their pins; Pa, and the length unit.
 
     Parameters
@@ -55,54 +54,28 @@ class StrengthSpec(Stated):
     """
 
     yield_stress: float
-    elastic_modulus: float | None
-    pin_diameter: OneOrEach | None
-    pin_shear_strength: float | None
-    bearing_strength: float | None
-    pin_thickness: OneOrEach | None
-    double_shear: bool
+    elastic_modulus: float | None = None
+    _: KW_ONLY
+    pin_diameter: OneOrEach | None = None
+    pin_shear_strength: float | None = None
+    bearing_strength: float | None = None
+    pin_thickness: OneOrEach | None = None
+    double_shear: bool = False
 
-    def __init__(
-        self,
-        yield_stress: float,
-        elastic_modulus: float | None = None,
-        *,
-        pin_diameter: OneOrEach | None = None,
-        pin_shear_strength: float | None = None,
-        bearing_strength: float | None = None,
-        pin_thickness: OneOrEach | None = None,
-        double_shear: bool = False,
-    ) -> None:
-        if not isinstance(double_shear, bool):
-            raise wrong_value("strength.double_shear", double_shear, "true or false")
-        of_pins = {
-            "pin_shear_strength": pin_shear_strength, "bearing_strength": bearing_strength,
-            "pin_thickness": pin_thickness, "double_shear": double_shear or None,
-        }  # fmt: skip
-        for name, value in of_pins.items():
-            if pin_diameter is None and value is not None:
-                raise ProblemError(f"strength.pin_diameter is missing; {name} is of no use without it")
-        object.__setattr__(self, "yield_stress", size_number(yield_stress, "strength.yield_stress"))
-        for name, pressure in (
-            ("elastic_modulus", elastic_modulus),
-            ("pin_shear_strength", pin_shear_strength),
-            ("bearing_strength", bearing_strength),
-        ):
-            stated = None if pressure is None else size_number(pressure, f"strength.{name}")
-            object.__setattr__(self, name, stated)
-        for name, lengths, owners in (
-            ("pin_diameter", pin_diameter, JOINTS),
-            ("pin_thickness", pin_thickness, LINKS),
-        ):
-            checked = None if lengths is None else one_or_each(lengths, owners, f"strength.{name}")
-            object.__setattr__(self, name, checked)
-        object.__setattr__(self, "double_shear", double_shear)
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """The arguments that give this value, without those that are not given: a file's table."""
-        every = {name: getattr(self, name) for name in self.__slots__}
-        return {name: value for name, value in every.items() if value is not None}
+    def __post_init__(self) -> None:
+        if not isinstance(self.double_shear, bool):
+            raise wrong_value("strength.double_shear", self.double_shear, "true or false")
+        of_pins = ("pin_shear_strength", "bearing_strength", "pin_thickness")
+        given = [name for name in of_pins if getattr(self, name) is not None]
+        given += ["double_shear"] if self.double_shear else []
+        if self.pin_diameter is None and given:
+            raise ProblemError(f"strength.pin_diameter is missing; {given[0]} is of no use without it")
+        for name in ("yield_stress", "elastic_modulus", "pin_shear_strength", "bearing_strength"):
+            if name == "yield_stress" or getattr(self, name) is not None:
+                object.__setattr__(self, name, size_number(getattr(self, name), f"strength.{name}"))
+        for name, owners in (("pin_diameter", JOINTS), ("pin_thickness", LINKS)):
+            if (lengths := getattr(self, name)) is not None:
+                object.__setattr__(self, name, one_or_each(lengths, owners, f"strength.{name}"))
 
     @property
     def shear_limit(self) -> float:
