@@ -111,6 +111,14 @@ def number_array(values: npt.ArrayLike, message: str, axes: Sequence[int] = rang
     return numbers
 
 
+def finite_list(values: npt.ArrayLike, where: str, what: str) -> FloatArray:
+    """Array of shape (N,), refused when it is not a list of `what`, or a number of it is not finite."""
+    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of {what}", (1,))
+    for index in np.flatnonzero(~np.isfinite(numbers)):
+        raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
+    return numbers.astype(np.float64)
+
+
 def finite_number(value: float, where: str) -> float:
     """`value` as a float, refused when it is not a finite number."""
     if isinstance(value, Real) and not isinstance(value, bool):

@@ -9,13 +9,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
+from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
 from grashof.problems.values.checks import (
-    GREATEST,
-    counted,
     finite_number,
     near_miss,
-    number_array,
     positive_number,
     whole_number,
 )
@@ -25,17 +22,23 @@ from grashof.problems.values.tasks.function_law import (
     chebyshev_spacing,
     lobatto_with_weights,
 )
+from grashof.problems.values.tasks.function_pairs import (
+    FEWEST,
+    INPUT,
+    MOST,
+    OUTPUT,
+    OUTPUT_DEG,
+    checked_pairs,
+    finite_numbers,
+)
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
-INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
 LAW_PAIRS = 41  # of a law that is fitted over its whole range
-FEWEST, MOST_EXACT, MOST = 3, 5, 100_000
-_LEAST_STEP = 1e-6  # rad, between two inputs
+MOST_EXACT = 5
 _SLIDING = 8  # freedoms of slider kinds
-_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -104,40 +107,7 @@ class FunctionTask(Task):
         length: float = 1.0,
         travels: bool = False,
     ) -> None:
-        turned, output = _numbers(inputs, INPUT), _numbers(outputs, _output_key(travels))
-        if len(turned) != len(output):
-            counts = counted(len(turned), "angle"), counted(len(output), "travel" if travels else "angle")
-            raise ProblemError(
-                f"function.{INPUT} has {counts[0]}, function.{_output_key(travels)} {counts[1]}; "
-                "it must be as many"
-            )
-        if len(turned) < FEWEST:
-            raise ProblemError(f"function has {counted(len(turned), 'pair')}; it must have three or more")
-        if len(turned) > MOST:
-            raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
-        for key, values in ((INPUT, turned), (_output_key(travels), output)):
-            if values[0] != 0:
-                raise ProblemError(
-                    f"function.{key}[0] is {_shown(values[0], key)}; it must be 0, at the first pair"
-                )
-        for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
-            raise ProblemError(
-                f"function.{INPUT}[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
-                "inputs must grow (the driver may turn either way all the same)"
-            )
-        for key, angles in ((INPUT, turned), *(() if travels else ((OUTPUT_DEG, output),))):
-            if np.ptp(angles) > TURN * (1 + 1e-12):
-                raise ProblemError(
-                    f"function.{key} covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
-                )
-        if travels and not np.ptp(output) > 0:
-            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
-        if np.ptp(output) > GREATEST:
-            raise ProblemError(
-                f"function.{OUTPUT} covers {np.ptp(output):.6g}; it must be at most {GREATEST:g}"
-            )
-        if not travels and np.ptp(output) < _LEAST_OUTPUT:
-            raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
+        turned, output = checked_pairs(inputs, outputs, travels=travels)
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
         object.__setattr__(self, "inputs", frozen_array(turned))
@@ -239,15 +209,13 @@ class FunctionTask(Task):
             output_range_deg, output_range, "output_range"
         )
         if law is None:
-            _refuse_beside(
-                {**stated, "exponent": exponent, "pairs": pairs, "sampled": sampled},
-                "goes with function.law only",
-            )
+            others = {"exponent": exponent, "pairs": pairs, "sampled": sampled}
+            _refuse_beside(stated | others, "goes with function.law only")
             _refuse_missing(table, OUTPUT, travels)
-            turned = np.radians(_numbers(input_deg, INPUT))
+            turned = np.radians(finite_numbers(input_deg, INPUT))
             if travels:
-                return cls(turned, _numbers(output, OUTPUT), sense=sense, norm=norm, travels=True)
-            return cls(turned, np.radians(_numbers(output_deg, OUTPUT_DEG)), sense=sense, norm=norm)
+                return cls(turned, finite_numbers(output, OUTPUT), sense=sense, norm=norm, travels=True)
+            return cls(turned, np.radians(finite_numbers(output_deg, OUTPUT_DEG)), sense=sense, norm=norm)
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
         _refuse_missing(stated, "output_range", travels)
         key = "output_range" if travels else "output_range_deg"
@@ -401,18 +369,6 @@ class FunctionTask(Task):
         return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
 
 
-def _numbers(values: Any, key: str) -> FloatArray:
-    where, what = f"function.{key}", "lengths" if key == OUTPUT else "angles"
-    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of {what}", (1,))
-    for index in np.flatnonzero(~np.isfinite(numbers)):
-        raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
-    return numbers.astype(np.float64)
-
-
-def _output_key(travels: bool) -> str:
-    return OUTPUT if travels else OUTPUT_DEG
-
-
 def _either(angles: object, travel: object, key: str) -> bool:
     """Whether the output is given as travel; not as both."""
     if angles is not None and travel is not None:
@@ -441,11 +397,3 @@ def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) ->
     missing = [f"function.{name}" for name, value in values.items() if value is None and name != other]
     if missing:
         raise ProblemError("\n".join(f"{name} is missing" for name in missing))
-
-
-def _shown(value: float, key: str) -> str:
-    return _deg(value) if key.endswith("_deg") else f"{value:.6g}"
-
-
-def _deg(angle: float) -> str:
-    return f"{np.degrees(angle):.6g}"

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import TURN, FloatArray, frozen_array
-from grashof.problems.values.checks import counted, number_array
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.checks import counted, finite_list
+from grashof.problems.values.errors import ProblemError, wrong_value
 
 
 def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: str) -> FloatArray | None:
@@ -37,11 +37,7 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
 
 def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
     """A list of finite numbers, as an array."""
-    where = f"{kind}.timing_deg"
-    numbers = number_array(values, f"{where} is {shown(values)}; it must be a list of angles", (1,))
-    for index in np.flatnonzero(~np.isfinite(numbers)):
-        raise ProblemError(f"{where}[{index}] is {numbers[index]}; all numbers must be finite")
-    return numbers.astype(np.float64)
+    return finite_list(values, f"{kind}.timing_deg", "angles")
 
 
 def whole_turn(closed: bool, kind: str) -> bool:
