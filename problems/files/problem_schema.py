@@ -57,7 +57,8 @@ from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
-from grashof.problems.values.requirements.requirements import LIMITS, MAY_KEEP_OUT, Requirements, Rotatability
+from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
 

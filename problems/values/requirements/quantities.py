@@ -15,10 +15,17 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, LENGTHS, PARAMETERS, having
+from grashof.problems.values.linkages.mechanisms import (
+    DIMENSIONS,
+    LENGTHS,
+    PARAMETERS,
+    SLIDER_CRANK,
+    having,
+)
 from grashof.problems.values.units import Unit
 
 
@@ -285,6 +292,32 @@ class Limit:
         return low if low == high else f"{low} to {high}"
 
 
+def place_of(name: str, over: Over) -> Quantity:
+    """Where a joint is."""
+    kinds = having(name) if over is Over.DESIGN else tuple(ONE_LOOP)
+    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
+
+
+def on_body(name: str) -> Quantity:
+    """Where a joint sits on the body that is guided."""
+    words = f"place of {name.upper()} on the body"
+    kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
+    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
+
+
+def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quantity:
+    """The greatest error of an output ("max"), or its root mean square; `travels` has the keys of a slide."""
+    about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
+    words = "greatest structural error" if key == "max" else f"structural error{_RMS}"
+    label, task = f"{key} error", Over.TASK
+    if travels is None:
+        return Quantity(name, label, Unit.ANGLE, task, -1, Needs.ROTATION, 3, about, words=words)
+    return Quantity(
+        travels[name], label, Unit.LENGTH, task, -1, Needs.TRAVEL, 3, about, named=name,
+        kinds=(SLIDER_CRANK,), words=words,
+    )  # fmt: skip
+
+
 def limit(
     quantity: str | Quantity,
     kind: Kind,
@@ -297,3 +330,13 @@ def limit(
     """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
     limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
     return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})
+
+
+def between(
+    quantity: str | Quantity,
+    low: float = 0.0,
+    high: float = GREATEST,
+    usual: tuple[float, float] | None = None,
+) -> Any:
+    """A field that limits a quantity to [lo, hi], both of them from `low` to `high`."""
+    return limit(quantity, Kind.BETWEEN, allowed=(low, high), usual=usual)

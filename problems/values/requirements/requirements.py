@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
-from grashof.problems.values.checks import GREATEST, finite_number, limits, number_within
+from grashof.problems.values.checks import GREATEST, number_within
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
 from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
     TURNING,
@@ -25,7 +23,11 @@ from grashof.problems.values.requirements.quantities import (
     Needs,
     Over,
     Quantity,
+    between,
     limit,
+    on_body,
+    place_of,
+    structural_error,
 )
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
@@ -50,32 +52,10 @@ class TransmissionOver(StrEnum):
 _SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
 _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
-_FIRST_TO_LAST = "from the first target to the last"
-_FROM_ZERO = (0.0, GREATEST)
+_TARGETS = "from the first target to the last"
+_ADVANTAGE = "mechanical advantage"
 # What structural errors of a slide, in the unit of length, are as quantities.
 TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
-
-
-def _place(name: str, over: Over) -> Quantity:
-    kinds = having(name) if over is Over.DESIGN else tuple(ONE_LOOP)
-    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
-
-
-def _structural(key: str, label: str, *, travels: bool = False) -> Quantity:
-    about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
-    words = "greatest structural error" if key == "max" else "structural error (root mean square)"
-    if not travels:
-        return Quantity(name, label, Unit.ANGLE, Over.TASK, -1, Needs.ROTATION, 3, about, words=words)
-    return Quantity(
-        TRAVEL_ERRORS[name], label, Unit.LENGTH, Over.TASK, -1, Needs.TRAVEL, 3, about, named=name,
-        kinds=(SLIDER_CRANK,), words=words,
-    )  # fmt: skip
-
-
-def _bracket(name: str) -> Quantity:
-    words = f"place of {name.upper()} on the body"
-    kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
-    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,23 +158,17 @@ class Requirements(ReadOnly):
         allowed=(0.0, 90.0),
     )
     transmission_over: TransmissionOver = TransmissionOver.TASK
-    link_length: Limits | None = limit(
-        Quantity("link_length", "link length", Unit.LENGTH, listed=False),
-        Kind.BETWEEN,
-        allowed=_FROM_ZERO,
-        usual=(0.01, 20.0),
+    link_length: Limits | None = between(
+        Quantity("link_length", "link length", Unit.LENGTH, listed=False), usual=(0.01, 20.0)
     )
-    r1: Limits | None = limit("r1", Kind.BETWEEN, allowed=_FROM_ZERO)
-    r2: Limits | None = limit("r2", Kind.BETWEEN, allowed=_FROM_ZERO)
-    r3: Limits | None = limit("r3", Kind.BETWEEN, allowed=_FROM_ZERO)
-    r4: Limits | None = limit("r4", Kind.BETWEEN, allowed=_FROM_ZERO)
-    offset: Limits | None = limit("offset", Kind.BETWEEN, allowed=(-GREATEST, GREATEST))
+    r1: Limits | None = between("r1")
+    r2: Limits | None = between("r2")
+    r3: Limits | None = between("r3")
+    r4: Limits | None = between("r4")
+    offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
-    coupler_arms: Limits | None = limit(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
-        Kind.BETWEEN,
-        allowed=_FROM_ZERO,
-        usual=(0.0, 30.0),
+    coupler_arms: Limits | None = between(
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False), usual=(0.0, 30.0)
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
@@ -202,31 +176,29 @@ class Requirements(ReadOnly):
         default=20.0,
         allowed=(1.0, 1e6),
     )
-    o2: Box | None = limit(_place("o2", Over.DESIGN), Kind.INSIDE)
-    o4: Box | None = limit(_place("o4", Over.DESIGN), Kind.INSIDE)
-    a: Box | None = limit(_place("a", Over.TARGETS), Kind.INSIDE)
-    b: Box | None = limit(_place("b", Over.TARGETS), Kind.INSIDE)
+    o2: Box | None = limit(place_of("o2", Over.DESIGN), Kind.INSIDE)
+    o4: Box | None = limit(place_of("o4", Over.DESIGN), Kind.INSIDE)
+    a: Box | None = limit(place_of("a", Over.TARGETS), Kind.INSIDE)
+    b: Box | None = limit(place_of("b", Over.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
         Kind.DIRECTION,
     )
     theta2_start_deg: float | None = limit("theta2_start", Kind.EQUAL)
-    size: Limits | None = limit("size", Kind.BETWEEN, allowed=_FROM_ZERO)
-    omega4_max: Limits | None = limit("omega4_max", Kind.BETWEEN, allowed=_FROM_ZERO)
-    point_speed_max: Limits | None = limit("point_speed_max", Kind.BETWEEN, allowed=_FROM_ZERO)
-    point_acceleration_max: Limits | None = limit("point_acceleration_max", Kind.BETWEEN, allowed=_FROM_ZERO)
-    torque_peak: Limits | None = limit("torque_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
-    torque_rms: Limits | None = limit("torque_rms", Kind.BETWEEN, allowed=_FROM_ZERO)
-    joint_force_peak: Limits | None = limit("joint_force_peak", Kind.BETWEEN, allowed=_FROM_ZERO)
-    coupler_fit_r2: Limits | None = limit("coupler_fit_r2", Kind.BETWEEN, allowed=(-GREATEST, 1.0))
-    hausdorff: Limits | None = limit("hausdorff", Kind.BETWEEN, allowed=_FROM_ZERO)
-    frechet: Limits | None = limit("frechet", Kind.BETWEEN, allowed=_FROM_ZERO)
-    worst_move: Limits | None = limit("worst_move", Kind.BETWEEN, allowed=_FROM_ZERO)
-    share_within_made: Limits | None = limit("share_within_made", Kind.BETWEEN, allowed=(0.0, 1.0))
-    driver_rotation_deg: Limits | None = limit(
-        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_FIRST_TO_LAST),
-        Kind.BETWEEN,
-        allowed=(0.0, 360.0),
+    size: Limits | None = between("size")
+    omega4_max: Limits | None = between("omega4_max")
+    point_speed_max: Limits | None = between("point_speed_max")
+    point_acceleration_max: Limits | None = between("point_acceleration_max")
+    torque_peak: Limits | None = between("torque_peak")
+    torque_rms: Limits | None = between("torque_rms")
+    joint_force_peak: Limits | None = between("joint_force_peak")
+    coupler_fit_r2: Limits | None = between("coupler_fit_r2", -GREATEST, 1.0)
+    hausdorff: Limits | None = between("hausdorff")
+    frechet: Limits | None = between("frechet")
+    worst_move: Limits | None = between("worst_move")
+    share_within_made: Limits | None = between("share_within_made", 0.0, 1.0)
+    driver_rotation_deg: Limits | None = between(
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_TARGETS), high=360.0
     )
     driver_sense: str = limit(
         Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
@@ -234,50 +206,30 @@ class Requirements(ReadOnly):
         default="either",
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
-    output_swing_deg: Limits | None = limit(
+    output_swing_deg: Limits | None = between(
         Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING, kinds=TURNING),
-        Kind.BETWEEN,
-        allowed=(0.0, 360.0),
+        0.0,
+        360.0,
     )
-    stroke: Limits | None = limit(
-        Quantity("stroke", "stroke", Unit.LENGTH, Over.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,)),
-        Kind.BETWEEN,
-        allowed=_FROM_ZERO,
+    stroke: Limits | None = between(
+        Quantity("stroke", "stroke", Unit.LENGTH, Over.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
     )
-    time_ratio: Limits | None = limit(
-        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES),
-        Kind.BETWEEN,
-        allowed=(1.0, 1e6),
+    time_ratio: Limits | None = between(
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES), 1.0, 1e6
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity(
-            "mechanical_advantage",
-            "mechanical advantage",
-            Unit.RATIO,
-            Over.TASK,
-            +1,
-            listed=False,
-            kinds=TURNING,
-        ),
+        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Over.TASK, +1, listed=False, kinds=TURNING),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
     cylinder_angle_min_deg: float | None = limit("cylinder_angle_min", Kind.AT_LEAST, allowed=(0.0, 90.0))
-    cylinder_force_max: Limits | None = limit("cylinder_force_max", Kind.BETWEEN, allowed=_FROM_ZERO)
-    structural_error_max_deg: Limits | None = limit(
-        _structural("max", "max error"), Kind.BETWEEN, allowed=(0.0, 360.0)
-    )
-    structural_error_rms_deg: Limits | None = limit(
-        _structural("rms", "rms error"), Kind.BETWEEN, allowed=(0.0, 360.0)
-    )
-    structural_error_max: Limits | None = limit(
-        _structural("max", "max error", travels=True), Kind.BETWEEN, allowed=_FROM_ZERO
-    )
-    structural_error_rms: Limits | None = limit(
-        _structural("rms", "rms error", travels=True), Kind.BETWEEN, allowed=_FROM_ZERO
-    )
-    a_on_body: Box | None = limit(_bracket("a"), Kind.ON_BODY)
-    b_on_body: Box | None = limit(_bracket("b"), Kind.ON_BODY)
+    cylinder_force_max: Limits | None = between("cylinder_force_max")
+    structural_error_max_deg: Limits | None = between(structural_error("max"), 0.0, 360.0)
+    structural_error_rms_deg: Limits | None = between(structural_error("rms"), 0.0, 360.0)
+    structural_error_max: Limits | None = between(structural_error("max", TRAVEL_ERRORS))
+    structural_error_rms: Limits | None = between(structural_error("rms", TRAVEL_ERRORS))
+    a_on_body: Box | None = limit(on_body("a"), Kind.ON_BODY)
+    b_on_body: Box | None = limit(on_body("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
@@ -290,7 +242,7 @@ class Requirements(ReadOnly):
         for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
             if getattr(self, name) is None and name == "rotatability":  # the task's own
                 continue
-            object.__setattr__(self, name, _member(kind, getattr(self, name), f"requirements.{name}"))
+            object.__setattr__(self, name, check.word(kind, getattr(self, name), f"requirements.{name}"))
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
             if value is not None:
@@ -298,9 +250,9 @@ class Requirements(ReadOnly):
         for name, limited in LIMITS.items():
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, _limits(value, limited, f"requirements.{name}"))
-        object.__setattr__(self, "keep_out", _areas(self.keep_out))
-        object.__setattr__(self, "keep_out_for", _kept_out(self.keep_out_for))
+                object.__setattr__(self, name, check.limits(value, limited, f"requirements.{name}"))
+        object.__setattr__(self, "keep_out", check.areas(self.keep_out))
+        object.__setattr__(self, "keep_out_for", check.parts(self.keep_out_for))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Requirements):
@@ -431,75 +383,18 @@ LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
 
-_ADVANTAGE = Quantity(
-    "mechanical_advantage_min",
-    "mechanical advantage",
-    Unit.RATIO,
-    Over.TASK,
-    about="|omega2 / omega4| where it is least over the task motion",
-    full="least mechanical advantage",
-    kinds=TURNING,
-)
+_DERIVED = (
+    Quantity(
+        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Over.TASK, kinds=TURNING,
+        about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
+    ),
+    Quantity(
+        "structural_error_at", "worst at", Unit.ANGLE, Over.TASK, needs=Needs.OUTPUTS,
+        about="driver rotation from the first pair to the greatest structural error",
+        full="driver rotation to the greatest structural error",
+    ),
+)  # fmt: skip
 # All quantities of a design, by key; those that are listed in the order of the columns.
-QUANTITIES = MEASURED | {limited.quantity.key: limited.quantity for limited in LIMITS.values()}
-QUANTITIES[_ADVANTAGE.key] = _ADVANTAGE
-_ERROR_AT = Quantity(
-    "structural_error_at",
-    "worst at",
-    Unit.ANGLE,
-    Over.TASK,
-    needs=Needs.OUTPUTS,
-    about="driver rotation from the first pair to the greatest structural error",
-    full="driver rotation to the greatest structural error",
-)
-QUANTITIES[_ERROR_AT.key] = _ERROR_AT
-
-
-def _limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
-    if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
-        if not isinstance(value, Box):
-            raise wrong_value(where, value, "a Box")
-        return value
-    low, high = limited.allowed
-    if limited.kind is Kind.BETWEEN:
-        return limits(value, where, least=low, most=high)
-    if limited.kind is Kind.WORD:
-        if value not in limited.words:
-            raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
-        return str(value)
-    if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):
-        low, high = limits(cast(Limits, value), where, least=-GREATEST)
-        return low if low == high else (low, high)
-    if limited.kind.is_angle:
-        return finite_number(value, where)
-    return number_within(value, low, high, where)
-
-
-MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
-
-
-def _areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
-    if isinstance(values, Sequence) and not len(values):
-        return ()
-    # Here, not above: shapely takes a while to import, and few problems have areas.
-    from grashof.problems.values.areas import polygons
-
-    return polygons(values, "requirements.keep_out")
-
-
-def _kept_out(names: Sequence[str]) -> tuple[str, ...]:
-    wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
-    if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise wrong_value("requirements.keep_out_for", names, wanted)
-    for index, name in enumerate(names):
-        if name not in MAY_KEEP_OUT:
-            where = f"requirements.keep_out_for[{index}]"
-            raise wrong_value(where, name, f"one of {', '.join(MAY_KEEP_OUT)}")
-    return tuple(dict.fromkeys(names))
-
-
-def _member(kind: type[StrEnum], value: str, where: str) -> StrEnum:
-    try:
-        return kind(value)
-    except ValueError:
-        raise wrong_value(where, value, f"one of {', '.join(kind)}") from None
+QUANTITIES = MEASURED | {
+    each.key: each for each in (*(limited.quantity for limited in LIMITS.values()), *_DERIVED)
+}

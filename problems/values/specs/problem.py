@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -22,21 +22,22 @@ from grashof.problems.values.checks import (
 )
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
+from grashof.problems.values.dynamics.reference_torque import reference_torque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
     INVERTED,
-    SLIDER_CRANK,
     freedoms,
     mechanisms,
     not_had,
 )
 from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import TURNING, Needs, Quantity
+from grashof.problems.values.requirements.quantities import Needs, Quantity
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -180,8 +181,9 @@ class Problem(ReadOnly):
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
         wrong += self._undecided()
-        wrong += self._not_for_cylinders()
-        wrong += self._not_for_functions()
+        if self.driver is not None:
+            wrong += task_limits.cylinders_wrong(self.task, self.requirements)
+        wrong += task_limits.functions_wrong(self.task, self.mechanism)
         if isinstance(self.task, StrokeTask):
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
             object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
@@ -210,14 +212,14 @@ class Problem(ReadOnly):
             Needs.ANGLES: f"{self.task.kind} has no angles",
             Needs.CYLINDER: "driver.cylinder is missing",
             Needs.LOADED_CYLINDER: self._unloaded,
-            **self._no_output,
+            **task_limits.no_output(self.task),
         }
         wrong = [
             f"{missing[quantity.needs]}; {where} needs it"
             for where, quantity in asked.items()
             if not self.states(quantity.needs)
         ]
-        wrong += self._without_meaning(asked)
+        wrong += task_limits.without_meaning(self.task, self.requirements, asked)
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
@@ -233,17 +235,6 @@ class Problem(ReadOnly):
         goals = {f"objective.maximise.{name}": self.meant(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
-
-    @property
-    def _no_output(self) -> dict[Needs, str]:
-        """What is missing where a structural error is asked for, in words."""
-        if not isinstance(self.task, FunctionTask):
-            none = f'{self.task.kind} asks for no output; kind = "function" does'
-            return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
-        return {
-            Needs.ROTATION: "function has an output that slides, not one that turns",
-            Needs.TRAVEL: "function has an output that turns, not one that slides",
-        }
 
     def meant(self, quantity: Quantity) -> Quantity:
         """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
@@ -286,28 +277,6 @@ class Problem(ReadOnly):
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
-    def _without_meaning(self, asked: Mapping[str, Quantity]) -> list[str]:
-        """What is asked though it means nothing for the task."""
-        wanted, kind = self.requirements, self.task.kind
-        wrong = [
-            f"{where} means nothing for a {kind}; leave it out"
-            for where, quantity in asked.items()
-            if quantity.key in self.task.without
-        ]
-        if wanted.keep_out:
-            wrong += [
-                f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
-                for part in wanted.keep_out_for
-                if part in self.task.without
-            ]
-        if self.task.has_output.any():
-            wrong += [
-                f"requirements.{name} is false; it must be true for a {kind}"
-                for name in ("order", "same_branch")
-                if not getattr(wanted, name)
-            ]
-        return wrong
-
     def period(self, key: str) -> float:
         """See `Requirements.period`; functions and strokes give a slide its sense."""
         return self.requirements.period(key) if self.task.has_position.any() else TURN
@@ -323,41 +292,6 @@ class Problem(ReadOnly):
         lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
         missing = [name for name, given in lacks.items() if given is None]
         return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
-
-    def _not_for_functions(self) -> list[str]:
-        """Kinds of linkages whose output does not move as a function asks for."""
-        if not isinstance(self.task, FunctionTask):
-            return []
-        travels = self.task.travels
-        kinds, what, unit = ((SLIDER_CRANK,), "travel", "") if travels else (TURNING, "rotation", "_deg")
-        others = [word for word in self.mechanism if word not in kinds]
-        if not others:
-            return []
-        key = f"output{'' if self.task.law is None else '_range'}{unit}"
-        return [
-            f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not put out; "
-            f"it goes with {' and '.join(kinds)}"
-        ]
-
-    def _not_for_cylinders(self) -> list[str]:
-        """What a cylinder cannot do, where one is the driver."""
-        if self.driver is None:
-            return []
-        wrong, wanted = [], self.requirements
-        if isinstance(self.task, FunctionTask):
-            wrong.append("driver.cylinder does not go with function, whose driver is link 2")
-        elif isinstance(self.task, StrokeTask):
-            wrong.append("driver.cylinder does not go with stroke, whose driver turns all round")
-        elif self.task.closed:
-            wrong.append(
-                f"{self.task.kind}.closed is true; it must be false with driver.cylinder, which reverses"
-            )
-        if wanted.rotatability is not Rotatability.ANY:
-            wrong.append(
-                f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
-                "which turns nothing fully"
-            )
-        return wrong
 
     def _undecided(self) -> list[str]:
         """What is contradictory about the task and the requirements, and about what decides."""
@@ -445,19 +379,7 @@ class Problem(ReadOnly):
         spec = self.dynamics
         if spec is None:
             raise ProblemError("dynamics is missing; without masses there is no torque")
-        size = self.task.size * metres(self.length_unit)
-        mass = (spec.mass_per_length or 0.0) * self.task.size + sum(spec.masses or ()) + spec.payload
-        mass += sum(weight.mass for weight in spec.counterweights)
-        if spec.density is not None and spec.section is not None:
-            mass += spec.density * max(spec.section.areas) * metres(self.length_unit) ** 2 * size
-        torque = mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
-        torque += sum(load.greatest * (1.0 if load.is_moment else size) for load in spec.loads)
-        torque += sum(spring.stiffness for spring in spec.springs) * size**2
-        torque += sum(damper.damping for damper in spec.dampers) * spec.omega2 * size**2
-        torque += sum(spring.stiffness for spring in spec.torsion_springs)
-        if spec.friction is not None:
-            torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
-        return torque or 1.0
+        return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
 # Whether a problem states what quantities need to have a value; any problem what is not here.

@@ -1,0 +1,67 @@
+"""Checks of single fields of `Requirements`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from typing import Any, cast
+
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.box import Box
+from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.requirements.quantities import Kind, Limit
+
+MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
+
+
+def limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
+    """What a field that limits a quantity may hold: a box, a pair, an angle, a number or a word."""
+    if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
+        if not isinstance(value, Box):
+            raise wrong_value(where, value, "a Box")
+        return value
+    low, high = limited.allowed
+    if limited.kind is Kind.BETWEEN:
+        return checks.limits(value, where, least=low, most=high)
+    if limited.kind is Kind.WORD:
+        if value not in limited.words:
+            raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
+        return str(value)
+    if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):
+        low, high = checks.limits(cast(Limits, value), where, least=-checks.GREATEST)
+        return low if low == high else (low, high)
+    if limited.kind.is_angle:
+        return checks.finite_number(value, where)
+    return checks.number_within(value, low, high, where)
+
+
+def areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    """Polygons to keep out of, corners (M, 2) each."""
+    if isinstance(values, Sequence) and not len(values):
+        return ()
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    from grashof.problems.values.areas import polygons
+
+    return polygons(values, "requirements.keep_out")
+
+
+def parts(names: Sequence[str]) -> tuple[str, ...]:
+    """What keeps out of them, each once."""
+    wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
+    if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
+        raise wrong_value("requirements.keep_out_for", names, wanted)
+    for index, name in enumerate(names):
+        if name not in MAY_KEEP_OUT:
+            where = f"requirements.keep_out_for[{index}]"
+            raise wrong_value(where, name, f"one of {', '.join(MAY_KEEP_OUT)}")
+    return tuple(dict.fromkeys(names))
+
+
+def word(kind: type[StrEnum], value: str, where: str) -> StrEnum:
+    """A word as a member of its enumeration."""
+    try:
+        return kind(value)
+    except ValueError:
+        raise wrong_value(where, value, f"one of {', '.join(kind)}") from None
