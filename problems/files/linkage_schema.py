@@ -130,33 +130,23 @@ class _Heading(Table):
 class _Checked(Table):
     """Parameters of a linkage, each checked by itself."""
 
-    @field_validator(*(key for key, row in _PARAMETERS.items() if row.kind != "angle"), check_fields=False)
+    @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        if given is not None:
-            for number in np.ravel(_PARAMETERS[str(key.field_name)].array(given)).tolist():
-                number_within(number, -GREATEST, GREATEST, str(key.field_name))
+        where, most = str(key.field_name), MOST_TURNS * 360
+        row = _PARAMETERS.get(where)
+        if given is None:
+            return given
+        if where in ("r1", "output_arm"):
+            if finite_number(given, where) <= 0:
+                raise ProblemError(f"{where} is {given:g}; it must be greater than zero")
+            number_within(given, -GREATEST, GREATEST, where)
+        elif where == "ground_angle_deg" or (row is not None and row.kind == "angle"):
+            number_within(given, -most, most, where)
+        elif row is not None:
+            for number in np.ravel(row.array(given)).tolist():
+                number_within(number, -GREATEST, GREATEST, where)
         return given
-
-    @field_validator("r1", "output_arm", check_fields=False)
-    @classmethod
-    def _length(cls, length: float | None, key: ValidationInfo) -> float | None:
-        where = str(key.field_name)
-        if length is not None:
-            if finite_number(length, where) <= 0:
-                raise ProblemError(f"{where} is {length:g}; it must be greater than zero")
-            number_within(length, -GREATEST, GREATEST, where)
-        return length
-
-    @field_validator(
-        "ground_angle_deg",
-        *(key for key, row in _PARAMETERS.items() if row.kind == "angle"),
-        check_fields=False,
-    )
-    @classmethod
-    def _angle(cls, angle: float | None, key: ValidationInfo) -> float | None:
-        most = MOST_TURNS * 360
-        return None if angle is None else number_within(angle, -most, most, str(key.field_name))
 
 
 class _DyadTable(_Checked):

@@ -11,13 +11,14 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.checks import finite_number, limits, numbers
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.stated import Given
 
 CARRIERS: dict[str, int] = {link.name: link.number for link in FourBar.mechanism.links[1:]}
 _WHERE = "driver.cylinder"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CylinderSpec:
+class CylinderSpec(Given):
     """The limits of a cylinder that drives the linkage.
 
     Parameters
@@ -68,12 +69,6 @@ below 2: a rod is no longer than its cylinder
         object.__setattr__(self, "on", _carriers(self.on))
         if not isinstance(self.base, Box | None):
             raise wrong_value(f"{_WHERE}.base", self.base, "a Box")
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """What a problem file states."""
-        every = {"closed": self.closed, "ratio_max": self.ratio_max, "on": self.on, "base": self.base}
-        return {key: value for key, value in every.items() if value is not None}
 
 
 @dataclass(frozen=True, slots=True)
