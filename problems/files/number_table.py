@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from grashof.problems.files.spreadsheet import rows_of
-from grashof.problems.values.checks import bounded, noted, refuse
+from grashof.problems.values.checks import bounded, each_checked
 from grashof.problems.values.errors import ProblemError, shown
 
 Names = tuple[str, ...]  # that a column may have
 _MOST_ROWS = 10_000
+Cell = TypeVar("Cell", float, float | None)
 
 
 def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
@@ -25,15 +28,16 @@ def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[floa
         wanted = " or ".join(",".join(names[-1] for names in kind) for kind in kinds)
         found = f"has the columns {shown(','.join(given))}" if given else "is empty"
         raise ProblemError(f"{path}: {found}; its first line must be {wanted}")
-    if len(lines) - 1 > _MOST_ROWS:
-        raise ProblemError(f"{path}: has {len(lines) - 1} rows; it must have at most {_MOST_ROWS}")
-    rows: list[list[float]] = []
-    wrong: list[str] = []
-    for number, line in enumerate(lines[1:], start=1):
-        with noted(wrong):
-            rows.append(_row(line, len(given), f"{path}: row {number}"))
-    refuse(wrong)
-    return rows
+    return number_rows(lines[1:], str(path), _MOST_ROWS, lambda line, where: _row(line, len(given), where))
+
+
+def number_rows(
+    lines: list[list[str]], where: str, most: int, row: Callable[[list[str], str], list[Cell]]
+) -> list[list[Cell]]:
+    """The rows of a table below its first line, each read with its place; `ProblemError` has a line a row."""
+    if len(lines) > most:
+        raise ProblemError(f"{where}: has {len(lines)} rows; it must have at most {most}")
+    return each_checked(lines, where, row, ": row {}", 1)
 
 
 def _named(given: list[str], kind: Sequence[Names]) -> bool:
@@ -43,9 +47,16 @@ def _named(given: list[str], kind: Sequence[Names]) -> bool:
 def _row(line: list[str], columns: int, where: str) -> list[float]:
     if len(line) != columns:
         raise ProblemError(f"{where} has {len(line)} cells; it must have {columns}")
-    try:
+    with numbers_wanted(line, where):
         return [bounded(float(cell), where) for cell in line]
-    except ValueError as error:
-        if isinstance(error, ProblemError):
-            raise
+
+
+@contextmanager
+def numbers_wanted(line: list[str], where: str) -> Iterator[None]:
+    """A cell that is no number is one of a line that must be numbers."""
+    try:
+        yield
+    except ProblemError:
+        raise
+    except ValueError:
         raise ProblemError(f"{where} is {shown(','.join(line))}; it must be numbers") from None

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from grashof.problems.files.number_table import number_rows, numbers_wanted
 from grashof.problems.files.spreadsheet import rows_of
-from grashof.problems.values.checks import bounded, noted, refuse
+from grashof.problems.values.checks import bounded, each_checked
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.specs.problem import MOST_TARGETS
 
 _ANGLES = ("angle_deg", "angle")
 _TIMING = "timing_deg"
-Rows = list[list[float | None]]
 
 
 def poses_of(name: str, folder: Path) -> dict[str, Any]:
@@ -22,13 +22,7 @@ def poses_of(name: str, folder: Path) -> dict[str, Any]:
     others, or what is no number, a line each.
     """
     rows, timing = _table(name, folder, ("x", "y", "angle_deg"))
-    wrong: list[str] = []
-    poses: list[Any] = []
-    for number, (x, y, angle) in enumerate(rows, start=1):
-        with noted(wrong):
-            poses.append(_pose(x, y, angle, f"{name}: row {number}"))
-    refuse(wrong)
-    return {"poses": poses, **timing}
+    return {"poses": each_checked(rows, name, _pose, ": row {}", 1), **timing}
 
 
 def points_of(name: str, folder: Path) -> dict[str, Any]:
@@ -40,7 +34,8 @@ def points_of(name: str, folder: Path) -> dict[str, Any]:
     return {"points": rows, **timing}
 
 
-def _pose(x: float | None, y: float | None, angle: float | None, where: str) -> Any:
+def _pose(row: list[float | None], where: str) -> Any:
+    x, y, angle = row
     if (x is None) != (y is None):
         raise ProblemError(f"{where} has one of x and y; it must have both or neither")
     if x is None and angle is None:
@@ -62,14 +57,7 @@ def _table(
         raise ProblemError(
             f"{name}: {found}; its first row must be {','.join(wanted)}, perhaps with {_TIMING}"
         )
-    if len(lines) - 1 > MOST_TARGETS:
-        raise ProblemError(f"{name}: has {len(lines) - 1} rows; it must have at most {MOST_TARGETS}")
-    rows: Rows = []
-    wrong: list[str] = []
-    for number, line in enumerate(lines[1:], start=1):
-        with noted(wrong):
-            rows.append(_numbers(line, len(columns), f"{name}: row {number}"))
-    refuse(wrong)
+    rows = number_rows(lines[1:], name, MOST_TARGETS, lambda line, where: _numbers(line, len(columns), where))
     if len(columns) == len(wanted):
         return rows, {}
     timing = [row.pop() for row in rows]
@@ -81,9 +69,5 @@ def _table(
 def _numbers(line: list[str], columns: int, where: str) -> list[float | None]:
     if len(line) > columns and any(line[columns:]):
         raise ProblemError(f"{where} has {len(line)} cells; it must have {columns}")
-    try:
+    with numbers_wanted(line, where):
         return [bounded(float(cell), where) if cell else None for cell in [*line, *[""] * columns][:columns]]
-    except ValueError as error:
-        if isinstance(error, ProblemError):
-            raise
-        raise ProblemError(f"{where} is {shown(','.join(line))}; it must be numbers") from None

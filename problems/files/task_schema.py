@@ -11,7 +11,7 @@ from pydantic import Tag
 from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
 from grashof.problems.files.tables import LIST, NUMBER, Table, either, listed
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import noted, outline, refuse
+from grashof.problems.values.checks import each_checked, outline
 from grashof.problems.values.specs.problem import MOST_TARGETS
 from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.motion_task import MotionTask
@@ -114,10 +114,4 @@ class SceneTable(Table):
     outlines: Outlines | None = None
 
     def value(self) -> tuple[FloatArray, ...]:
-        drawn: list[FloatArray] = []
-        wrong: list[str] = []
-        for i, corners in enumerate(self.outlines or []):
-            with noted(wrong):
-                drawn.append(outline(corners, f"scene.outlines[{i}]"))
-        refuse(wrong)
-        return tuple(drawn)
+        return tuple(each_checked(self.outlines or [], "scene.outlines", outline))

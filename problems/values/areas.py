@@ -13,7 +13,7 @@ import numpy.typing as npt
 import shapely
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import GREATEST, counted, finite_rows, noted, refuse
+from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
@@ -27,13 +27,7 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a list of polygons")
-    areas: list[FloatArray] = []
-    wrong: list[str] = []
-    for index, corners in enumerate(values):
-        with noted(wrong):
-            areas.append(_polygon(corners, f"{where}[{index}]"))
-    refuse(wrong)
-    return tuple(areas)
+    return tuple(each_checked(values, where, _polygon))
 
 
 def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:

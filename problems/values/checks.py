@@ -6,10 +6,10 @@ import difflib
 import math
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from numbers import Real
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,8 @@ LEAST = 1e-20  # size of a task, for the same reason
 # What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
 _FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
+Checked = TypeVar("Checked")
+
 
 def finite_rows(
     values: npt.ArrayLike, columns: int, where: str, row_means: str, greatest: float = np.inf
@@ -32,12 +34,7 @@ def finite_rows(
     """Array of shape (N, `columns`), each row checked by itself so that the message can name it."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise wrong_value(where, values, f"a list, each entry {row_means}")
-    rows: list[FloatArray] = []
-    wrong: list[str] = []
-    for index, row in enumerate(values):
-        with noted(wrong):
-            rows.append(_finite_row(row, columns, f"{where}[{index}]", row_means, greatest))
-    refuse(wrong)
+    rows = each_checked(values, where, lambda row, name: _finite_row(row, columns, name, row_means, greatest))
     return frozen_array(np.array(rows, dtype=np.float64).reshape(-1, columns))
 
 
@@ -76,6 +73,23 @@ def refuse(wrong: Sequence[str]) -> None:
 def refused(wrong: Iterable[str]) -> ProblemError:
     """The error of all that was noted, each in a line of its own and once."""
     return ProblemError("\n".join(dict.fromkeys(wrong)))
+
+
+def each_checked(
+    values: Iterable[Any],
+    where: str,
+    check: Callable[[Any, str], Checked],
+    place: str = "[{}]",
+    first: int = 0,
+) -> list[Checked]:
+    """What a check makes of each value and its place; all errors are noted before they are raised as one."""
+    found: list[Checked] = []
+    wrong: list[str] = []
+    for number, value in enumerate(values, start=first):
+        with noted(wrong):
+            found.append(check(value, where + place.format(number)))
+    refuse(wrong)
+    return found
 
 
 def located(error: ProblemError, where: str) -> ProblemError:

@@ -53,6 +53,8 @@ class Place(Stated):
 class LoadSpec(Stated):
     """A force on a link at a point, or a moment: constant, or over driver angle, output or time.
 
+    `ProblemError` unless it is one of force, moment and values, and these rise and close.
+
     Parameters
     ----------
     link : int
@@ -71,16 +73,6 @@ class LoadSpec(Stated):
         of a slide, see `FrictionSpec`) or "time" (s from the start).
     frame : str
         Axes of the force: "global", or "link", with which it turns.
-
-    Raises
-    ------
-    ProblemError
-        Not one of force, moment and values, or values that do not rise or close.
-
-    Examples
-    --------
-    >>> LoadSpec(4, at=(4.572, 0), force=(0, -9e3)).stated
-    {'link': 4, 'at': [4.572, 0.0], 'force': [0.0, -9000.0]}
     """
 
     link: int

@@ -17,6 +17,8 @@ _RAMP = 1 / 3
 class MotorSpec(Stated):
     """The drive of link 2.
 
+    `ProblemError` for an unknown profile, numbers outside their ranges, or values that do not rise.
+
     Parameters
     ----------
     profile : str
@@ -35,11 +37,6 @@ class MotorSpec(Stated):
         Of the gear, 0.01 to 1.
     inertia : float, kg m^2
         Of the motor.
-
-    Raises
-    ------
-    ProblemError
-        An unknown profile, numbers outside their ranges, or values that do not rise.
     """
 
     profile: str = "constant"

@@ -20,6 +20,7 @@ class PumpingUnitSpec(Stated):
     """A linkage whose link 4 is the beam of a pumping unit; its `output_arm` is that of the horsehead.
 
     Crank angles are those of the API: clockwise from 12 o'clock, seen with the well to the right.
+    `ProblemError` for unknown words, numbers beyond 1e20, rows that do not rise or do not cover all.
 
     Parameters
     ----------
@@ -42,16 +43,6 @@ class PumpingUnitSpec(Stated):
         stroke) from 0 to 1. Between rows it follows a curve through them.
     over : str
         What the rows of `values` are over: "crank" or "position".
-
-    Raises
-    ------
-    ProblemError
-        Unknown words, numbers beyond 1e20, rows that do not rise or do not cover all.
-
-    Examples
-    --------
-    >>> PumpingUnitSpec(counterbalance=9e4, rod_load=2e4).stated
-    {'counterbalance': 90000.0, 'rod_load': 20000.0}
     """
 
     well: str = "right"

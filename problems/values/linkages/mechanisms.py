@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from grashof.problems.values.checks import near_miss, noted, refuse
+from grashof.problems.values.checks import each_checked, near_miss, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
@@ -125,11 +125,7 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
         return (mechanism(given),)
     if not isinstance(given, Sequence) or not len(given):
         raise wrong_value("mechanism", given, ANY_KINDS)
-    wrong: list[str] = []
-    for index, word in enumerate(given):
-        with noted(wrong):
-            mechanism(word, f"mechanism[{index}]")
-    refuse(wrong)
+    each_checked(given, "mechanism", mechanism)
     refuse([f"mechanism has {word} {count} times" for word, count in Counter(given).items() if count > 1])
     return tuple(given)
 

@@ -14,13 +14,12 @@ from grashof.problems.values.checks import (
     GREATEST,
     LEAST,
     counted,
+    each_checked,
     finite_number,
     near_miss,
-    noted,
     number_array,
     number_within,
     outline,
-    refuse,
     task_size,
 )
 from grashof.problems.values.errors import ProblemError, shown, shown_key, wrong_value
@@ -172,13 +171,7 @@ class MotionTask(Task):
         """
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
             raise wrong_value("motion.poses", poses, "a list of poses")
-        given: list[tuple[float, float, float]] = []
-        wrong: list[str] = []
-        for k, pose in enumerate(poses):
-            with noted(wrong):
-                given.append(_row(pose, f"motion.poses[{k}]"))
-        refuse(wrong)
-        rows = np.array(given).reshape(-1, 3)
+        rows = np.array(each_checked(poses, "motion.poses", _row)).reshape(-1, 3)
         return cls(
             rows[:, :2],
             np.radians(rows[:, 2]),

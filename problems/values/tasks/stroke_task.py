@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -63,21 +63,16 @@ class StrokeTask(Task):
     def __init__(
         self, *, swing: float | None = None, stroke: float | None = None, time_ratio: float = 1.0
     ) -> None:
+        kept: dict[str, Any] = {"timing": None, "closed": True, "within": None, "reference": 1.0}
         wrong: list[str] = []
         with noted(wrong):
             _one_of_the_two(swing, stroke)
-            if swing is not None:
-                object.__setattr__(self, "swing", _swing(swing))
-            if stroke is not None:
-                object.__setattr__(self, "stroke", size_number(stroke, "stroke.stroke"))
+            kept["swing"] = None if swing is None else _swing(swing)
+            kept["stroke"] = None if stroke is None else size_number(stroke, "stroke.stroke")
         with noted(wrong):
-            object.__setattr__(self, "time_ratio", _ratio(time_ratio))
+            kept["time_ratio"] = _ratio(time_ratio)
         refuse(wrong)
-        if stroke is None:
-            object.__setattr__(self, "stroke", None)
-        if swing is None:
-            object.__setattr__(self, "swing", None)
-        for name, value in (("timing", None), ("closed", True), ("within", None), ("reference", 1.0)):
+        for name, value in kept.items():
             object.__setattr__(self, name, value)
 
     @classmethod
