@@ -38,7 +38,7 @@ from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
 
 def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None) -> LinkageSpec:
-    """Linkage stated by a parsed linkage file; `ProblemError` with all errors, a line and key path each.
+    """Linkage stated by a parsed linkage file; `ProblemError` has a line with the key path of each error.
 
     Without the folder of the file the document may name no other file.
     """

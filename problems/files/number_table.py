@@ -53,7 +53,7 @@ def _row(line: list[str], columns: int, where: str) -> list[float]:
 
 @contextmanager
 def numbers_wanted(line: list[str], where: str) -> Iterator[None]:
-    """A cell that is no number is one of a line that must be numbers."""
+    """`ProblemError` for a line whose cells, read inside, are not all numbers."""
     try:
         yield
     except ProblemError:

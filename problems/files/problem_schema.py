@@ -64,7 +64,7 @@ from grashof.problems.values.tasks.task import Task
 
 
 def problem_from(document: dict[str, Any], name: str, folder: Path | None = None) -> Problem:
-    """Problem stated by a parsed problem file; `ProblemError` with all errors, a line and key path each.
+    """Problem stated by a parsed problem file; `ProblemError` has a line with the key path of each error.
 
     Without the folder of the file the document may name no other file.
     """

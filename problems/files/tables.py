@@ -62,7 +62,7 @@ def stated(
     document: dict[str, Any],
     folder: Path | None = None,
 ) -> AnyTable:
-    """What a parsed file states, as its table; `ProblemError` with all errors, a line and key path each.
+    """What a parsed file states, as its table; `ProblemError` has a line with the key path of each error.
 
     Names of other files in it are relative to the folder; without one none may be named.
     """
