@@ -17,15 +17,7 @@ _OVER = "driver rotation from the first pair (deg)"
 
 
 def plot_function(task: FunctionTask, candidate: Candidate, *, ax: Sequence[Axes]) -> None:
-    """Wanted and generated output of a design, and its structural error.
-
-    Parameters
-    ----------
-    task : FunctionTask
-    candidate : Candidate
-    ax : two axes
-        Of the output, and of the error.
-    """
+    """Wanted and generated output of a design on the first axes, its structural error on the second."""
     output, error = ax
     curves = function_curves(candidate.linkage, task, candidate.verdict)
     if curves is not None:
