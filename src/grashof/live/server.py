@@ -38,16 +38,9 @@ JSON_LINES = "application/x-ndjson"
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What is served.
+    """What is served: `begin` has the "document" and "name" of a new page, `port` and host its own origin.
 
-    Parameters
-    ----------
-    begin : dict
-        The problem that a new page has: "document" and "name".
-    port : int
-        Of the server; with the host, its own origin.
-    token : str
-        What every request has to bring along; the page has it from the fragment of its address.
+    Every request has to bring the token along; the page has it from the fragment of its address.
     """
 
     begin: dict[str, Any]
