@@ -29,19 +29,9 @@ _UNBOUNDED = 1000
 
 
 def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
-    """Write tables, summary, the page, plots and the record of them; the names of the files, sorted.
+    """Write tables, summary, page, plots (pictures too, if asked) and their record; the files' names, sorted.
 
-    Parameters
-    ----------
-    folder : Path
-    report : LinkageReport
-    pictures : bool
-        Whether the plots of the sections are written as pictures, too, and not in the page alone.
-
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost; it then holds what it held before.
+    OSError where the disk is full or the folder is lost; it then holds what it held before.
     """
     from grashof.figures.files import save
     from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import
@@ -145,10 +135,7 @@ def _summary_frame(report: LinkageReport) -> pd.DataFrame:
 
 
 def _facts_by_key(report: LinkageReport) -> dict[str, tuple[str, Fact]]:
-    """Facts of the summary, with "", and of the sections, with their keys.
-
-    No two have the same key: that of a section's fact begins with the section where it is taken.
-    """
+    """Facts of the summary, with "", and of the sections by unique keys: a section's begin with its name."""
     found = {fact.key: ("", fact) for fact in report.facts}
     for section in report.sections:
         for fact in section.facts:

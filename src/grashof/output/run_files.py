@@ -45,34 +45,11 @@ def write_run(
     drawing: Drawer | None = None,
     listed: Callable[[], None] | None = None,
 ) -> list[str]:
-    """Write all files of a run, the lists first: a drawing that fails does not cost them.
+    """Write all files of a run, the lists first; names, sorted. A drawing that fails does not cost the lists.
 
-    Parameters
-    ----------
-    folder : Path
-    result : Result
-    settings : dict
-        How the search was run; goes into the record.
-    drawings : int
-        How many of the best designs to draw.
-    stop : Interruption, optional
-        Asked before every drawing; the others are left out once it is asked for.
-    problem_text : str
-        The problem file, for the page.
-    drawing : Drawer, optional
-        Who draws, if somebody is ready.
-    listed : callable, optional
-        Called once the lists are in the folder, before anything is drawn.
-
-    Returns
-    -------
-    list of str
-        Names of the files, sorted.
-
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
+    `settings` go into the record, `problem_text` into the page. `listed` is called once the lists are in the
+    folder; `stop` is asked before each of the `drawings` best is drawn. OSError where the disk is full or the
+    folder is lost; it then holds what it held before, or the lists alone.
     """
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]

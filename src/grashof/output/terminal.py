@@ -58,14 +58,7 @@ def search_progress(
 ) -> Iterator[Callable[[Progress], None]]:
     """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
 
-    Parameters
-    ----------
-    name : str
-        Of the problem.
-    begin : str
-        What the bar shows until the first step is done.
-    wanted : bool
-        Whether the search ends once it has enough designs.
+    The bar shows `begin` until the first step is done; `wanted` if enough designs end the search.
     """
     out = console(stderr=True)
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
@@ -90,14 +83,7 @@ def _step(step: Progress, wanted: bool) -> str:
 
 
 def print_table(result: Result, verified: int | None = None) -> None:
-    """Print the best designs, with what an engineer decides by.
-
-    Parameters
-    ----------
-    result : Result
-    verified : int, optional
-        How many designs were found, where `result` lists only the best of them.
-    """
+    """Print the best designs, with what an engineer decides by; `verified` is how many were found in all."""
     for line in folded(heading(result, verified or len(result)).splitlines()):
         say(line)
     for line in _fitting(result, console().width):
@@ -136,10 +122,9 @@ def _fitting(result: Result, width: int) -> list[str]:
 
 
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
-    """The best design of each family in cells, with what an engineer decides by; angles in deg.
+    """The best design of each family in cells, the best of each region first; angles in deg.
 
     "like this" is how many others the family has. Columns that are alike for all of them are left out.
-    Where there are regions the best design of each comes first.
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families
     place = {id(each): number for number, each in enumerate(result.candidates)}
@@ -172,8 +157,6 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
 def first_of_regions(regions: Sequence[int]) -> list[int]:
     """Places of the first of each region, in a list of regions, 0 for none; empty for a single region.
 
-    Examples
-    --------
     >>> first_of_regions([1, 1, 0, 3, 2, 3]), first_of_regions([1, 1, 0])
     ([0, 3, 4], [])
     """
