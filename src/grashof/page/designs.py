@@ -36,14 +36,9 @@ _ROUNDING = 1e-12  # of a turn
 
 
 class Travel(NamedTuple):
-    """How far a driver goes.
+    """How far a driver goes: a whole turn, or a range between dead positions, rad.
 
-    Parameters
-    ----------
-    low, high : float, rad
-        Ends of a whole turn, or of a range between dead positions; NaN where nothing can be assembled.
-    turns : bool
-        Whether the driver turns fully.
+    The ends are NaN where nothing can be assembled.
     """
 
     low: float
@@ -61,22 +56,10 @@ class Travel(NamedTuple):
 
 
 def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
-    """Travel of the driver that holds its angles at the targets.
+    """Turn from 0, or range between dead positions, of a single linkage, that the first target lies in.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2 : ndarray, shape (N,), rad
-        Driver angles at the targets, unwrapped along the motion.
+    The driver angles at the targets (N,), rad, are unwrapped along the motion.
 
-    Returns
-    -------
-    Travel
-        The turn from 0, or the range between dead positions that the first target lies in.
-
-    Examples
-    --------
     >>> from grashof.problems import FourBar
     >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
@@ -92,8 +75,6 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
 def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
     """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
-    Examples
-    --------
     >>> from grashof.problems import SliderCrank
     >>> legend([SliderCrank.mechanism])
     [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
@@ -112,16 +93,7 @@ def linkage_data(linkage: Linkage) -> dict[str, Any]:
 
 
 def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Designs as JSON, their values in full precision.
-
-    Parameters
-    ----------
-    problem : Problem
-    designs : sequence of Candidate
-        Linkages that can be assembled.
-    rows : sequence of dict
-        Theirs, as `rows_of` makes them.
-    """
+    """Designs that can be assembled as JSON in full precision; the rows are those of `rows_of`."""
     linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)

@@ -18,18 +18,9 @@ DRAWING = (
 
 
 def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
-    """A page that needs no other file and no network.
+    """A page that needs no other file and no network; its template escapes `shown`.
 
-    Parameters
-    ----------
-    template : str
-        Name of its template.
-    scripts : sequence of str
-        Names of its scripts, in order.
-    data : mapping
-        For the scripts, as JSON: no NaN.
-    **shown
-        For the template, which escapes it.
+    The scripts, by name and in order, have the data as JSON: no NaN.
     """
     return (
         _environment()
