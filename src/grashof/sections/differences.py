@@ -26,17 +26,9 @@ _ANGULAR, _LINEAR = (("omega", "rad/s"), ("alpha", "rad/s²")), (("velocity", "/
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rate:
-    """A rate at the samples: exact, and by central differences.
+    """The first or second derivative of positions, exact and by differences of each order, (N,) or (N, 2).
 
-    Parameters
-    ----------
-    key, label, unit : str
-    derivative : int
-        Of the positions that are differentiated: 1 or 2.
-    exact : ndarray, shape (N,) or (N, 2)
-        The ranges of the driver apart by NaN.
-    by_order : mapping of int to ndarray
-        Of the same shape, by the order of the formula; NaN without neighbours on both sides.
+    NaN divides the ranges of the driver, and stands where a difference lacks neighbours on both sides.
     """
 
     key: str

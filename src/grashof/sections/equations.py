@@ -45,14 +45,9 @@ def _driver_angles(study: LinkageStudy) -> FloatArray:
 
 
 def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: float = 1.0) -> pd.DataFrame:
-    """Three rows for each moving link and driver angle: an equation each, and beside it one of the unknowns.
+    """Three rows for each moving link and driver angle (N,): an equation each, and one of the unknowns.
 
-    Parameters
-    ----------
-    theta2_deg : ndarray, shape (N,), deg
-    system : SystemOfEquations, shape (N, ...)
-    metre : float
-        The length unit in metres: arms are given in metres, forces in N.
+    Arms are given in m, a length unit being `metre`, and forces in N.
     """
     count, rows = len(theta2_deg), len(system.equations)
     moment = np.arange(rows) % 3 == 2
