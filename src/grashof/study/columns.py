@@ -16,18 +16,9 @@ Columns = Mapping[str, FloatArray]
 
 
 def over_driver(study: LinkageStudy, of: Callable[[Kinematics], Columns]) -> dict[str, FloatArray]:
-    """Columns over the driver angles of the tables, the ranges of the driver apart by a row of NaN.
+    """Columns (N,), and `key_x`, `key_y` of vectors (N, 2), over the driver angles of the tables.
 
-    Parameters
-    ----------
-    study : LinkageStudy
-    of : callable
-        From the `Kinematics` of a range to columns of shape (N,) or, of vectors, (N, 2), by their keys.
-
-    Returns
-    -------
-    dict of str to ndarray
-        After "theta2_deg" (and "range", where there are two); of a vector `key_x` and `key_y`.
+    After "theta2_deg", and "range" where there are two, which a row of NaN divides.
     """
     states = study.states
     joined = {"theta2_deg": study.joined([np.degrees(state.theta2) for state in states])}
@@ -76,8 +67,6 @@ def track(columns: Columns, key: str, axes: str = "xy") -> FloatArray:
 def line(values: FloatArray) -> FloatArray:
     """Values of a curve, NaN where it is not finite and where it comes back from the other infinity.
 
-    Examples
-    --------
     >>> line(np.array([1.0, np.inf, 2.0, 3.0, -3.0, -1.0, 1.0])).tolist()
     [1.0, nan, 2.0, nan, -3.0, -1.0, 1.0]
     """

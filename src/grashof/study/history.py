@@ -16,18 +16,10 @@ _LATE = 1e-12  # share of the motion
 
 @dataclass(frozen=True, slots=True, eq=False)
 class History:
-    """The motion over time.
+    """The motion over time (N,), s, in equal steps; `total` is the driver angle counted on, rad.
 
-    Parameters
-    ----------
-    time : ndarray, shape (N,), s
-        In equal steps.
-    total : ndarray, shape (N,), rad
-        The driver's angle, counted on turn after turn.
-    state : Kinematics, shape (N,)
-        With the driver's angle in its first turn, as loads are stated.
-    whole : bool
-        Whether it goes as far as was asked. A driver that does not turn fully stops at a dead position.
+    In `state` (N,) that angle is in its first turn, as loads are stated. It is not `whole` where a driver
+    that does not turn fully stops at a dead position.
     """
 
     time: FloatArray
@@ -37,13 +29,7 @@ class History:
 
     @classmethod
     def of(cls, study: LinkageStudy) -> History | None:
-        """The history that is asked for, if one is.
-
-        Raises
-        ------
-        ProblemError
-            It would begin where the linkage is open.
-        """
+        """The history that is asked for, if any; ProblemError where it would begin with the linkage open."""
         wanted = time = study.asked.times
         if wanted is None or time is None:
             return None

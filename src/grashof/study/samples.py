@@ -18,20 +18,10 @@ from grashof.study.study import LinkageStudy
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Samples of a motion, with the tables and plots of what varies over it.
+    """Samples of a motion (a state for each range, or a history's), with tables and plots over it.
 
-    Parameters
-    ----------
-    states : tuple of Kinematics
-        One for each range of the driver, or the one of a history.
-    columns : mapping of str to ndarray, shape (N,)
-        What begins each row of a table: time, driver angle. A row of NaN divides two ranges.
-    over : str
-        What curves are drawn over, with its unit.
-    turns : bool
-        The driver turns fully, so that no rate grows without bound.
-    mark, words : str
-        What is added to the keys of plots and tables, and to the titles of plots.
+    A row of NaN divides two ranges in `columns`, which begin each table; with `turns` no rate grows without
+    bound; `mark` is added to the keys of plots and tables, `words` to the titles of plots.
     """
 
     states: tuple[Kinematics, ...]

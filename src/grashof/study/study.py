@@ -21,14 +21,7 @@ _TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkageStudy:
-    """A linkage that is analysed; a section of the report is a function of it.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        Its motion.
-    asked : Asked
-    """
+    """A linkage that is analysed; a section of the report is a function of it."""
 
     sweep: Sweep
     asked: Asked = field(default_factory=Asked)
@@ -85,13 +78,7 @@ class LinkageStudy:
 
     @property
     def start(self) -> float:
-        """Driver angle at time 0, rad, in a range of the driver.
-
-        Raises
-        ------
-        ProblemError
-            The linkage is open at the angle asked for.
-        """
+        """Driver angle at time 0, rad, in its ranges; ProblemError where the linkage is open there."""
         if self.asked.start_deg is not None:
             return float(self.in_range([self.asked.start_deg], "start_deg")[0])
         return 0.0 if self.sweep.turns else self.sweep.laws[0].start
@@ -110,9 +97,9 @@ class LinkageStudy:
         return law, gone if np.isfinite(gone) else 0.0  # at no speed there is no time
 
     def driver(self, time: npt.ArrayLike) -> DriverMotion:
-        """How the driver moves at times from `start` on, shape (N,), s.
+        """How the driver moves at times (N,), s, from `start` on, its angle counted on turn after turn.
 
-        Turn after turn; a driver that does not turn fully stops at a dead position. The angle is counted on.
+        A driver that does not turn fully stops at a dead position.
         """
         law, gone = self.way
         now = gone + np.asarray(time, dtype=np.float64)
@@ -133,18 +120,9 @@ class LinkageStudy:
         return [link_stroke(self.linkage, start=low, end=high) for low, high in ends]
 
     def in_range(self, angles_deg: npt.ArrayLike, name: str) -> FloatArray:
-        """Driver angles, shape (N,), deg, as those of its ranges, rad.
+        """Driver angles (N,), deg, as those of its ranges, rad.
 
-        Parameters
-        ----------
-        angles_deg : array_like, shape (N,), deg
-        name : str
-            What the message calls them.
-
-        Raises
-        ------
-        ProblemError
-            The linkage is open at one of them.
+        ProblemError, which calls them `name`, where the linkage is open at one of them.
         """
         angles = np.radians(np.atleast_1d(np.asarray(angles_deg, dtype=np.float64)))
         if self.sweep.turns:
