@@ -78,10 +78,7 @@ class _Samples:
     def extremes(self, quantity: Quantity, values: FloatArray) -> Extremes | None:
         """Of a quantity with these samples, at driver angles; None of an angle that turns fully.
 
-        Raises
-        ------
-        AssemblyError
-            It has no value somewhere.
+        AssemblyError where it has no value.
         """
         turns, period = self.sweep.turns, quantity.period
         values = counted_on(self.state.theta2, values, period)
