@@ -28,38 +28,15 @@ def fingerprint(combinations: Sequence[Any]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Checkpoints:
-    """The finished tasks of a sweep in its folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the sweep.
-    """
+    """The finished tasks of a sweep in its folder."""
 
     folder: Path
 
     def read(self, study: str, keys: Collection[str], *, resume: bool) -> dict[str, dict[str, Any]]:
-        """What is finished of some tasks; leaves the disk alone.
+        """Results of the finished among the tasks `keys`, by task; leaves the disk alone.
 
-        Parameters
-        ----------
-        study : str
-            Its fingerprint.
-        keys : collection of str
-            Its tasks.
-        resume : bool
-            Whether to go on with what the folder holds.
-
-        Returns
-        -------
-        dict
-            Results by task.
-
-        Raises
-        ------
-        ProblemError
-            The folder holds an unfinished sweep and `resume` is False, or that of another study or of other
-            versions and it is True.
+        ProblemError where the folder holds an unfinished sweep and `resume` is False, or one of another
+        fingerprint `study` or of other versions and it is True.
         """
         record = self._record()
         if not resume:

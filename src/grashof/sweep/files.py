@@ -31,15 +31,7 @@ def check_folder(folder: Path | None, study: Study) -> None:
 
 
 def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
-    """The record of a sweep, but for its files.
-
-    Parameters
-    ----------
-    done : Sweep
-    mark : str
-        Fingerprint of the study, by which `Checkpoints` knows it again.
-    complete : bool
-    """
+    """The record of a sweep but for its files; `mark` is the fingerprint of the study in `Checkpoints`."""
     return {
         "study": mark,
         "name": done.study.name,
@@ -62,13 +54,7 @@ def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
 
 
 def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
-    """Write all files of a sweep; of one without any result the record alone.
-
-    Returns
-    -------
-    list of str
-        Names of the files, sorted.
-    """
+    """Write all files of a sweep, of one without any result the record alone; their names, sorted."""
     record = record_of(done, mark, complete=done.complete)
     if not done.results:
         before = own_files(folder, SWEEP_RECORD)

@@ -45,16 +45,7 @@ class Heading:
 
 
 def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> str:
-    """The page of a sweep as HTML.
-
-    Parameters
-    ----------
-    done : Sweep
-    frame : DataFrame
-        Its table.
-    record : mapping
-        "versions" and counts of the sweep.
-    """
+    """The page of a sweep as HTML, from its table and from the "versions" and counts in its record."""
     best = frame.drop_duplicates("combination")
     shown = best.iloc[:_ROWS]
     columns = _columns(done, shown)

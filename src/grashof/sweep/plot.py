@@ -25,16 +25,10 @@ _NAMED = 60  # points up to which each has the number of its combination
 
 
 def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
-    """The trade-off of a sweep.
+    """The trade-off of a sweep, whose table is `frame`.
 
     Over one varied number what decides and the size of the best designs; over two the same as grids; else
     one against the other, with the Pareto-optimal ones joined.
-
-    Parameters
-    ----------
-    done : Sweep
-    frame : DataFrame
-        Its table.
     """
     with rc_context(STYLE):
         best = frame.drop_duplicates("combination")
@@ -195,8 +189,6 @@ def _front(
 def not_beaten(costs: FloatArray) -> BoolArray:
     """Which rows of costs (N, 2) no other row beats; shape (N,).
 
-    Examples
-    --------
     >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0], [1.0, 3.0]])).tolist()
     [True, True, False, True]
     """
