@@ -14,9 +14,9 @@ DRIVER, RETURN_CRANK = "driver", "return crank"
 
 
 class ReturnCrank(NamedTuple):
-    """How a driver with two crank pins is divided, so that a link turns on the inner one between its plates.
+    """A driver in two plates, between which a link turns on its inner crank pin `pin`.
 
-    `pin` joins the two plates, `far` is on the return crank, which is `turned` against the driver, rad.
+    `far` is the pin on the return crank, which is `turned` against the driver, rad.
     """
 
     pin: str

@@ -15,13 +15,9 @@ _LEVELS = ("#008040", "#0080a0")
 
 
 def svg(drawing: Sheet) -> str:
-    """A drawing as the text of an SVG file: in mm, outlines as paths with true arcs, holes as circles.
+    """A drawing as SVG text in mm: outlines with true arcs, red to cut and blue to engrave.
 
-    Every layer is a group with its name as id; red is cut and blue engraved.
-
-    Parameters
-    ----------
-    drawing : Sheet
+    Every layer is a group with its name as id.
     """
     size = (_number(drawing.width), _number(drawing.height))
     root = ET.Element("svg", xmlns="http://www.w3.org/2000/svg", version="1.1")
