@@ -27,26 +27,8 @@ TOP = 50  # families in a list by default
 class Options:
     """How to search and what to write; None where the problem, or its default, states it.
 
-    Parameters
-    ----------
-    out : Path, optional
-        Folder for the results.
-    starts, seed, effort
-        See `Search`.
-    workers : int
-    time_limit : float, s, optional
-    gap : float, deg
-    prove : bool
-        See `synthesize`.
-    top : int, optional
-        Most families in the list.
-    drawings : int
-    scheduler : str, optional
-        Address of a Dask scheduler, where to work instead.
-    resume : bool
-        Go on with the search that the folder has a record of.
-    log : Path, optional
-        File that the log goes to.
+    Time is in s, `gap` in deg; `scheduler` is the address of a Dask scheduler, where to work instead of in
+    `workers` processes; `top` counts families; see `Search` and `synthesize` for the rest.
     """
 
     out: Path | None = None
