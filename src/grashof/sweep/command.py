@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from grashof.options import SweepOptions
 from grashof.output.cluster import cluster
 from grashof.output.ending import Exit, interruptible
 from grashof.output.folder import SWEEP_PAGE, in_use
@@ -13,25 +14,23 @@ from grashof.sweep.run import sweep
 from grashof.sweep.study import load_study
 
 
-def run(
-    study: str, out: Path | None, workers: int, resume: bool, top: int | None, scheduler: str | None = None
-) -> Exit:
+def run(study: str, options: SweepOptions) -> Exit:
     """Solve a study file into a folder, here or on a Dask cluster, and say how it goes."""
     stated = load_study(study)
-    folder = out if out is not None else Path(f"{stated.name}-sweep")
+    folder = options.out if options.out is not None else Path(f"{stated.name}-sweep")
     check_folder(folder, stated)
     with (
         in_use(folder),
         interruptible() as interrupted,
-        cluster(scheduler, workers) as (executor, at_a_time),
+        cluster(options.scheduler, options.workers) as (executor, at_a_time),
     ):
         done = sweep(
             stated,
             out=folder,
             executor=executor,
             workers=at_a_time,
-            resume=resume,
-            designs=top,
+            resume=options.resume,
+            designs=options.top,
             progress=lambda step: say(str(step), err=True),
             stop=interrupted,
         )
