@@ -59,11 +59,6 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     """Turn from 0, or range between dead positions, of a single linkage, that the first target lies in.
 
     The driver angles at the targets (N,), rad, are unwrapped along the motion.
-
-    >>> from grashof.problems import FourBar
-    >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
-    [0.0, 360.0]
     """
     if full_rotation(linkage):
         return Travel(0.0, TURN, True)

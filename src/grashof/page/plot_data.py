@@ -21,14 +21,7 @@ _PLACES = 7  # digits: steps of a long history have to stay even
 
 
 class Columns:
-    """Columns of numbers, each kept once.
-
-    >>> columns = Columns()
-    >>> [columns.add(np.array(values)) for values in ([1, np.nan], [2], [1, np.nan])]
-    [0, 1, 0]
-    >>> columns.found
-    [[1.0, None], [2.0]]
-    """
+    """Columns of numbers, each kept once."""
 
     def __init__(self) -> None:
         self.found: list[list[float | None]] = []

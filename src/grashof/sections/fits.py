@@ -39,10 +39,7 @@ def fits(study: LinkageStudy) -> Section | None:
 
 
 def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
-    """First and last driver angle of what is fitted, rad, and what that is.
-
-    ProblemError where the driver does not get from the one to the other that is asked for.
-    """
+    """First and last driver angle of what is fitted, rad, and what that is; ProblemError if out of reach."""
     asked, problem = study.asked, study.spec.problem
     if asked.fit_from_deg is not None and asked.fit_to_deg is not None:
         start, end = _asked_for(study, asked.fit_from_deg, asked.fit_to_deg)

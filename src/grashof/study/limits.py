@@ -19,12 +19,6 @@ def greatest_drawn(plot: Plot) -> float:
     Towards a dead position a rate grows without bound, at a toggle position of the output the mechanical
     advantage, towards parallel links the instant centre goes to infinity. What just has a peak, however high,
     is drawn whole: it is smooth, and the values beside it are nearly as large.
-
-    >>> angle = np.arange(0.5, 361)
-    >>> round(greatest_drawn(Plot("a", "a", "", {"tan": np.tan(np.radians(angle))}, angle)))
-    12
-    >>> greatest_drawn(Plot("b", "b", "", {"sin": np.sin(np.radians(angle))}, angle))
-    inf
     """
     if plot.bounded or plot.unit == "deg":
         return np.inf  # angles stay finite

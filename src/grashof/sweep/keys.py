@@ -82,11 +82,7 @@ def _joined(where: str, part: str | int) -> str:
 
 
 def overlap(keys: Sequence[Parts]) -> bool:
-    """Whether one key lies within another one, or is the same.
-
-    >>> overlap([("requirements", "o2"), ("requirements", "o2", "x")]), overlap([("a", "b"), ("a", "c")])
-    (True, False)
-    """
+    """Whether one key lies within another one, or is the same."""
     return any(
         one == other[: len(one)] for i, one in enumerate(keys) for j, other in enumerate(keys) if i != j
     )

@@ -187,11 +187,7 @@ def _front(
 
 
 def not_beaten(costs: FloatArray) -> BoolArray:
-    """Which rows of costs (N, 2) no other row beats; shape (N,).
-
-    >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0], [1.0, 3.0]])).tolist()
-    [True, True, False, True]
-    """
+    """Which rows of costs (N, 2) no other row beats; shape (N,)."""
     rows, places = np.unique(costs, axis=0, return_inverse=True)
     least = np.minimum.accumulate(np.append(np.inf, rows[:, 1]))[:-1]  # of the rows before each
     kept: BoolArray = (rows[:, 1] < least)[places.ravel()]

@@ -13,12 +13,7 @@ _NAMED = 2  # designs of each reason, by their ids
 
 
 def enclosure_line(result: Result) -> str:
-    """How many designs are verified by intervals, and what is not shown of which; empty without designs.
-
-    >>> from grashof import load, synthesize
-    >>> enclosure_line(synthesize(load("luggage"), enough=5).top(3)).partition(" by ")[2]
-    'intervals of the driver angle, over their whole motion.'
-    """
+    """How many designs are verified by intervals, and what is not shown of which; empty without designs."""
     named = list(zip((each.id for each in result.candidates), enclosures(result), strict=True))
     if any(each.contradicts for _, each in named):
         wrong = _by_reason({name: each.why for name, each in named if each.contradicts})

@@ -14,9 +14,9 @@ DRIVER, RETURN_CRANK = "driver", "return crank"
 
 
 class ReturnCrank(NamedTuple):
-    """A driver in two plates, between which a link turns on its inner crank pin `pin`.
+    """A driver as two plates joined by `pin`, with a link between; `far` is the pin on the return crank.
 
-    `far` is the pin on the return crank, which is `turned` against the driver, rad.
+    The return crank is `turned` against the driver, rad.
     """
 
     pin: str

@@ -85,10 +85,7 @@ class Stack:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """A linkage at `theta2` (n,), rad; `places` (n, 3) in mm, mm and rad are those of the plates.
-
-    They are the origin and the angle of the plate of each link and pin.
-    """
+    """A linkage at `theta2` (n,), rad; `places` of the plates of links and pins (n, 3), mm, mm and rad."""
 
     theta2: FloatArray
     places: Mapping[str, FloatArray]
@@ -122,15 +119,7 @@ def ranges_of_use(
 
 
 def sweep(linkage: Linkage, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
-    """The linkage at so many driver angles that no joint moves farther than `step` from one to the next.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        One linkage, in mm.
-    ranges : tuple of pair of float, rad
-    step : float, mm
-    """
+    """One linkage, in mm, at so many angles of `ranges`, rad, that no joint moves farther than `step`, mm."""
     # Closer towards the ends, where at a dead position the links run away from their driver.
     share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
     theta2 = np.concatenate([_fine(linkage, low + (high - low) * share, step) for low, high in ranges])
