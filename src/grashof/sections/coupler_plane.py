@@ -8,7 +8,7 @@ import pandas as pd
 from grashof.analysis import Kinematics, centrodes, coupler_circles, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table, track
+from grashof.study.samples import Columns, curves, over_driver, table, track
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 

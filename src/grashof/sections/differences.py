@@ -12,9 +12,8 @@ import pandas as pd
 from grashof.analysis import Kinematics, central_differences
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.sections.mass_centres import centre_labels, centres_of
-from grashof.study.history import History
 from grashof.study.kinds import turning
-from grashof.study.samples import Samples
+from grashof.study.samples import History, Samples
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 

@@ -10,8 +10,8 @@ from grashof.analysis import Dwell, Kinematics, dwell
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
-from grashof.study.columns import curves, over_driver
 from grashof.study.quantities import counted_on, counted_with
+from grashof.study.samples import curves, over_driver
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET

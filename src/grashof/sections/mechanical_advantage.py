@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.analysis import Kinematics, advantage, holding, output_stroke
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes

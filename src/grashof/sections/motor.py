@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import Kinematics, Loads, Masses, generalised_inertia, inverse_dynamics, motor_torque
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.study.columns import Columns, curves, line, over_driver, table
+from grashof.study.samples import Columns, curves, line, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_means, turn_peaks

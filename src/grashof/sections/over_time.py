@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.history import TIME, History
 from grashof.study.kinds import turning
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.study.samples import Samples
+from grashof.study.samples import TIME, History, Samples
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 

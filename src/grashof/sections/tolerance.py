@@ -10,8 +10,8 @@ from grashof.analysis import Kinematics, made_moves
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
-from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.kinds import output_turns
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
