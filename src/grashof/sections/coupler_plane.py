@@ -31,7 +31,7 @@ def coupler_plane(study: LinkageStudy) -> Section:
     # The B of an inverted slider-crank moves along its rod.
     frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
-    circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}
+    circles, diameter = _circles(study, study.chosen), {"diameter": "inflection_diameter"}
     named = {name: place[None] for name, place in frame.items()}
     of_fixed, of_moving = (
         "fixed centrode: I13 in the frame",
@@ -63,14 +63,6 @@ def _in_coupler(linkage: Linkage, name: str) -> FloatArray:
     if name in ("a", "b"):
         return np.array([0.0 if name == "a" else linkage.columns["r3"], 0.0], dtype=np.float64)
     return np.asarray(getattr(linkage, "coupler_point" if name == "p" else name))
-
-
-def _angles(study: LinkageStudy) -> FloatArray:
-    """The driver angles asked for; by default one. In rad."""
-    if study.asked.at_deg:
-        return study.in_range(study.asked.at_deg, "at_deg")
-    low, high = study.sweep.ranges[0]
-    return np.array([low if study.sweep.turns else (low + high) / 2])
 
 
 def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:

@@ -22,7 +22,7 @@ def equations(study: LinkageStudy) -> Section | None:
         return Section(
             KEY, title, notes=("the file states neither masses nor loads, so there are no forces",)
         )
-    theta2 = _driver_angles(study)
+    theta2 = study.chosen
     state = study.sweep.state(theta2)
     system = system_of_equations(state, masses, study.loads)
     in_order = inverse_dynamics(state, masses, study.loads)
@@ -35,13 +35,6 @@ def equations(study: LinkageStudy) -> Section | None:
     )
     tables = {KEY: equation_table(np.degrees(theta2), system, study.metre)}
     return Section(KEY, title, (fact,), tables, notes=(note,))
-
-
-def _driver_angles(study: LinkageStudy) -> FloatArray:
-    if study.asked.at_deg:
-        return study.in_range(study.asked.at_deg, "at_deg")
-    low, high = study.sweep.ranges[0]
-    return np.array([low if study.sweep.turns else (low + high) / 2])
 
 
 def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: float = 1.0) -> pd.DataFrame:

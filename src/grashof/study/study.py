@@ -51,6 +51,11 @@ class LinkageStudy:
         return self.spec.four_bar
 
     @property
+    def output(self) -> int:
+        """Number of the output link."""
+        return self.linkage.mechanism.links[-1].number
+
+    @property
     def masses(self) -> Masses | None:
         """Of the links, kg and the length unit; None where the file states nothing that takes a torque."""
         given = self.spec.dynamics
@@ -136,6 +141,14 @@ class LinkageStudy:
             wrong = np.degrees(angles[np.isnan(found)][0])
             raise ProblemError(f"{name} is {wrong:.6g}; the driver moves {self.reach}")
         return found
+
+    @property
+    def chosen(self) -> FloatArray:
+        """The driver angles asked for, rad, shape (N,); by default one."""
+        if self.asked.at_deg:
+            return self.in_range(self.asked.at_deg, "at_deg")
+        low, high = self.sweep.ranges[0]
+        return np.array([low if self.sweep.turns else (low + high) / 2])
 
     @property
     def reach(self) -> str:
