@@ -30,10 +30,7 @@ class Subject:
 
     @classmethod
     def of(cls, linkage: Linkage, problem: Problem | None = None) -> Subject:
-        """A single linkage, judged by its problem if one is given or its list states it.
-
-        ProblemError for anything else.
-        """
+        """A single linkage (or ProblemError), judged by a problem that is given or its list states."""
         if isinstance(linkage, LinkageSpec):
             spec, problem = linkage, linkage.problem if problem is None else problem
         elif isinstance(linkage, AnyKind):

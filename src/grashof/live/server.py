@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
 from contextlib import aclosing, asynccontextmanager
@@ -18,6 +17,7 @@ from starlette.routing import Route
 
 from grashof.live.asked import MOST_BYTES, job_of, opened, request_of
 from grashof.live.front import FRONT, live_page
+from grashof.live.jobs import error_line
 from grashof.live.session import Sessions
 from grashof.live.solvers import Solvers
 from grashof.problems import ProblemError
@@ -144,9 +144,7 @@ async def _body(request: Request) -> bytes:
 
 
 def _refused(status: int, *lines: str) -> Response:
-    return Response(
-        json.dumps({"kind": "error", "lines": list(lines)}), status, media_type="application/json"
-    )
+    return Response(error_line(*lines).text, status, media_type="application/json")
 
 
 class _Headers:

@@ -88,10 +88,7 @@ def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
 
 
 def lines(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
-    """Do a job, and `tell` of it line by line; the last line says that it is done.
-
-    The job ends soon after `stop`, which is asked often, returns True.
-    """
+    """Do a job, and `tell` each line, the last that it is done; it ends soon after `stop`, asked often."""
     since = perf_counter()
     try:
         _JOBS[job.what](job, stop, tell)

@@ -104,10 +104,15 @@ def _write_record(
     others: Iterable[str] = (),
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
-    files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
+    files = listed_files(folder, RECORD, others)
     story = _story(result, left_out(result, drawings, files), stop)
     write_json(folder / RECORD, _record(result, settings, story, files))
     return files
+
+
+def listed_files(folder: Path, record: str, others: Iterable[str] = ()) -> list[str]:
+    """The files of a run, sorted: those in a folder, others, and its record."""
+    return sorted({*(path.name for path in folder.iterdir()), *others, record})
 
 
 def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
@@ -173,8 +178,12 @@ def _written(rows: Sequence[Row]) -> dict[str, str]:
 
 def _about(settings: dict[str, Any]) -> dict[str, Any]:
     """What it takes to run the search again."""
-    versions = {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
-    return {"versions": versions, "settings": settings}
+    return {"versions": versions_of(_PACKAGES), "settings": settings}
+
+
+def versions_of(packages: Iterable[str]) -> dict[str, str]:
+    """Versions of Python and of packages."""
+    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
 
 
 _ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}

@@ -18,6 +18,11 @@ def value_text(value: float | int | str | bool) -> str:
     return number_text(value, 6) if isinstance(value, float) else str(value)
 
 
+def with_unit(label: str, unit: str) -> str:
+    """A label with its unit, if there is one."""
+    return f"{label} ({unit})" if unit else label
+
+
 def number_text(value: Any, digits: int) -> str:
     """A number that may have no limit, or not be known.
 

@@ -14,10 +14,7 @@ DRIVER, RETURN_CRANK = "driver", "return crank"
 
 
 class ReturnCrank(NamedTuple):
-    """A driver as two plates joined by `pin`, with a link between; `far` is the pin on the return crank.
-
-    The return crank is `turned` against the driver, rad.
-    """
+    """A driver in two plates on `pin`, of which the return crank, `turned` by so many rad, holds `far`."""
 
     pin: str
     far: str

@@ -67,10 +67,7 @@ class Sheet:
 
 
 def sheet(plan: Plan, title: str = "") -> Sheet:
-    """A plan as the parts in a column, the assembly at their right, below it the list under `title`.
-
-    What of the title cannot be printed is left out.
-    """
+    """A plan as parts in a column, the assembly at their right, the list below under the printable title."""
     title = printable(title)[:_TITLE_LENGTH]
     gap = plan.sizes.width / 2
     cut, size = _column(plan, gap)

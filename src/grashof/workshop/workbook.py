@@ -63,10 +63,7 @@ def workbook(chosen: Sequence[LinkageSpec | ListedDesign], candidates: pd.DataFr
 
 
 def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFrame:
-    """The candidates.csv beside a candidates.json, checked to be of the same run.
-
-    ProblemError where it is missing, is not a table, or lists other designs.
-    """
+    """The candidates.csv beside a candidates.json; ProblemError if missing, no table, or of other designs."""
     import pandas as pd
 
     table = path.with_name("candidates.csv")
