@@ -160,9 +160,7 @@ def sweep(
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
     130: interrupted (Ctrl-C); 143: terminated (SIGTERM, SIGHUP).
     """
-    from grashof.sweep.command import run
-
-    return run(study, options)
+    return commands.sweep(study, options)
 
 
 @_command

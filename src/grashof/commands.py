@@ -1,4 +1,4 @@
-"""What the commands do: search, in shards too, analyse, animate; what they write and print."""
+"""What the commands do: search, in shards too, sweep, analyse, animate; what they write and print."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from grashof.options import TOP, AnimateOptions, MergeOptions, ProveOptions, SolveOptions
+from grashof.options import TOP, AnimateOptions, MergeOptions, ProveOptions, SolveOptions, SweepOptions
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
 from grashof.problems import AssemblyError, Problem, ProblemError, Search, load, load_linkage_spec
@@ -232,6 +232,43 @@ def merge(folder: Path, options: MergeOptions) -> Exit:
         settings = {**asdict(shards.search), "workers": options.workers, "top": most, "shards": shards.of}
         settings["without"] = shards.lacking
         return _deliver(found, shards.text, settings, folder, options.drawings, interrupted)
+
+
+def sweep(study: str, options: SweepOptions) -> Exit:
+    """Solve a study file into a folder, here or on a Dask cluster, and say how it goes."""
+    from grashof.output.cluster import cluster
+    from grashof.output.folder import SWEEP_PAGE, in_use
+    from grashof.sweep.files import check_folder
+    from grashof.sweep.run import sweep
+    from grashof.sweep.study import load_study
+
+    stated = load_study(study)
+    folder = options.out if options.out is not None else Path(f"{stated.name}-sweep")
+    check_folder(folder, stated)
+    with (
+        in_use(folder),
+        interruptible() as interrupted,
+        cluster(options.scheduler, options.workers) as (executor, at_a_time),
+    ):
+        done = sweep(
+            stated,
+            out=folder,
+            executor=executor,
+            workers=at_a_time,
+            resume=options.resume,
+            designs=options.top,
+            progress=lambda step: say(str(step), err=True),
+            stop=interrupted,
+        )
+    say(done.headline)
+    if done.best:
+        say(f"best: {done.best}")
+    if done.results:
+        say(f"Open {folder / SWEEP_PAGE} in a browser to look at it; sweep.csv has the table.", err=True)
+    if not done.complete:
+        say(f"interrupted: --resume goes on; what is finished is in {folder}", err=True)
+        return interrupted.code
+    return Exit.OK if done.with_designs else Exit.NO_DESIGN
 
 
 def _begin_record(folder: Path, *, resume: bool) -> None:

@@ -8,7 +8,7 @@ import pandas as pd
 from grashof.analysis import Kinematics, centrodes, coupler_circles, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.samples import Columns, curves, over_driver, table, track
+from grashof.study.samples import Columns, components, curves, over_driver, table, track
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -69,7 +69,7 @@ def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
     found = coupler_circles(study.linkage, angles)
     columns = {"theta2_deg": np.degrees(angles).round(9)}
     for name in ("pole", "inflection", "bresse", "acceleration_pole"):
-        columns |= {f"{name}_{axis}": getattr(found, name)[:, index] for index, axis in enumerate("xy")}
+        columns |= components(name, getattr(found, name))
         if name in ("inflection", "bresse"):
             columns[f"{name}_diameter"] = getattr(found, f"{name}_diameter")
     return pd.DataFrame(columns).replace([np.inf, -np.inf], np.nan)
