@@ -20,7 +20,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
-from grashof.page.render import compact
+from grashof.page.render import compact, plain
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -108,7 +108,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             "torque": torque,
             **_cylinder(design),
             **_function(problem, linkage, design),
-            "figures": {key: _plain(value) for key, value in figures.items()},
+            "figures": {key: plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
@@ -197,12 +197,3 @@ def _angles_of_motion(travel: Travel, verdict: Verdict) -> FloatArray:
     angles = travel.angles(INSET) + travel.ahead(verdict.theta2[0])
     least = float(verdict.theta2.min())
     return angles + TURN * np.ceil((least - angles) / TURN - _ROUNDING) if travel.turns else angles
-
-
-def _plain(value: Any) -> float | int | str | bool | None:
-    """A number as JSON knows it; null where it is not finite."""
-    if isinstance(value, str | bool | np.bool_):
-        return value if isinstance(value, str) else bool(value)
-    if value is None or not np.isfinite(value):
-        return None
-    return int(value) if isinstance(value, int | np.integer) else float(value)

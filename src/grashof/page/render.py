@@ -8,6 +8,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 # Scripts of every page that has a moving drawing, in order.
@@ -47,6 +48,13 @@ def page_of(template: str, **shown: Any) -> str:
 def compact(values: Iterable[float], digits: int = 5) -> list[float | None]:
     """Samples of a curve as short JSON: so many significant digits, null where there is no finite value."""
     return [float(f"{value:.{digits}g}") if math.isfinite(value) else None for value in values]
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON knows it; null where it is not finite."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @cache
