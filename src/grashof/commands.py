@@ -1,14 +1,15 @@
-"""What the commands do: search, in shards too, analyse, animate; what they write and print."""
+"""What the commands do: search, in shards too, sweep, analyse, animate; what they write and print."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from grashof.options import TOP, AnimateOptions, MergeOptions, ProveOptions, SolveOptions, SweepOptions
 from grashof.output.ending import Exit, Interruption, interruptible
 from grashof.output.streams import say
 from grashof.problems import AssemblyError, Problem, ProblemError, Search, load, load_linkage_spec
@@ -20,51 +21,8 @@ if TYPE_CHECKING:
     from grashof.synth.results.so_far import SoFar
     from grashof.synth.search.run import Progress
 
-TOP = 50  # families in a list by default
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """How to search and what to write; None where the problem, or its default, states it.
-
-    Parameters
-    ----------
-    out : Path, optional
-        Folder for the results.
-    starts, seed, effort
-        See `Search`.
-    workers : int
-    time_limit : float, s, optional
-    gap : float, deg
-    prove : bool
-        See `synthesize`.
-    top : int, optional
-        Most families in the list.
-    drawings : int
-    scheduler : str, optional
-        Address of a Dask scheduler, where to work instead.
-    resume : bool
-        Go on with the search that the folder has a record of.
-    log : Path, optional
-        File that the log goes to.
-    """
-
-    out: Path | None = None
-    starts: int | None = None
-    seed: int | None = None
-    effort: float | None = None
-    workers: int = 1
-    time_limit: float | None = None
-    gap: float = 0.01
-    prove: bool = False
-    top: int | None = None
-    drawings: int = 3
-    scheduler: str | None = None
-    resume: bool = False
-    log: Path | None = None
-
-
-def solve(problem: Problem, text: str, options: Options) -> Exit:
+def solve(problem: Problem, text: str, options: SolveOptions) -> Exit:
     """Search for designs and write them; `text` is the problem file."""
     from grashof.output.folder import SEARCH, check_writable, in_use
     from grashof.output.log_file import logged
@@ -75,7 +33,7 @@ def solve(problem: Problem, text: str, options: Options) -> Exit:
         return _solve(problem, text, options, folder)
 
 
-def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
+def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> Exit:
     from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
     from grashof.synth.results.so_far import SoFar
@@ -117,7 +75,7 @@ def _solve(problem: Problem, text: str, options: Options, folder: Path) -> Exit:
 
 def _found(
     problem: Problem,
-    options: Options,
+    options: SolveOptions,
     settings: dict[str, Any],
     search: Search,
     record: Path,
@@ -209,7 +167,7 @@ def _deliver(
     return Exit.OK if result.candidates else Exit.NO_DESIGN
 
 
-def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> Exit:
+def solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions) -> Exit:
     """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
     from grashof.output.cluster import cluster
     from grashof.output.folder import part_in_use
@@ -251,25 +209,66 @@ def solve_shard(problem: Problem, text: str, stated: str, options: Options) -> E
     return Exit.OK if made.whole else Exit.NO_DESIGN
 
 
-def merge(folder: Path, *, partial: bool, top: int | None, drawings: int, workers: int) -> Exit:
+def merge(folder: Path, options: MergeOptions) -> Exit:
     """Make the list of a search from its shards, and write it into the same folder."""
     from grashof.output.folder import check_writable, in_use
     from grashof.output.terminal import search_progress
     from grashof.synth.merging import Shards, merge_shards
 
     shards = Shards.found(folder)
-    check_writable(folder, drawings)
+    check_writable(folder, options.drawings)
     with in_use(folder), interruptible() as interrupted:
         with search_progress(shards.problem.name, "merging", wanted=False) as progress:
             found = merge_shards(
-                folder, partial=partial, workers=workers, progress=progress, stop=interrupted
+                folder,
+                partial=options.partial,
+                workers=options.workers,
+                progress=progress,
+                stop=interrupted,
             )
         if shards.lacking:
             say(f"{folder}: without {shards.lacking}", err=True)
-        most = top or max(TOP, shards.search.enough)
-        settings = {**asdict(shards.search), "workers": workers, "top": most, "shards": shards.of}
+        most = options.top or max(TOP, shards.search.enough)
+        settings = {**asdict(shards.search), "workers": options.workers, "top": most, "shards": shards.of}
         settings["without"] = shards.lacking
-        return _deliver(found, shards.text, settings, folder, drawings, interrupted)
+        return _deliver(found, shards.text, settings, folder, options.drawings, interrupted)
+
+
+def sweep(study: str, options: SweepOptions) -> Exit:
+    """Solve a study file into a folder, here or on a Dask cluster, and say how it goes."""
+    from grashof.output.cluster import cluster
+    from grashof.output.folder import SWEEP_PAGE, in_use
+    from grashof.sweep.files import check_folder
+    from grashof.sweep.run import sweep
+    from grashof.sweep.study import load_study
+
+    stated = load_study(study)
+    folder = options.out if options.out is not None else Path(f"{stated.name}-sweep")
+    check_folder(folder, stated)
+    with (
+        in_use(folder),
+        interruptible() as interrupted,
+        cluster(options.scheduler, options.workers) as (executor, at_a_time),
+    ):
+        done = sweep(
+            stated,
+            out=folder,
+            executor=executor,
+            workers=at_a_time,
+            resume=options.resume,
+            designs=options.top,
+            progress=lambda step: say(str(step), err=True),
+            stop=interrupted,
+        )
+    say(done.headline)
+    if done.best:
+        say(f"best: {done.best}")
+    if done.results:
+        say(f"Open {folder / SWEEP_PAGE} in a browser to look at it; sweep.csv has the table.", err=True)
+    if not done.complete:
+        say(f"interrupted: --resume goes on; what is finished is in {folder}", err=True)
+        return interrupted.code
+    return Exit.OK if done.with_designs else Exit.NO_DESIGN
 
 
 def _begin_record(folder: Path, *, resume: bool) -> None:
@@ -311,15 +310,15 @@ def analyse(linkage: str, out: Path | None, *, pictures: bool = False, **asked: 
     _point_to(folder / ANALYSIS_PAGE)
 
 
-def animate(linkage: str, out: Path | None, seconds: float, fps: float) -> None:
+def animate(linkage: str, options: AnimateOptions) -> None:
     """Write a linkage in motion."""
     from grashof.figures.animation import check_animation, save_animation
     from grashof.figures.files import draw_motion
 
     spec = load_linkage_spec(linkage)
-    path = out if out is not None else Path(f"{spec.name}.gif")
+    path = options.out if options.out is not None else Path(f"{spec.name}.gif")
     check_animation(path)
-    save_animation(draw_motion(spec, seconds=seconds, fps=fps), path)
+    save_animation(draw_motion(spec, seconds=options.seconds, fps=options.fps), path)
     say(str(path), err=True)
 
 
@@ -336,13 +335,7 @@ def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
 
 
-def prove(
-    problem: str,
-    at_least: float | None,
-    gap: float,
-    time_limit: float | None,
-    certificate: Path | None = None,
-) -> Exit:
+def prove(problem: str, options: ProveOptions) -> Exit:
     """Print what is proven of a problem."""
     from grashof.synth import prove as proven
     from grashof.synth.prove import has_certificate
@@ -350,22 +343,15 @@ def prove(
 
     loaded = load(problem)
     with interruptible() as interrupted:
-        proof = proven(
-            loaded,
-            at_least=at_least,
-            gap=gap,
-            time_limit=time_limit,
-            stop=interrupted,
-            certificate=certificate,
-        )
-        say(bound_line(proof, at_least))
+        proof = proven(loaded, **asdict(options), stop=interrupted)
+        say(bound_line(proof, options.at_least))
         if proof.pairs:
             say(work_line(proof))
-        if certificate is not None and not has_certificate(proof):
-            say(f"certificate {certificate}: not written, for no bound was reached", err=True)
+        if options.certificate is not None and not has_certificate(proof):
+            say(f"certificate {options.certificate}: not written, for no bound was reached", err=True)
         if interrupted():
             return interrupted.code
-    return Exit.OK if is_decided(proof, at_least) else Exit.NO_DESIGN
+    return Exit.OK if is_decided(proof, options.at_least) else Exit.NO_DESIGN
 
 
 def judge(linkage: str, problem: str) -> Exit:

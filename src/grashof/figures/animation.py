@@ -127,10 +127,7 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
 def check_animation(path: Path) -> None:
     """Refuse, before any work is done, a file that `save_animation` cannot write.
 
-    Raises
-    ------
-    ProblemError
-        Another ending than .gif or .mp4, .mp4 without ffmpeg, or a folder that cannot be written.
+    ProblemError for another ending than .gif or .mp4, .mp4 without ffmpeg, or a folder not to be written.
     """
     kind = path.suffix.lower()
     if kind not in _WRITERS:

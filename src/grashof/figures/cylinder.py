@@ -40,19 +40,9 @@ def cylinder_places(subject: Subject, position: Position) -> FloatArray:
 
 
 class DrawnCylinder:
-    """A cylinder as drawn in one position, to be moved to others.
+    """A cylinder as drawn in one position (`corners` (5, 2) of `cylinder_places`), to be moved to others.
 
-    Parameters
-    ----------
-    axes : Axes
-    on : str
-        Link that it acts on; a bracket of its colour holds the pivot.
-    corners : ndarray, shape (5, 2), length
-        Of `cylinder_places`.
-    shade : float
-        From 0, invisible, to 1.
-    named : bool
-        Whether the legend names it.
+    A bracket of the colour of the link it is `on` holds the pivot; `shade` is from 0, invisible, to 1.
     """
 
     def __init__(

@@ -17,15 +17,7 @@ _OVER = "driver rotation from the first pair (deg)"
 
 
 def plot_function(task: FunctionTask, candidate: Candidate, *, ax: Sequence[Axes]) -> None:
-    """Wanted and generated output of a design, and its structural error.
-
-    Parameters
-    ----------
-    task : FunctionTask
-    candidate : Candidate
-    ax : two axes
-        Of the output, and of the error.
-    """
+    """Wanted and generated output of a design on the first axes, its structural error on the second."""
     output, error = ax
     curves = function_curves(candidate.linkage, task, candidate.verdict)
     if curves is not None:
@@ -40,8 +32,8 @@ def plot_function(task: FunctionTask, candidate: Candidate, *, ax: Sequence[Axes
             output.plot(np.degrees(task.inputs), shown * at.wanted, label="pairs", **pairs)
             error.plot(np.degrees(task.inputs), shown * at.error, **pairs)
     unit = candidate.problem.length_unit
-    plot_labels(output, output_label(task, unit))
-    plot_labels(error, _with_unit("structural error", task, unit))
+    _label(output, task.output_words, task, unit)
+    _label(error, "structural error", task, unit)
     if output.lines:
         output.legend(loc="best", fontsize="small")
 
@@ -54,21 +46,11 @@ def plot_wanted(axes: Axes, task: FunctionTask, length_unit: str) -> None:
         np.degrees(task.inputs), shown * task.outputs, linestyle="none", marker="o", color=TARGET,
         markerfacecolor="none", label="pairs",
     )  # fmt: skip
-    plot_labels(axes, output_label(task, length_unit))
+    _label(axes, task.output_words, task, length_unit)
     axes.legend(loc="best", fontsize="small")
 
 
-def plot_labels(axes: Axes, across: str) -> None:
-    """Names of both axes."""
+def _label(axes: Axes, words: str, task: FunctionTask, length_unit: str) -> None:
+    """Name both axes, the upright one by words with the unit of the output."""
     axes.set_xlabel(_OVER)
-    axes.set_ylabel(across)
-
-
-def output_label(task: FunctionTask, length_unit: str) -> str:
-    """What the output is, with its unit."""
-    return _with_unit(task.output_words, task, length_unit)
-
-
-def _with_unit(words: str, task: FunctionTask, length_unit: str) -> str:
-    unit = task.counted_in.of(length_unit)
-    return f"{words} ({unit})"
+    axes.set_ylabel(f"{words} ({task.counted_in.of(length_unit)})")

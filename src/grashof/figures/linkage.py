@@ -36,6 +36,7 @@ from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.designs.ranking import pareto_optimal
+from grashof.wording.numbers import with_unit
 
 _NUMBERED = 10  # designs that carry their rank
 
@@ -259,8 +260,7 @@ def _along(result: Result, key: str) -> tuple[FloatArray, str]:
         )
     quantity = result.problem.meant(QUANTITIES[key])
     values = [candidate.values[quantity.key] * quantity.unit.shown for candidate in result.candidates]
-    unit = quantity.unit.of(result.problem.length_unit)
-    return np.array(values), f"{quantity.words} ({unit})" if unit else quantity.words
+    return np.array(values), with_unit(quantity.words, quantity.unit.of(result.problem.length_unit))
 
 
 def new_axes(ax: Axes | None) -> Axes:
@@ -303,8 +303,7 @@ def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
 
 def plane(ax: Axes, length_unit: str) -> None:
     """Equal scales, and the unit on both axes."""
-    unit = f" ({length_unit})" if length_unit else ""
-    ax.set_xlabel(f"x{unit}", parse_math=False)
-    ax.set_ylabel(f"y{unit}", parse_math=False)
+    ax.set_xlabel(with_unit("x", length_unit), parse_math=False)
+    ax.set_ylabel(with_unit("y", length_unit), parse_math=False)
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)

@@ -58,19 +58,9 @@ def stands(linkage: Linkage, state: Position, travel: Travel) -> list[dict[str, 
 
 
 class Links:
-    """The moving links as drawn in one position, to be moved to others.
+    """The moving links as drawn in one position, with the points (2,) of `stands`, to be moved to others.
 
-    Parameters
-    ----------
-    axes : Axes
-    kind : Mechanism
-        Of the linkage.
-    points : mapping of str to ndarray, shape (2,), length
-        Where the points of the linkage are, as `stands` gives them.
-    shade : float
-        From 0, invisible, to 1.
-    named : bool
-        Whether the legend names the links; several positions need it once.
+    `shade` is from 0, invisible, to 1; `named` if the legend names them, needed once for several positions.
     """
 
     def __init__(

@@ -9,11 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from grashof.figures.linkage import new_axes
+from grashof.figures.linkage import new_axes, plane
 from grashof.figures.parts import BODY, COUPLER, DRIVER, GROUND, OUTPUT, PATH, SCENE
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.limits import broken_beyond, greatest_drawn, middle
 from grashof.study.section import DRIVER_ANGLE, Plot
+from grashof.wording.numbers import with_unit
 
 # Colours and dashes of the first to the eighth line, as on the page; the next eight are dotted.
 PENS: tuple[tuple[str, tuple[int, ...]], ...] = (
@@ -74,7 +75,7 @@ def _draw_curves(ax: Axes, plot: Plot, places: FloatArray, most: float) -> list[
     if np.isfinite(most):
         _cut(ax, np.concatenate(list(plot.series.values())), most)
     ax.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
-    ax.set_ylabel("\n".join(wrap(_with_unit(plot.title, plot.unit), _LABEL)), parse_math=False)
+    ax.set_ylabel("\n".join(wrap(with_unit(plot.title, plot.unit), _LABEL)), parse_math=False)
     dead = ""
     if plot.over == DRIVER_ANGLE and not plot.swings:
         _whole_turns(ax, places)
@@ -92,10 +93,7 @@ def _draw_tracks(ax: Axes, plot: Plot, most: float) -> list[Line2D]:
         near = np.hypot(*(track - centre).T) <= most
         drawn += ax.plot(*np.where(near[:, None], track, np.nan).T, label=label, **_pen(number))
     ax.set_title("\n".join(wrap(plot.title, 80)), parse_math=False)
-    ax.set_xlabel(_with_unit("x", plot.unit), parse_math=False)
-    ax.set_ylabel(_with_unit("y", plot.unit), parse_math=False)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.margins(0.08)
+    plane(ax, plot.unit)
     return drawn
 
 
@@ -132,7 +130,3 @@ def _name(ax: Axes, lines: list[Line2D]) -> None:
     legend = ax.legend(lines, names, loc="best", fontsize="small", ncols=1 + (len(lines) > _CROWD))
     for text in legend.get_texts():
         text.set_parse_math(False)
-
-
-def _with_unit(label: str, unit: str) -> str:
-    return f"{label} ({unit})" if unit else label

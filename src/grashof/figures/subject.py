@@ -21,13 +21,7 @@ Linkage = AnyKind | LinkageSpec | Candidate
 class Subject:
     """A linkage with its unit and masses and, where there is a problem, how it does the task.
 
-    Parameters
-    ----------
-    spec : LinkageSpec
-        With a problem: on the assembly that meets the first target, with the problem's unit and masses.
-    problem : Problem, optional
-    verdict : Verdict, optional
-        There is one where there is a problem.
+    With a problem `spec` is on the assembly that meets the first target, with the problem's unit and masses.
     """
 
     spec: LinkageSpec
@@ -36,13 +30,7 @@ class Subject:
 
     @classmethod
     def of(cls, linkage: Linkage, problem: Problem | None = None) -> Subject:
-        """A linkage, judged by its problem if one is given or its list states it.
-
-        Raises
-        ------
-        ProblemError
-            Anything but a single linkage.
-        """
+        """A single linkage (or ProblemError), judged by a problem that is given or its list states."""
         if isinstance(linkage, LinkageSpec):
             spec, problem = linkage, linkage.problem if problem is None else problem
         elif isinstance(linkage, AnyKind):

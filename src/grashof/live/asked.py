@@ -26,18 +26,7 @@ _NAME = re.compile(r"[^\w.-]+")
 
 
 def request_of(body: bytes) -> dict[str, Any]:
-    """A request as JSON without NaN.
-
-    Raises
-    ------
-    ProblemError
-        It is too large, no JSON, or no table.
-
-    Examples
-    --------
-    >>> request_of(b'{"what": "track"}')
-    {'what': 'track'}
-    """
+    """A request as JSON without NaN; ProblemError where it is too large, no JSON, or no table."""
     if len(body) > MOST_BYTES:
         raise ProblemError(f"the request has {len(body)} bytes; at most {MOST_BYTES} are allowed")
     try:
@@ -54,19 +43,9 @@ def _no_constant(word: str) -> NoReturn:
 
 
 def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
-    """The job that a request asks for.
+    """The job that a request asks for; ProblemError where it is malformed or more than one page may ask.
 
-    Parameters
-    ----------
-    request : dict
-        "what", "document", "name", and for some kinds "keys", "key", "file", "text".
-    shown : bytes
-        What its page has.
-
-    Raises
-    ------
-    ProblemError
-        It is malformed, or asks for more than one page may.
+    It has "what", "document", "name", and for some kinds "keys", "key", "file" and "text".
     """
     what = _one_of(request, "what", KINDS)
     document = request.get("document")
@@ -86,8 +65,6 @@ def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
 def name_of(name: object) -> str:
     """A name for files, of letters, digits, dots and dashes.
 
-    Examples
-    --------
     >>> name_of("../my task"), name_of("")
     ('my-task', 'task')
     """
@@ -113,12 +90,9 @@ def _keys(given: object, name: str) -> list[int]:
 
 
 def refuse_too_much(document: dict[str, Any]) -> None:
-    """Refuse what would keep a solver busy for long.
+    """ProblemError for more targets, corners or effort than a page may ask for.
 
-    Raises
-    ------
-    ProblemError
-        More targets, corners or effort than a page may ask for; `grashof solve` takes them.
+    What is refused would keep a solver busy for long; `grashof solve` takes it.
     """
     targets = max((len(each) for table in _tables(document) for each in _lists(table)), default=0)
     if targets > MOST_TARGETS:
@@ -159,15 +133,8 @@ def _numbers(value: object, depth: int = 0) -> int:
 
 
 def document_from(text: str, name: str) -> dict[str, Any]:
-    """A problem file as JSON; it names no other file.
+    """A problem file as JSON; ProblemError where it states no valid problem, or names other files.
 
-    Raises
-    ------
-    ProblemError
-        It states no valid problem, or names other files.
-
-    Examples
-    --------
     >>> document_from(problem_text("luggage"), "luggage")["motion"]["poses"][0]
     [5, 4, 0]
     """
@@ -178,12 +145,8 @@ def document_from(text: str, name: str) -> dict[str, Any]:
 def beginning(problem: Problem | str | None) -> dict[str, Any]:
     """What a page begins with: a problem, one of the catalogue, one from a file, or luggage.
 
-    Tables of numbers that a file names become part of the document.
-
-    Raises
-    ------
-    ProblemError
-        It is no problem, or more than a page may ask for.
+    Tables of numbers that a file names become part of the document. ProblemError where it is no problem, or
+    more than a page may ask for.
     """
     if isinstance(problem, Problem):
         found, text = problem, problem_toml(problem)
@@ -198,17 +161,9 @@ def beginning(problem: Problem | str | None) -> dict[str, Any]:
 
 
 def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
-    """The problem that a page asks for: the one it begins with, one of the catalogue, or a file's text.
+    """What a page asks for: the problem it begins with, one of the catalogue, or a file's text.
 
-    Returns
-    -------
-    dict
-        "document", "name", and the names of the "catalogue".
-
-    Raises
-    ------
-    ProblemError
-        It is no problem.
+    As "document", "name", and the names of the "catalogue"; ProblemError where it is no problem.
     """
     found = begin
     if "text" in request:

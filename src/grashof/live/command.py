@@ -16,23 +16,10 @@ NEEDED = ("starlette", "uvicorn")
 
 
 def live(problem: str | None, port: int, *, browser: bool) -> Exit:
-    """Serve the live page until Ctrl-C.
+    """Serve the live page of a problem, by name or file, until Ctrl-C; port 0 takes a free one.
 
-    Parameters
-    ----------
-    problem : str, optional
-        Name in the catalogue, or a file.
-    port : int
-        0 takes a free one.
-    browser : bool
-        Open the page in it.
-
-    Raises
-    ------
-    ProblemError
-        The problem is invalid, or what `grashof[live]` installs is missing.
-    SolverError
-        The port is taken.
+    ProblemError where the problem is invalid or what `grashof[live]` installs is missing; SolverError where
+    the port is taken.
     """
     if any(find_spec(name) is None for name in NEEDED):
         raise ProblemError(

@@ -38,12 +38,8 @@ def widget_module() -> str:
     return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 
-def _start() -> str:
-    return text_of("live/start.js")
-
-
 FRONT: dict[str, Callable[[], tuple[str, str]]] = {
     "/live.css": lambda: (live_style(), "text/css"),
     "/live.js": lambda: (live_script(), "text/javascript"),
-    "/start.js": lambda: (_start(), "text/javascript"),
+    "/start.js": lambda: (text_of("live/start.js"), "text/javascript"),
 }

@@ -13,20 +13,10 @@ FILES = ("problem", "list", "designs", "report", "dxf")
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Something to do for a page.
+    """Something to do for a page, one of `KINDS`, with the problem file as JSON and its name.
 
-    Parameters
-    ----------
-    what : str
-        One of `KINDS`.
-    document : dict
-        The problem file as JSON.
-    name : str
-        What the problem is called.
-    options : mapping
-        Of its kind: keys of designs, which file, the text of a drawing.
-    shown : bytes
-        What the page has, as the job before left it.
+    Options are those of its kind: keys of designs, which file, the text of a drawing. `shown` is what the
+    page has, as the job before left it.
     """
 
     what: str
@@ -38,15 +28,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line for the page, or the end of a job.
-
-    Parameters
-    ----------
-    text : str
-        JSON, without a line break.
-    shown : bytes, optional
-        What the page has from now on.
-    """
+    """A line of JSON for the page, or the end of a job; `shown` is what the page has from now on."""
 
     text: str
     shown: bytes | None = None
@@ -55,8 +37,6 @@ class Line:
 def error_line(*lines: str) -> Line:
     """A line that tells what is wrong.
 
-    Examples
-    --------
     >>> error_line("there is no design to save").text
     '{"kind": "error", "lines": ["there is no design to save"]}'
     """

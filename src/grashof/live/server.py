@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import secrets
 from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
 from contextlib import aclosing, asynccontextmanager
@@ -18,6 +17,7 @@ from starlette.routing import Route
 
 from grashof.live.asked import MOST_BYTES, job_of, opened, request_of
 from grashof.live.front import FRONT, live_page
+from grashof.live.jobs import error_line
 from grashof.live.session import Sessions
 from grashof.live.solvers import Solvers
 from grashof.problems import ProblemError
@@ -38,16 +38,9 @@ JSON_LINES = "application/x-ndjson"
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What is served.
+    """What is served: `begin` has the "document" and "name" of a new page, `port` and host its own origin.
 
-    Parameters
-    ----------
-    begin : dict
-        The problem that a new page has: "document" and "name".
-    port : int
-        Of the server; with the host, its own origin.
-    token : str
-        What every request has to bring along; the page has it from the fragment of its address.
+    Every request has to bring the token along; the page has it from the fragment of its address.
     """
 
     begin: dict[str, Any]
@@ -151,9 +144,7 @@ async def _body(request: Request) -> bytes:
 
 
 def _refused(status: int, *lines: str) -> Response:
-    return Response(
-        json.dumps({"kind": "error", "lines": list(lines)}), status, media_type="application/json"
-    )
+    return Response(error_line(*lines).text, status, media_type="application/json")
 
 
 class _Headers:

@@ -17,16 +17,7 @@ _MOST_NAME = 64
 
 @dataclass(slots=True, eq=False)
 class Session:
-    """A page.
-
-    Parameters
-    ----------
-    solvers : Solvers
-    shown : bytes
-        Its designs, as a solver wrote them.
-    newest : Job, optional
-        What it asked for last: a job before that is left.
-    """
+    """A page: its designs, as a solver wrote them, and its newest job; a job before that is left."""
 
     solvers: Solvers
     shown: bytes = b""
@@ -61,13 +52,7 @@ class Sessions:
     pages: OrderedDict[str, Session] = field(default_factory=OrderedDict)
 
     def of(self, page: object) -> Session:
-        """The page of a name.
-
-        Raises
-        ------
-        ProblemError
-            It is no name.
-        """
+        """The page of a name; ProblemError where it is none."""
         if not isinstance(page, str) or not 0 < len(page) <= _MOST_NAME:
             raise wrong_value("page", page, f"a name of up to {_MOST_NAME} characters")
         if page not in self.pages:

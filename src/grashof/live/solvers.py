@@ -57,16 +57,7 @@ def run_solver(pipe: Connection) -> None:
 
 @dataclass(slots=True, eq=False)
 class Solver:
-    """A process that does one job at a time.
-
-    Parameters
-    ----------
-    process : Process
-    pipe : Connection
-    state : State
-    stopped : float, s
-        When it was asked to stop, while it does.
-    """
+    """A process that does one job at a time; `stopped` is when (s) it was asked to stop, while it does."""
 
     process: BaseProcess
     pipe: Connection
@@ -112,12 +103,7 @@ class Solver:
 
 @dataclass(slots=True)
 class Solvers:
-    """Some warm solvers, for jobs of any page.
-
-    Parameters
-    ----------
-    warm : int
-    """
+    """Some warm solvers, for jobs of any page."""
 
     warm: int = WARM
     every: list[Solver] = field(default_factory=list)

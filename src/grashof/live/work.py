@@ -40,14 +40,7 @@ SAME = 1e-6  # of all that states them: two designs are one
 class Shown:
     """Designs on a page by their keys, which stay while a design is followed.
 
-    Parameters
-    ----------
-    designs : dict of int to Candidate
-    absent : dict of int to Candidate
-        Of lists before, not in this one; a search that goes on may find them again.
-    result : Result, optional
-        Of a search that is done.
-    next_key : int
+    `absent` are those of lists before, which a search that goes on may find again.
     """
 
     designs: Mapping[int, Candidate] = field(default_factory=dict)
@@ -95,16 +88,7 @@ def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
 
 
 def lines(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
-    """Do a job, and tell of it line by line; the last line says that it is done.
-
-    Parameters
-    ----------
-    job : Job
-    stop : callable
-        Asked often; the job ends soon after it returns True.
-    tell : callable
-        Called with each line.
-    """
+    """Do a job, and `tell` each line, the last that it is done; it ends soon after `stop`, asked often."""
     since = perf_counter()
     try:
         _JOBS[job.what](job, stop, tell)

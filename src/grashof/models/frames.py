@@ -10,17 +10,8 @@ from grashof.problems.values.linkages.linkage_parts import Link
 
 
 def points_on(linkage: Linkage, link: Link) -> dict[str, FloatArray]:
-    """Points of a link in its frame, each of shape (2,), in the order of the link.
+    """Points (2,) of a link of a single linkage, in their order, in its frame; the ground's is global.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    link : Link
-        One of its own; of the ground the frame is the global one.
-
-    Examples
-    --------
     >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(50, 20))
     >>> {name: at.tolist() for name, at in points_on(norton, norton.mechanism.links[2]).items()}

@@ -22,10 +22,7 @@ class Row(NamedTuple):
 
 
 def rows(model: Model) -> list[Row]:
-    """The parameters as a sketch needs them: those of the linkage, and its angles where it begins.
-
-    Angles are in deg; the signs of the assemblies are in the angles.
-    """
+    """The linkage's parameters and its angles where it begins, deg, which hold the assemblies' signs."""
     unit, linkage = model.spec.length_unit, model.linkage
     kind = linkage.mechanism
     left_out = {row.name for row in kind.parameters if row.kind == "sign"} | {

@@ -2,53 +2,37 @@
 
 from __future__ import annotations
 
-import platform
 from collections.abc import Iterable
-from importlib.metadata import version
-from io import StringIO
 from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from rich import box
-from rich.console import Console
 from rich.table import Table
 
 from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
-from grashof.output.run_files import write_csv, write_json, write_page
+from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
 from grashof.output.streams import say
-from grashof.output.terminal import console, folded
+from grashof.output.terminal import fitting, folded, plain_table
 from grashof.survey import Fact, LinkageReport, Section
 from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
-_UNBOUNDED = 1000
 
 
 def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
-    """Write tables, summary, the page, plots and the record of them; the names of the files, sorted.
+    """Write tables, summary, page, plots (pictures too, if asked) and their record; the files' names, sorted.
 
-    Parameters
-    ----------
-    folder : Path
-    report : LinkageReport
-    pictures : bool
-        Whether the plots of the sections are written as pictures, too, and not in the page alone.
-
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost; it then holds what it held before.
+    OSError where the disk is full or the folder is lost; it then holds what it held before.
     """
     from grashof.figures.files import save
     from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import
     from grashof.page.analysis import analysis_page
 
     about = {
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}},
+        "versions": versions_of(_PACKAGES),
         "settings": {"linkage": report.sweep.spec.name, "speed_rpm": report.sweep.speed_rpm},
     }
     with replacing_own_files(folder, record=ANALYSIS_RECORD) as fresh:
@@ -62,7 +46,7 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
         write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
         for name, figure in chain(plots(report), section_pictures(report) if pictures else ()):
             save(figure, [fresh / f"{name}.png", fresh / f"{name}.svg"])
-        files = sorted({*(path.name for path in fresh.iterdir()), ANALYSIS_RECORD})
+        files = listed_files(fresh, ANALYSIS_RECORD)
         write_json(fresh / ANALYSIS_RECORD, {**about, "files": files})
     return files
 
@@ -71,9 +55,9 @@ def print_report(report: LinkageReport) -> None:
     """Print the summary and the extremes, no wider than the terminal where that can be."""
     spec = report.sweep.spec
     say(f"{spec.title or spec.name}: {dimensions_text(spec)}")
-    for line in _fitting(_facts_table("summary", report.facts)):
+    for line in fitting([_facts_table("summary", report.facts)]):
         say(line)
-    for line in _fitting(_extremes_table(report, 6), _extremes_table(report, 4)):
+    for line in fitting(_extremes_table(report, digits) for digits in (6, 4)):
         say(line)
     for section in report.sections:
         for line in _section_lines(section):
@@ -84,29 +68,12 @@ def _section_lines(section: Section) -> list[str]:
     """Its facts under its title, with its notes; none without facts."""
     if not section.facts:
         return []
-    lines = _fitting(_facts_table(section.title, section.facts))
+    lines = fitting([_facts_table(section.title, section.facts)])
     return [*(line for line in lines if line), *folded(section.notes), ""]
 
 
-def _fitting(*tables: Table) -> list[str]:
-    """Lines of the first table that fits, or else of the last; no number is ever cut."""
-    lines: list[str] = []
-    for table in tables:
-        page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
-        with page.capture() as captured:
-            page.print(table)
-        lines = [line.rstrip() for line in captured.get().splitlines()]
-        if max(map(len, lines)) <= console().width:
-            break
-    return lines
-
-
-def _plain_table() -> Table:
-    return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-
-
 def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
-    table = _plain_table()
+    table = plain_table()
     table.add_column(title, no_wrap=True)
     table.add_column("value", justify="right", no_wrap=True)
     table.add_column("unit", no_wrap=True)
@@ -116,7 +83,7 @@ def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
 
 
 def _extremes_table(report: LinkageReport, digits: int) -> Table:
-    table, frame = _plain_table(), report.tables["extremes"]
+    table, frame = plain_table(), report.tables["extremes"]
     many = "range" in frame
     for name in (
         *(["range"] if many else []),
@@ -145,10 +112,7 @@ def _summary_frame(report: LinkageReport) -> pd.DataFrame:
 
 
 def _facts_by_key(report: LinkageReport) -> dict[str, tuple[str, Fact]]:
-    """Facts of the summary, with "", and of the sections, with their keys.
-
-    No two have the same key: that of a section's fact begins with the section where it is taken.
-    """
+    """Facts of the summary, with "", and of the sections by unique keys: a section's begin with its name."""
     found = {fact.key: ("", fact) for fact in report.facts}
     for section in report.sections:
         for fact in section.facts:

@@ -16,14 +16,7 @@ PATIENCE = 10  # s to wait for an answer
 
 
 class _Cluster(Executor):
-    """Dask's executor, for which a task that ends one worker after the other is a `CrashError`.
-
-    Parameters
-    ----------
-    dask : Executor
-    killed : type of Exception
-        What Dask raises then.
-    """
+    """Dask's executor; a task that ends one worker after the other (`killed`, in Dask) is a `CrashError`."""
 
     def __init__(self, dask: Executor, killed: type[Exception]) -> None:
         self._dask, self._killed = dask, killed
@@ -56,12 +49,7 @@ _NOISY = ("distributed.client", "distributed.core", "distributed.comm.core", "di
 def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | None, int]]:
     """Executor of a Dask scheduler, if one is named, and how many it works on at a time.
 
-    Raises
-    ------
-    ProblemError
-        Dask is not installed, or the address is none.
-    SolverError
-        No scheduler answers.
+    ProblemError where Dask is not installed or the address is none; SolverError where no scheduler answers.
     """
     if scheduler is None:
         yield None, workers

@@ -25,13 +25,7 @@ _UNSENDABLE = (PicklingError, AttributeError, TypeError)  # what pickle says of 
 
 
 class Drawer:
-    """Draws designs in a copy of this process, or where there is none in this one.
-
-    Parameters
-    ----------
-    copy : Connection, optional
-        To the copy.
-    """
+    """Draws designs in a copy of this process, or where there is none in this one."""
 
     def __init__(self, copy: Connection | None = None) -> None:
         self._copy = copy
@@ -50,7 +44,7 @@ class Drawer:
 
 @contextmanager
 def drawer(most: int) -> Iterator[Drawer]:
-    """One who draws so many designs at most, and until there are any gets ready beside this process.
+    """One who draws so many designs at most, made ready beside this process until there are any.
 
     The copy is made here, where it may be: with a single thread and a second core.
     """

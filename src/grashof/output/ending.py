@@ -35,10 +35,7 @@ class Interruption:
 
 @contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Turn the first Ctrl-C, SIGTERM or SIGHUP into a request to end soon; the second one ends at once.
-
-    A signal that is ignored stays so, such as SIGHUP under nohup.
-    """
+    """The first Ctrl-C, SIGTERM or SIGHUP asks to end soon, the second ends at once; ignored ones stay so."""
     asked = Interruption()
     handlers = {number: signal.getsignal(number) for number in _SIGNALS}
     before = {number: handler for number, handler in handlers.items() if handler is not signal.SIG_IGN}

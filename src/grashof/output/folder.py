@@ -40,21 +40,9 @@ _NAMES = {
 
 
 def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> None:
-    """Refuse, before any work is done, a folder that a run cannot write into; leave no trace.
+    """Refuse (ProblemError), before any work, a folder that a run cannot write into; leave no trace.
 
-    Parameters
-    ----------
-    folder : Path
-    drawings : int
-        How many designs may be drawn.
-    record : str
-        `RECORD` of a search, `ANALYSIS_RECORD` of an analysis, `SWEEP_RECORD` of a sweep; their files do
-        not mix.
-
-    Raises
-    ------
-    ProblemError
-        It cannot be made or written, or a file would be replaced that no run of Grashof wrote.
+    Nor may a file be replaced that no run of Grashof wrote; files of runs with another `record` do not mix.
     """
     try:
         with _made(folder), tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
@@ -72,11 +60,7 @@ def in_use(folder: Path) -> Iterator[None]:
 
     What a run that was killed left unfinished in it is removed. The lock ends with its process,
     however that ends; where the system has none (Windows), two runs are not kept apart.
-
-    Raises
-    ------
-    ProblemError
-        Another run uses it, or it cannot be made.
+    ProblemError where another run uses it, or it cannot be made.
     """
     with ExitStack() as stack:
         try:
@@ -97,10 +81,7 @@ def in_use(folder: Path) -> Iterator[None]:
 def part_in_use(folder: Path, part: Path) -> Iterator[None]:
     """A part of a folder for this run alone, while others make and use other parts of it.
 
-    Raises
-    ------
-    ProblemError
-        Another run uses the part, the folder cannot be written, or the part is a link to elsewhere.
+    ProblemError where another run uses it, the folder cannot be written, or the part is a link to elsewhere.
     """
     if part.is_symlink():
         raise ProblemError(f"--out {part}: is a link; it must be a folder")
@@ -133,30 +114,11 @@ def _locked(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = RECORD) -> Iterator[Path]:
-    """A folder to write files into, which at the end take the place of those of the last run.
+    """An empty folder beside the files, to write those into that at the end replace the last run's.
 
-    What the last run wrote and this one does not is removed; other files are left alone. If
-    anything fails, the folder stays as it was, and goes if it was made here. Links in it are replaced or
-    removed themselves, not what they lead to.
-
-    Parameters
-    ----------
-    folder : Path
-        Its record lists the files of the last run under "files".
-    keep : collection of str
-        Names of the last run's files that stay.
-    record : str
-        Name of the record.
-
-    Yields
-    ------
-    Path
-        Empty folder beside the files, on the same disk.
-
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost.
+    What the last run wrote (`record` lists it under "files"), and this one neither writes nor keeps, is
+    removed; other files are left alone. If anything fails, as a full disk does (OSError), the folder stays as
+    it was, and goes if it was made here. Links in it are replaced or removed, not what they lead to.
     """
     with _named(folder), _made(folder):
         before = own_files(folder, record)

@@ -34,18 +34,7 @@ class _File(logging.FileHandler):
 def logged(path: Path | None, folder: Path, record: Path) -> Iterator[None]:
     """What Grashof logs inside goes to the end of a file, too: every start, time in UTC.
 
-    Parameters
-    ----------
-    path : Path, optional
-    folder : Path
-        Where the run writes; the file may be in it, under another name than the run's own.
-    record : Path
-        Folder of the record of the search; the same.
-
-    Raises
-    ------
-    ProblemError
-        It cannot be written.
+    ProblemError where it cannot be written, or is one of the run's own files in `folder` or `record`.
     """
     if path is None:
         yield

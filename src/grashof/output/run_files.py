@@ -45,34 +45,11 @@ def write_run(
     drawing: Drawer | None = None,
     listed: Callable[[], None] | None = None,
 ) -> list[str]:
-    """Write all files of a run, the lists first: a drawing that fails does not cost them.
+    """Write all files of a run, the lists first; names, sorted. A drawing that fails does not cost the lists.
 
-    Parameters
-    ----------
-    folder : Path
-    result : Result
-    settings : dict
-        How the search was run; goes into the record.
-    drawings : int
-        How many of the best designs to draw.
-    stop : Interruption, optional
-        Asked before every drawing; the others are left out once it is asked for.
-    problem_text : str
-        The problem file, for the page.
-    drawing : Drawer, optional
-        Who draws, if somebody is ready.
-    listed : callable, optional
-        Called once the lists are in the folder, before anything is drawn.
-
-    Returns
-    -------
-    list of str
-        Names of the files, sorted.
-
-    Raises
-    ------
-    OSError
-        The disk is full or the folder is lost; it then holds what it held before, or the lists alone.
+    `settings` go into the record, `problem_text` into the page. `listed` is called once the lists are in the
+    folder; `stop` is asked before each of the `drawings` best is drawn. OSError where the disk is full or the
+    folder is lost; it then holds what it held before, or the lists alone.
     """
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]
@@ -127,10 +104,15 @@ def _write_record(
     others: Iterable[str] = (),
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
-    files = sorted({*(path.name for path in folder.iterdir()), *others, RECORD})
+    files = listed_files(folder, RECORD, others)
     story = _story(result, left_out(result, drawings, files), stop)
     write_json(folder / RECORD, _record(result, settings, story, files))
     return files
+
+
+def listed_files(folder: Path, record: str, others: Iterable[str] = ()) -> list[str]:
+    """The files of a run, sorted: those in a folder, others, and its record."""
+    return sorted({*(path.name for path in folder.iterdir()), *others, record})
 
 
 def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
@@ -196,8 +178,12 @@ def _written(rows: Sequence[Row]) -> dict[str, str]:
 
 def _about(settings: dict[str, Any]) -> dict[str, Any]:
     """What it takes to run the search again."""
-    versions = {"python": platform.python_version(), **{name: version(name) for name in _PACKAGES}}
-    return {"versions": versions, "settings": settings}
+    return {"versions": versions_of(_PACKAGES), "settings": settings}
+
+
+def versions_of(packages: Iterable[str]) -> dict[str, str]:
+    """Versions of Python and of packages."""
+    return {"python": platform.python_version(), **{name: version(name) for name in packages}}
 
 
 _ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}

@@ -16,13 +16,8 @@ _LAID_OUT = re.compile(r"[^\n\t]+")  # all but what lays out text
 def say(line: str, *, err: bool = False) -> None:
     """Print a line; from the moment that nobody reads the stream any more (`| head`), nothing.
 
-    Control characters, such as of file names, do not reach the terminal.
-
-    Raises
-    ------
-    OSError
-        What goes to stdout cannot be written, such as to a full disk. What is said besides, on stderr,
-        never costs a result.
+    Control characters, such as of file names, do not reach the terminal. OSError where stdout cannot be
+    written, such as to a full disk; what is said on stderr never costs a result.
     """
     stream = sys.stderr if err else sys.stdout
     try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
 from textwrap import TextWrapper
@@ -58,14 +58,7 @@ def search_progress(
 ) -> Iterator[Callable[[Progress], None]]:
     """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
 
-    Parameters
-    ----------
-    name : str
-        Of the problem.
-    begin : str
-        What the bar shows until the first step is done.
-    wanted : bool
-        Whether the search ends once it has enough designs.
+    The bar shows `begin` until the first step is done; `wanted` if enough designs end the search.
     """
     out = console(stderr=True)
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
@@ -90,17 +83,10 @@ def _step(step: Progress, wanted: bool) -> str:
 
 
 def print_table(result: Result, verified: int | None = None) -> None:
-    """Print the best designs, with what an engineer decides by.
-
-    Parameters
-    ----------
-    result : Result
-    verified : int, optional
-        How many designs were found, where `result` lists only the best of them.
-    """
+    """Print the best designs, with what an engineer decides by; `verified` is how many were found in all."""
     for line in folded(heading(result, verified or len(result)).splitlines()):
         say(line)
-    for line in _fitting(result, console().width):
+    for line in fitting(_tables(result)):
         say(line)
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
     for line in folded([f"caution: {'; '.join(doubted)}"] if doubted else []):
@@ -121,25 +107,35 @@ def folded(lines: Sequence[str]) -> list[str]:
     return [part for line in lines for part in folding.wrap(line)]
 
 
-def _fitting(result: Result, width: int) -> list[str]:
-    """Lines of the table with as many columns as fit; no number is ever cut."""
-    digits = 4 if width >= _WIDE else 3
-    for dropped in range(len(_DROPPED) + 1):
+def fitting(tables: Iterable[Table]) -> list[str]:
+    """Lines of the first table that fits the terminal, or else of the last; no number is ever cut."""
+    width, lines = console().width, list[str]()
+    for table in tables:
         page = Console(file=StringIO(), width=_UNBOUNDED, highlight=False, markup=False, color_system=None)
-        left_out = [name for names in _DROPPED[:dropped] for name in names]
         with page.capture() as captured:
-            page.print(_table(result, digits, left_out))
+            page.print(table)
         lines = [line.rstrip() for line in captured.get().splitlines()]
         if max(map(len, lines)) <= width:
             break
     return lines
 
 
+def plain_table() -> Table:
+    """A table without columns, ruled below its heading alone."""
+    return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+
+
+def _tables(result: Result) -> Iterator[Table]:
+    """The list with fewer and fewer columns."""
+    digits = 4 if console().width >= _WIDE else 3
+    for dropped in range(len(_DROPPED) + 1):
+        yield _table(result, digits, [name for names in _DROPPED[:dropped] for name in names])
+
+
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
-    """The best design of each family in cells, with what an engineer decides by; angles in deg.
+    """The best design of each family in cells, the best of each region first; angles in deg.
 
     "like this" is how many others the family has. Columns that are alike for all of them are left out.
-    Where there are regions the best design of each comes first.
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families
     place = {id(each): number for number, each in enumerate(result.candidates)}
@@ -172,8 +168,6 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
 def first_of_regions(regions: Sequence[int]) -> list[int]:
     """Places of the first of each region, in a list of regions, 0 for none; empty for a single region.
 
-    Examples
-    --------
     >>> first_of_regions([1, 1, 0, 3, 2, 3]), first_of_regions([1, 1, 0])
     ([0, 3, 4], [])
     """
@@ -202,7 +196,7 @@ def _decided_by(problem: Problem) -> list[Quantity]:
 
 def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     rows, counted_in = best_rows(result, digits), units(result.problem)
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
+    table = plain_table()
     names = [name for name in rows[0] if name not in (*left_out, CAUTION)]  # that is told below the table
     for name in names:
         title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name

@@ -23,24 +23,10 @@ _LENGTH_DIGITS, _ANGLE_DECIMALS = 5, 2
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A quantity of the designs on a page.
+    """A quantity of the designs on a page, by its name in candidates.csv.
 
-    Parameters
-    ----------
-    key : str
-        Its name in candidates.csv.
-    label : str
-    unit : str
-    decimals : int
-        Of its numbers, -1 for powers of ten.
-    noise : float
-        Size up to which an error is rounding.
-    better : int
-        +1 where more is better, -1 where less is, 0 for neither.
-    about : str
-        What it is, where its label does not show it.
-    listed : bool
-        Whether the table has it; the others are axes that designs may be compared by.
+    Its numbers have so many decimals, -1 for powers of ten; an error up to `noise` is rounding; more is
+    `better` for +1, less for -1, neither for 0. `about` adds to the label; an unlisted one is an axis alone.
     """
 
     key: str
@@ -104,21 +90,10 @@ def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A column of candidates.csv as a list of all values has it.
+    """A column of candidates.csv in words, as a list of all values has it.
 
-    Parameters
-    ----------
-    key : str
-        Its name in candidates.csv.
-    name : str
-        The same in words.
-    unit : str
-    about : str
-        What it is, where its name does not show it.
-    decimals : int, optional
-        Of its numbers; None where they have so many significant digits, or are words.
-    noise : float
-        Size up to which an error is rounding.
+    Its numbers have so many decimals, or without any so many significant digits, or are words; an error up to
+    `noise` is rounding.
     """
 
     key: str

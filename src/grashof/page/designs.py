@@ -20,7 +20,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
-from grashof.page.render import compact
+from grashof.page.render import compact, plain
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -36,14 +36,9 @@ _ROUNDING = 1e-12  # of a turn
 
 
 class Travel(NamedTuple):
-    """How far a driver goes.
+    """How far a driver goes: a whole turn, or a range between dead positions, rad.
 
-    Parameters
-    ----------
-    low, high : float, rad
-        Ends of a whole turn, or of a range between dead positions; NaN where nothing can be assembled.
-    turns : bool
-        Whether the driver turns fully.
+    The ends are NaN where nothing can be assembled.
     """
 
     low: float
@@ -61,26 +56,9 @@ class Travel(NamedTuple):
 
 
 def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
-    """Travel of the driver that holds its angles at the targets.
+    """Turn from 0, or range between dead positions, of a single linkage, that the first target lies in.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2 : ndarray, shape (N,), rad
-        Driver angles at the targets, unwrapped along the motion.
-
-    Returns
-    -------
-    Travel
-        The turn from 0, or the range between dead positions that the first target lies in.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> crank = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    >>> np.degrees(driver_travel(crank, np.radians([370.0, 500.0]))[:2]).round(9).tolist()
-    [0.0, 360.0]
+    The driver angles at the targets (N,), rad, are unwrapped along the motion.
     """
     if full_rotation(linkage):
         return Travel(0.0, TURN, True)
@@ -92,8 +70,6 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
 def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
     """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
-    Examples
-    --------
     >>> from grashof.problems import SliderCrank
     >>> legend([SliderCrank.mechanism])
     [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
@@ -112,16 +88,7 @@ def linkage_data(linkage: Linkage) -> dict[str, Any]:
 
 
 def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Designs as JSON, their values in full precision.
-
-    Parameters
-    ----------
-    problem : Problem
-    designs : sequence of Candidate
-        Linkages that can be assembled.
-    rows : sequence of dict
-        Theirs, as `rows_of` makes them.
-    """
+    """Designs that can be assembled as JSON in full precision; the rows are those of `rows_of`."""
     linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
     travels = [
         driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
@@ -141,7 +108,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             "torque": torque,
             **_cylinder(design),
             **_function(problem, linkage, design),
-            "figures": {key: _plain(value) for key, value in figures.items()},
+            "figures": {key: plain(value) for key, value in figures.items()},
         }
         for design, linkage, travel, torque, figures in zip(
             designs, linkages, travels, torques, rows, strict=True
@@ -230,12 +197,3 @@ def _angles_of_motion(travel: Travel, verdict: Verdict) -> FloatArray:
     angles = travel.angles(INSET) + travel.ahead(verdict.theta2[0])
     least = float(verdict.theta2.min())
     return angles + TURN * np.ceil((least - angles) / TURN - _ROUNDING) if travel.turns else angles
-
-
-def _plain(value: Any) -> float | int | str | bool | None:
-    """A number as JSON knows it; null where it is not finite."""
-    if isinstance(value, str | bool | np.bool_):
-        return value if isinstance(value, str) else bool(value)
-    if value is None or not np.isfinite(value):
-        return None
-    return int(value) if isinstance(value, int | np.integer) else float(value)

@@ -18,19 +18,8 @@ Panel = tuple[str, str, str, Mapping[str, str]]
 
 
 def motion_sections(report: LinkageReport) -> list[Section]:
-    """Every column of the tables of motion and forces, in plots over the driver angle.
+    """Sections of plots alone, of every column of motion and forces over the driver angle that there is.
 
-    Parameters
-    ----------
-    report : LinkageReport
-
-    Returns
-    -------
-    list of Section
-        With plots alone; those that the report has no data for are left out.
-
-    Examples
-    --------
     >>> from grashof.problems import load_linkage_spec
     >>> from grashof.survey import report_on
     >>> for section in motion_sections(report_on(load_linkage_spec("lufkin-c912d"))):

@@ -21,16 +21,7 @@ _PLACES = 7  # digits: steps of a long history have to stay even
 
 
 class Columns:
-    """Columns of numbers, each kept once.
-
-    Examples
-    --------
-    >>> columns = Columns()
-    >>> [columns.add(np.array(values)) for values in ([1, np.nan], [2], [1, np.nan])]
-    [0, 1, 0]
-    >>> columns.found
-    [[1.0, None], [2.0]]
-    """
+    """Columns of numbers, each kept once."""
 
     def __init__(self) -> None:
         self.found: list[list[float | None]] = []
@@ -59,14 +50,7 @@ def _plain(values: FloatArray, digits: int) -> tuple[FloatArray, int]:
 
 
 def plot_data(plot: Plot, columns: Columns) -> dict[str, Any]:
-    """A plot as the scripts draw and save it.
-
-    Parameters
-    ----------
-    plot : Plot
-    columns : Columns
-        Where its values go; the plot has their numbers.
-    """
+    """A plot as the scripts draw and save it, with the numbers of its values, which go to `columns`."""
     shown: dict[str, Any] = {"key": plot.key, "title": plot.title, "unit": plot.unit, **_bounds(plot)}
     rows = _rows(plot)
     if plot.places is None:
@@ -94,8 +78,6 @@ def plot_data(plot: Plot, columns: Columns) -> dict[str, Any]:
 def is_thinned(plot: Plot) -> bool:
     """Whether the page has only some of the rows of a plot.
 
-    Examples
-    --------
     >>> time = np.linspace(0, 9, 2001)
     >>> is_thinned(Plot("swing", "swing", "deg", {"theta2": np.sin(time)}, time, "time (s)"))
     True

@@ -8,6 +8,7 @@ from functools import cache
 from importlib import resources
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 # Scripts of every page that has a moving drawing, in order.
@@ -18,18 +19,9 @@ DRAWING = (
 
 
 def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
-    """A page that needs no other file and no network.
+    """A page that needs no other file and no network; its template escapes `shown`.
 
-    Parameters
-    ----------
-    template : str
-        Name of its template.
-    scripts : sequence of str
-        Names of its scripts, in order.
-    data : mapping
-        For the scripts, as JSON: no NaN.
-    **shown
-        For the template, which escapes it.
+    The scripts, by name and in order, have the data as JSON: no NaN.
     """
     return (
         _environment()
@@ -56,6 +48,13 @@ def page_of(template: str, **shown: Any) -> str:
 def compact(values: Iterable[float], digits: int = 5) -> list[float | None]:
     """Samples of a curve as short JSON: so many significant digits, null where there is no finite value."""
     return [float(f"{value:.{digits}g}") if math.isfinite(value) else None for value in values]
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON knows it; null where it is not finite."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @cache

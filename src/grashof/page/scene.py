@@ -8,10 +8,9 @@ import numpy as np
 
 from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
-from grashof.page.render import compact
+from grashof.page.render import compact, plain
 from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
-from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result
 
 _SAMPLES = 181
@@ -30,8 +29,8 @@ def scene_of(problem: Problem) -> dict[str, Any]:
         "regions": [
             {
                 "name": ", ".join(name.upper() for name, other in boxes.items() if other == box),
-                "x": _given(np.array(box.x)),
-                "y": _given(np.array(box.y)),
+                "x": list(map(plain, np.array(box.x, dtype=float))),
+                "y": list(map(plain, np.array(box.y, dtype=float))),
             }
             for box in dict.fromkeys(boxes.values())
         ],
@@ -63,12 +62,8 @@ def _targets(task: Task) -> dict[str, Any]:
         return {"points": task.positions.tolist(), "closed": task.closed}
     poses = np.column_stack([task.positions, task.angles])
     body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
-    targets = {"poses": [_given(pose) for pose in poses], "body": body, "closed": task.closed}
+    targets = {"poses": [list(map(plain, pose)) for pose in poses], "body": body, "closed": task.closed}
     return targets | {"bare": True} if task.has_output.any() else targets
-
-
-def _given(numbers: FloatArray) -> list[float | None]:
-    return [float(number) if np.isfinite(number) else None for number in numbers]
 
 
 def _published(problem: Problem) -> dict[str, Any] | None:

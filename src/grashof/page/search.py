@@ -99,17 +99,9 @@ def search_page(
 def search_data(
     problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row], *, found: bool
 ) -> dict[str, Any]:
-    """What the scripts have of a search: the scene, its designs, and what is told of them.
+    """What the scripts have of a search: the scene, designs that can be assembled, and what is told of them.
 
-    Parameters
-    ----------
-    problem : Problem
-    designs : sequence of Candidate
-        Linkages that can be assembled.
-    rows : sequence of dict
-        Theirs, as `rows_of` makes them.
-    found : bool
-        They are designs, not closest misses.
+    The rows are those of `rows_of`; designs that are not `found` are closest misses.
     """
     axes = columns_of(problem, rows) if designs else []
     return {

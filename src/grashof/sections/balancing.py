@@ -20,8 +20,8 @@ from grashof.analysis import (
 )
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.kinds import output_turns, plain
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import turn_means, turn_peaks

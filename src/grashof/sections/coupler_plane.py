@@ -8,7 +8,7 @@ import pandas as pd
 from grashof.analysis import Kinematics, centrodes, coupler_circles, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table, track
+from grashof.study.samples import Columns, components, curves, over_driver, table, track
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -31,7 +31,7 @@ def coupler_plane(study: LinkageStudy) -> Section:
     # The B of an inverted slider-crank moves along its rod.
     frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
-    circles, diameter = _circles(study, _angles(study)), {"diameter": "inflection_diameter"}
+    circles, diameter = _circles(study, study.chosen), {"diameter": "inflection_diameter"}
     named = {name: place[None] for name, place in frame.items()}
     of_fixed, of_moving = (
         "fixed centrode: I13 in the frame",
@@ -65,19 +65,11 @@ def _in_coupler(linkage: Linkage, name: str) -> FloatArray:
     return np.asarray(getattr(linkage, "coupler_point" if name == "p" else name))
 
 
-def _angles(study: LinkageStudy) -> FloatArray:
-    """The driver angles asked for; by default one. In rad."""
-    if study.asked.at_deg:
-        return study.in_range(study.asked.at_deg, "at_deg")
-    low, high = study.sweep.ranges[0]
-    return np.array([low if study.sweep.turns else (low + high) / 2])
-
-
 def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
     found = coupler_circles(study.linkage, angles)
     columns = {"theta2_deg": np.degrees(angles).round(9)}
     for name in ("pole", "inflection", "bresse", "acceleration_pole"):
-        columns |= {f"{name}_{axis}": getattr(found, name)[:, index] for index, axis in enumerate("xy")}
+        columns |= components(name, getattr(found, name))
         if name in ("inflection", "bresse"):
             columns[f"{name}_diameter"] = getattr(found, f"{name}_diameter")
     return pd.DataFrame(columns).replace([np.inf, -np.inf], np.nan)

@@ -13,7 +13,7 @@ from grashof.analysis.judge.driven import cylinder_force_peak, cylinder_forces, 
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, table
+from grashof.study.samples import Columns, curves, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 

@@ -12,9 +12,8 @@ import pandas as pd
 from grashof.analysis import Kinematics, central_differences
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.sections.mass_centres import centre_labels, centres_of
-from grashof.study.history import History
 from grashof.study.kinds import turning
-from grashof.study.samples import Samples
+from grashof.study.samples import History, Samples
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 
@@ -26,17 +25,9 @@ _ANGULAR, _LINEAR = (("omega", "rad/s"), ("alpha", "rad/s²")), (("velocity", "/
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rate:
-    """A rate at the samples: exact, and by central differences.
+    """The first or second derivative of positions, exact and by differences of each order, (N,) or (N, 2).
 
-    Parameters
-    ----------
-    key, label, unit : str
-    derivative : int
-        Of the positions that are differentiated: 1 or 2.
-    exact : ndarray, shape (N,) or (N, 2)
-        The ranges of the driver apart by NaN.
-    by_order : mapping of int to ndarray
-        Of the same shape, by the order of the formula; NaN without neighbours on both sides.
+    NaN divides the ranges of the driver, and stands where a difference lacks neighbours on both sides.
     """
 
     key: str

@@ -10,8 +10,8 @@ from grashof.analysis import Dwell, Kinematics, dwell
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
-from grashof.study.columns import curves, over_driver
 from grashof.study.quantities import counted_on, counted_with
+from grashof.study.samples import curves, over_driver
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
@@ -23,8 +23,7 @@ def dwell_section(study: LinkageStudy) -> Section | None:
         return None
     band = np.radians(number_within(study.asked.dwell_deg, 1e-6, 360.0, "dwell_deg"))
     found = [_rest(study, band, low, high) for low, high in study.sweep.ranges]
-    output = _output(study)
-    theta, key = f"theta{output}", f"theta{output}_deg"
+    theta, key = f"theta{study.output}", f"theta{study.output}_deg"
     columns = over_driver(study, lambda state: {key: counted_on(np.degrees(getattr(state, theta)), 360.0)})
     swing = float(np.nanmin(columns[key])), float(np.nanmax(columns[key]))
     numbered = enumerate(found, start=1)
@@ -36,21 +35,14 @@ def dwell_section(study: LinkageStudy) -> Section | None:
         dwelling |= (at - start) % 360 <= end - start if study.sweep.turns else (at >= start) & (at <= end)
     columns["dwelling"] = np.where(dwelling, columns[key], np.nan)
     labels = {theta: key, "dwell": "dwelling"}
-    title = f"dwell of link {output} within {study.asked.dwell_deg:g} deg"
+    title = f"dwell of link {study.output} within {study.asked.dwell_deg:g} deg"
     plot = curves(columns, "dwell", title, "deg", labels)
     return Section("dwell", "Dwell", facts, {}, (plot,))
 
 
-def _output(study: LinkageStudy) -> int:
-    """Number of the output link."""
-    return study.linkage.mechanism.links[-1].number
-
-
 def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
-    output = _output(study)
-
     def theta(state: Kinematics) -> FloatArray:
-        return state.angular(output).theta
+        return state.angular(study.output).theta
 
     if study.sweep.turns:
         return dwell(study.linkage, theta, band, period=TURN)
@@ -63,7 +55,7 @@ def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
 def _facts(study: LinkageStudy, rest: Dwell, number: int, swing: tuple[float, float]) -> Iterator[Fact]:
     many = len(study.sweep.ranges) > 1
     mark, where = (f"_{number}", f", range {number}") if many else ("", "")
-    theta = f"theta{_output(study)}"
+    theta = f"theta{study.output}"
     what = f"dwell of {theta} within {study.asked.dwell_deg:g} deg{where}"
     yield Fact(f"dwell{mark}_deg", f"{what}: turn of the driver", float(np.degrees(rest.duration)), "deg")
     for name, angle in (("from", rest.start), ("to", rest.end)):

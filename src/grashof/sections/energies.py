@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import Kinematics, Loads, Masses, energies, powers, solve_kinematics
 from grashof.analysis.mechanism.means import mean_in_time
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes, varies

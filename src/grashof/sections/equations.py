@@ -22,7 +22,7 @@ def equations(study: LinkageStudy) -> Section | None:
         return Section(
             KEY, title, notes=("the file states neither masses nor loads, so there are no forces",)
         )
-    theta2 = _driver_angles(study)
+    theta2 = study.chosen
     state = study.sweep.state(theta2)
     system = system_of_equations(state, masses, study.loads)
     in_order = inverse_dynamics(state, masses, study.loads)
@@ -37,22 +37,10 @@ def equations(study: LinkageStudy) -> Section | None:
     return Section(KEY, title, (fact,), tables, notes=(note,))
 
 
-def _driver_angles(study: LinkageStudy) -> FloatArray:
-    if study.asked.at_deg:
-        return study.in_range(study.asked.at_deg, "at_deg")
-    low, high = study.sweep.ranges[0]
-    return np.array([low if study.sweep.turns else (low + high) / 2])
-
-
 def equation_table(theta2_deg: FloatArray, system: SystemOfEquations, metre: float = 1.0) -> pd.DataFrame:
-    """Three rows for each moving link and driver angle: an equation each, and beside it one of the unknowns.
+    """Three rows for each moving link and driver angle (N,): an equation each, and one of the unknowns.
 
-    Parameters
-    ----------
-    theta2_deg : ndarray, shape (N,), deg
-    system : SystemOfEquations, shape (N, ...)
-    metre : float
-        The length unit in metres: arms are given in metres, forces in N.
+    Arms are given in m, a length unit being `metre`, and forces in N.
     """
     count, rows = len(theta2_deg), len(system.equations)
     moment = np.arange(rows) % 3 == 2

@@ -12,6 +12,7 @@ from grashof.analysis.curves.path_fits import OF_THETA2, Y_OF_X, FittedPath, Pat
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.sections.mass_centres import centre_labels, centres_of
+from grashof.study.samples import components
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
@@ -39,13 +40,7 @@ def fits(study: LinkageStudy) -> Section | None:
 
 
 def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
-    """First and last driver angle of what is fitted, rad, and what that is.
-
-    Raises
-    ------
-    ProblemError
-        The driver does not get from the one to the other that is asked for.
-    """
+    """First and last driver angle of what is fitted, rad, and what that is; ProblemError if out of reach."""
     asked, problem = study.asked, study.spec.problem
     if asked.fit_from_deg is not None and asked.fit_to_deg is not None:
         start, end = _asked_for(study, asked.fit_from_deg, asked.fit_to_deg)
@@ -91,11 +86,9 @@ def _paths(study: LinkageStudy, start: float, end: float) -> Iterator[FittedPath
 
 def _points(paths: list[FittedPath]) -> pd.DataFrame:
     theta2 = paths[0].theta2
-    columns: dict[str, FloatArray] = {
-        "theta2_deg": np.degrees(theta2),
-    }
+    columns: dict[str, FloatArray] = {"theta2_deg": np.degrees(theta2)}
     for path in paths:
-        columns |= {f"{path.key}_{axis}": path.points[:, index] for index, axis in enumerate("xy")}
+        columns |= components(path.key, path.points)
     table = pd.DataFrame(columns)
     table.insert(0, "point", range(1, len(theta2) + 1))
     return table

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis import Kinematics
-from grashof.study.columns import Columns, curves, over_driver, table, tracks
+from grashof.study.samples import Columns, curves, over_driver, table, tracks
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes, varies

@@ -8,9 +8,8 @@ import pandas as pd
 from grashof.analysis import Kinematics, PointMotion, system_centre
 from grashof.analysis.forces.bars import bars_of
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.history import History
 from grashof.study.kinds import halfway
-from grashof.study.samples import Samples
+from grashof.study.samples import History, Samples
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.analysis import Kinematics, advantage, holding, output_stroke
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes
@@ -18,7 +18,7 @@ _STANDS = 1e-9  # |omega4 / omega2| at which the output stands
 
 def mechanical_advantage(study: LinkageStudy) -> Section:
     """Velocity ratio, mechanical advantage and force ratio; with weights or loads what holds them."""
-    columns, n = over_driver(study, lambda state: _ratios(study, state)), _output(study)
+    columns, n = over_driver(study, lambda state: _ratios(study, state)), study.output
     plots = [
         curves(columns, "velocity-ratio", f"velocity ratio ω{n} / ω2", "", {"ratio": "velocity_ratio"}),
         curves(columns, "torque-ratio", f"mechanical advantage T{n} / T2", "", {"ratio": "torque_ratio"}),
@@ -31,11 +31,6 @@ def mechanical_advantage(study: LinkageStudy) -> Section:
     facts = tuple(_facts(study))
     key, title = "mechanical-advantage", "Mechanical advantage"
     return Section(key, title, facts, {key: table(columns)}, tuple(plots), tuple(notes))
-
-
-def _output(study: LinkageStudy) -> int:
-    """Number of the output link."""
-    return study.linkage.mechanism.links[-1].number
 
 
 def _ratios(study: LinkageStudy, state: Kinematics) -> Columns:
@@ -53,7 +48,7 @@ def _ratios(study: LinkageStudy, state: Kinematics) -> Columns:
     metre, sense = study.metre, -1.0 if study.sweep.speed_rpm < 0 else 1.0
     return columns | {
         "holding_torque": held.torque * metre**2,
-        f"holding_moment_on_{_output(study)}": held.moment * metre**2,
+        f"holding_moment_on_{study.output}": held.moment * metre**2,
         "holding_force_at_p": sense * held.force * metre,
         "holding_force": held.force[:, None] * held.direction * metre,
     }
@@ -68,7 +63,7 @@ def _holding_plots(columns: Columns, n: int) -> Iterator[Plot]:
 
 
 def _facts(study: LinkageStudy) -> Iterator[Fact]:
-    linkage, n = study.linkage, _output(study)
+    linkage, n = study.linkage, study.output
     if study.sweep.turns:
         found = turn_extremes(study, lambda state: advantage(linkage, state.theta2).velocity_ratio)
         for name, ratio, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):

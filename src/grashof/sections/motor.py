@@ -9,7 +9,7 @@ import numpy as np
 from grashof.analysis import Kinematics, Loads, Masses, generalised_inertia, inverse_dynamics, motor_torque
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.study.columns import Columns, curves, line, over_driver, table
+from grashof.study.samples import Columns, curves, line, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_means, turn_peaks
@@ -25,26 +25,14 @@ def motor(study: LinkageStudy) -> Section | None:
         return None
     spec = given.motor
     columns = over_driver(study, lambda state: _columns(state, masses, loads, spec, study.metre**2))
-    over_speed = Plot(
-        "motor-torque-speed",
-        "torque of the motor against its speed",
-        "N m",
-        {"torque": line(columns["motor_torque"])},
-        columns["motor_rpm"],
-        _SPEED,
-        angles=columns["theta2_deg"],
-    )
+    places, angles = columns["motor_rpm"], columns["theta2_deg"]
+    torque, title = {"torque": line(columns["motor_torque"])}, "torque of the motor against its speed"
+    inertia = {"inertia": "inertia_kg_m2"}
     plots = (
-        over_speed,
+        Plot("motor-torque-speed", title, "N m", torque, places, _SPEED, angles=angles),
         curves(columns, "motor-torque", "torque of the motor", "N m", {"torque": "motor_torque"}),
         curves(columns, "motor-power", "power of the motor", "W", {"power": "motor_power"}),
-        curves(
-            columns,
-            "motor-inertia",
-            "inertia of the linkage at the motor",
-            "kg m²",
-            {"inertia": "inertia_kg_m2"},
-        ),
+        curves(columns, "motor-inertia", "inertia of the linkage at the motor", "kg m²", inertia),
     )
     facts = tuple(_facts(study, masses, loads, spec)) if study.sweep.turns else ()
     notes = (

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.history import TIME, History
 from grashof.study.kinds import turning
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
-from grashof.study.samples import Samples
+from grashof.study.samples import TIME, History, Samples
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -70,21 +69,10 @@ def _notes(study: LinkageStudy, history: History) -> tuple[str, ...]:
 
 
 def sawtooth(time: FloatArray, angle_deg: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """A growing or falling angle as it is drawn from 0 to 360 deg, up to the very edge at each turn.
+    """A growing or falling angle (N,) in deg over s, drawn from 0 to 360, up to the very edge at each turn.
 
-    Parameters
-    ----------
-    time : ndarray, shape (N,), s
-    angle_deg : ndarray, shape (N,), deg
+    There it has three places more: the edge, NaN, the other edge; steps of a turn or more just have a gap.
 
-    Returns
-    -------
-    time, angle_deg : ndarray, shape (M,)
-        With three places more at each end of a turn: the edge, NaN, the other edge. Steps of a turn or more
-        just have a gap.
-
-    Examples
-    --------
     >>> time, angle = sawtooth(np.array([0.0, 1.0, 2.0]), np.array([180.0, 300.0, 420.0]))
     >>> time.tolist(), angle.tolist()
     ([0.0, 1.0, 1.5, 1.5, 1.5, 2.0], [180.0, 300.0, 360.0, nan, 0.0, 60.0])

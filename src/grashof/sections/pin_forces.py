@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.analysis import Dynamics, Kinematics, inverse_dynamics
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, over_driver, table, tracks
+from grashof.study.samples import Columns, over_driver, table, tracks
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 

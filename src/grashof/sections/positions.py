@@ -12,6 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import LOOP_POINTS, Mechanism
 from grashof.sections.mass_centres import centres_of
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.samples import components
 from grashof.study.section import Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -38,7 +39,7 @@ def position_table(study: LinkageStudy, state: Kinematics) -> pd.DataFrame:
         if each.period is not None:  # chosen angles are no sequence to count on along
             columns[each.key] = (columns[each.key] + 180) % 360 - 180
     for name, motion in centres_of(study, state).items():
-        columns |= {f"{name}_{axis}": motion.position[:, index] for index, axis in enumerate("xy")}
+        columns |= components(name, motion.position)
     return pd.DataFrame(columns)
 
 

@@ -26,7 +26,7 @@ from grashof.analysis.numerics.quadrature import integrate
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
-from grashof.study.columns import line
+from grashof.study.samples import line
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 

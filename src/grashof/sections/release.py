@@ -11,11 +11,11 @@ from grashof.analysis import Energies, FreeResponse, Masses, energies, free_resp
 from grashof.problems import AssemblyError, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN
 from grashof.problems.values.checks import number_within
+from grashof.study.samples import TIME
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
 SECONDS = 5.0
-_TIME = "time (s)"
 _ROWS = (200, 2000)  # fewest and most steps of the table
 _PER_SECOND = 100
 _LONGEST = 3600.0  # s
@@ -56,7 +56,7 @@ def release(study: LinkageStudy) -> Section | None:
 
     def plot(key: str, title: str, unit: str, **columns: str) -> Plot:
         lines = {label: table[column].to_numpy() for label, column in columns.items()}
-        return Plot(key, title, unit, lines, found.time, _TIME, angles=theta2)
+        return Plot(key, title, unit, lines, found.time, TIME, angles=theta2)
 
     plots = (
         plot("release-angle", "driver angle after the release", "deg", theta2="theta2_deg"),

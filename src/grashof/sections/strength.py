@@ -19,7 +19,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.forces.joints import joints_of
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import Columns, curves, over_driver, table
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 

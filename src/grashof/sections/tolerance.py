@@ -10,8 +10,8 @@ from grashof.analysis import Kinematics, made_moves
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, number_within, positive_number
-from grashof.study.columns import Columns, curves, over_driver, table
 from grashof.study.kinds import output_turns
+from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
@@ -28,7 +28,7 @@ def tolerance(study: LinkageStudy) -> Section | None:
     unit = study.spec.unit
     columns = over_driver(study, lambda state: _columns(state, off))
     each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
-    output = study.linkage.mechanism.links[-1].number
+    output = study.output
     turns = {dimension: f"theta{output}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
     whole = {"worst": "p_worst", "root of squares": "p_rms"}
     turned = {"worst": f"theta{output}_worst_deg", "root of squares": f"theta{output}_rms_deg"}
@@ -83,8 +83,7 @@ def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
     values, places = turn_peaks(study, rows)
     what = [("p", "P", study.spec.unit, 1.0)]
     if output_turns(study.linkage.mechanism):
-        output = study.linkage.mechanism.links[-1].number
-        what.append((f"theta{output}", f"link {output}", "deg", 180 / np.pi))
+        what.append((f"theta{study.output}", f"link {study.output}", "deg", 180 / np.pi))
     for k, (key, part, unit, scale) in enumerate(what):
         for j, (name, how) in enumerate(_ALL.items()):
             label = f"largest {'move' if key == 'p' else 'turn'} of {part}, all off: {how}"

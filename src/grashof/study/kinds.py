@@ -26,8 +26,6 @@ LIMIT_POSITIONS = {
 def forces_of(kind: Mechanism) -> dict[str, str]:
     """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in, slides last.
 
-    Examples
-    --------
     >>> from grashof.problems import FourBar, SliderCrank
     >>> forces_of(FourBar.mechanism)
     {'f12': 'O2', 'f32': 'A', 'f43': 'B', 'f14': 'O4'}

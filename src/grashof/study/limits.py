@@ -14,28 +14,11 @@ _NOISE = 1e-6  # times what only one value in twenty exceeds: rounding
 
 
 def greatest_drawn(plot: Plot) -> float:
-    """Size up to which values are drawn, infinite where nothing grows without bound.
+    """Size up to which a plot draws values, of tracks the distance from `middle`; inf where all are drawn.
 
     Towards a dead position a rate grows without bound, at a toggle position of the output the mechanical
     advantage, towards parallel links the instant centre goes to infinity. What just has a peak, however high,
     is drawn whole: it is smooth, and the values beside it are nearly as large.
-
-    Parameters
-    ----------
-    plot : Plot
-
-    Returns
-    -------
-    float
-        Of values in the unit of the plot; of tracks, the distance from `middle`.
-
-    Examples
-    --------
-    >>> angle = np.arange(0.5, 361)
-    >>> round(greatest_drawn(Plot("a", "a", "", {"tan": np.tan(np.radians(angle))}, angle)))
-    12
-    >>> greatest_drawn(Plot("b", "b", "", {"sin": np.sin(np.radians(angle))}, angle))
-    inf
     """
     if plot.bounded or plot.unit == "deg":
         return np.inf  # angles stay finite
@@ -61,18 +44,7 @@ def middle(plot: Plot) -> FloatArray:
 
 
 def broken_beyond(values: FloatArray, most: float) -> FloatArray:
-    """Values of which every second is NaN where they jump through infinity, so that no line joins the two.
-
-    Parameters
-    ----------
-    values : ndarray, shape (N,)
-    most : float
-        Size beyond which no value is drawn.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-    """
+    """Values (N,), every second NaN where they jump through infinity beyond `most`: no line joins the two."""
     over = np.where(values > most, 1, np.where(values < -most, -1, 0))
     jumps = np.flatnonzero(over[:-1] * over[1:] < 0)
     broken = values.copy()

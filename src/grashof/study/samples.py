@@ -1,37 +1,63 @@
-"""Where the curves of a section are sampled: over the driver angle, or over time."""
+"""The samples of a section's curves, over the driver angle or over time, and tables and plots of them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import Kinematics
-from grashof.problems.values.arrays import FloatArray
-from grashof.study.columns import line, table
-from grashof.study.history import TIME, History
+from grashof.analysis import Kinematics, solve_kinematics
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.section import DRIVER_ANGLE, Plot
 from grashof.study.study import LinkageStudy
+
+Columns = Mapping[str, FloatArray]
+TIME = "time (s)"
+_LATE = 1e-12  # share of the motion
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class History:
+    """The motion over time (N,), s, in equal steps; `total` is the driver angle counted on, rad.
+
+    In `state` (N,) that angle is in its first turn, as loads are stated. It is not `whole` where a driver
+    that does not turn fully stops at a dead position.
+    """
+
+    time: FloatArray
+    total: FloatArray
+    state: Kinematics
+    whole: bool
+
+    @classmethod
+    def of(cls, study: LinkageStudy) -> History | None:
+        """The history that is asked for, if any; ProblemError where it would begin with the linkage open."""
+        wanted = time = study.asked.times
+        if wanted is None or time is None:
+            return None
+        if not study.sweep.turns:
+            law, gone = study.way
+            time = time[gone + time <= law.duration * (1 + _LATE)]
+        motion = study.driver(time)
+        angle = motion.theta2 % TURN if study.sweep.turns else motion.theta2
+        state = solve_kinematics(study.linkage, *motion._replace(theta2=angle))
+        return cls(time, motion.theta2, state, len(time) == len(wanted))
+
+    @property
+    def theta2_deg(self) -> FloatArray:
+        """Driver angle from 0 to 360 deg, shape (N,)."""
+        angle: FloatArray = np.asarray(np.round(np.degrees(self.total), 12), dtype=np.float64) % 360
+        return angle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Samples of a motion, with the tables and plots of what varies over it.
+    """Samples of a motion (a state for each range, or a history's), with tables and plots over it.
 
-    Parameters
-    ----------
-    states : tuple of Kinematics
-        One for each range of the driver, or the one of a history.
-    columns : mapping of str to ndarray, shape (N,)
-        What begins each row of a table: time, driver angle. A row of NaN divides two ranges.
-    over : str
-        What curves are drawn over, with its unit.
-    turns : bool
-        The driver turns fully, so that no rate grows without bound.
-    mark, words : str
-        What is added to the keys of plots and tables, and to the titles of plots.
+    A row of NaN divides two ranges in `columns`, which begin each table; with `turns` no rate grows without
+    bound; `mark` is added to the keys of plots and tables, `words` to the titles of plots.
     """
 
     states: tuple[Kinematics, ...]
@@ -85,3 +111,64 @@ class Samples:
     def table(self, columns: Mapping[str, FloatArray]) -> pd.DataFrame:
         """A row for each sample; empty where a value is not finite."""
         return table({**self.columns, **columns})
+
+
+def over_driver(study: LinkageStudy, of: Callable[[Kinematics], Columns]) -> dict[str, FloatArray]:
+    """Columns (N,), and `key_x`, `key_y` of vectors (N, 2), over the driver angles of the tables.
+
+    After "theta2_deg", and "range" where there are two, which a row of NaN divides.
+    """
+    samples = Samples.over_driver(study)
+    joined, parts = dict(samples.columns), [of(state) for state in samples.states]
+    for key in parts[0]:
+        values = study.joined([part[key] for part in parts])
+        joined |= components(key, values) if values.ndim == 2 else {key: values}
+    return joined
+
+
+def components(key: str, vectors: FloatArray) -> dict[str, FloatArray]:
+    """The columns of a vector, shape (N, 2)."""
+    return {f"{key}_{axis}": vectors[:, index] for index, axis in enumerate("xy")}
+
+
+def table(columns: Columns) -> pd.DataFrame:
+    """A row for each driver angle; empty where a value is not finite."""
+    frame = pd.DataFrame(columns).replace([np.inf, -np.inf], np.nan).dropna(subset="theta2_deg")
+    frame["theta2_deg"] = frame["theta2_deg"].round(12)
+    return frame.astype({"range": int}) if "range" in frame else frame
+
+
+def curves(columns: Columns, key: str, title: str, unit: str, labels: Mapping[str, str]) -> Plot:
+    """Plot of some columns over the driver angle; `labels` gives the column of each line."""
+    lines = {label: line(columns[column]) for label, column in labels.items()}
+    return Plot(key, title, unit, lines, columns["theta2_deg"], DRIVER_ANGLE)
+
+
+def tracks(
+    columns: Columns, key: str, title: str, unit: str, labels: Mapping[str, str], axes: str = "xy"
+) -> Plot:
+    """Plot of some vectors as tracks in a plane; `labels` gives the key of each."""
+    series = {label: track(columns, name, axes) for label, name in labels.items()}
+    return Plot(key, title, unit, series, angles=columns["theta2_deg"])
+
+
+def track(columns: Columns, key: str, axes: str = "xy") -> FloatArray:
+    """The track of a vector, shape (N, 2); NaN where it is not finite."""
+    points = np.stack([columns[f"{key}_{axis}"] for axis in axes], axis=-1)
+    return np.where(np.isfinite(points).all(axis=1, keepdims=True), points, np.nan)
+
+
+def line(values: FloatArray) -> FloatArray:
+    """Values of a curve, NaN where it is not finite and where it comes back from the other infinity.
+
+    >>> line(np.array([1.0, np.inf, 2.0, 3.0, -3.0, -1.0, 1.0])).tolist()
+    [1.0, nan, 2.0, nan, -3.0, -1.0, 1.0]
+    """
+    found = np.where(np.isfinite(values), values, np.nan)
+    # Towards zero sizes fall on both sides of a change of sign, towards infinity they grow.
+    sizes = np.abs(found)
+    before, after = np.append(0.0, sizes[:-2]), np.append(sizes[2:], 0.0)
+    with np.errstate(invalid="ignore"):
+        through = (found[:-1] * found[1:] < 0) & (sizes[:-1] > before) & (sizes[1:] > after)
+    found[:-1][through] = np.nan
+    return found

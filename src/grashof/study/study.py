@@ -21,14 +21,7 @@ _TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkageStudy:
-    """A linkage that is analysed; a section of the report is a function of it.
-
-    Parameters
-    ----------
-    sweep : Sweep
-        Its motion.
-    asked : Asked
-    """
+    """A linkage that is analysed; a section of the report is a function of it."""
 
     sweep: Sweep
     asked: Asked = field(default_factory=Asked)
@@ -58,6 +51,11 @@ class LinkageStudy:
         return self.spec.four_bar
 
     @property
+    def output(self) -> int:
+        """Number of the output link."""
+        return self.linkage.mechanism.links[-1].number
+
+    @property
     def masses(self) -> Masses | None:
         """Of the links, kg and the length unit; None where the file states nothing that takes a torque."""
         given = self.spec.dynamics
@@ -85,13 +83,7 @@ class LinkageStudy:
 
     @property
     def start(self) -> float:
-        """Driver angle at time 0, rad, in a range of the driver.
-
-        Raises
-        ------
-        ProblemError
-            The linkage is open at the angle asked for.
-        """
+        """Driver angle at time 0, rad, in its ranges; ProblemError where the linkage is open there."""
         if self.asked.start_deg is not None:
             return float(self.in_range([self.asked.start_deg], "start_deg")[0])
         return 0.0 if self.sweep.turns else self.sweep.laws[0].start
@@ -110,9 +102,9 @@ class LinkageStudy:
         return law, gone if np.isfinite(gone) else 0.0  # at no speed there is no time
 
     def driver(self, time: npt.ArrayLike) -> DriverMotion:
-        """How the driver moves at times from `start` on, shape (N,), s.
+        """How the driver moves at times (N,), s, from `start` on, its angle counted on turn after turn.
 
-        Turn after turn; a driver that does not turn fully stops at a dead position. The angle is counted on.
+        A driver that does not turn fully stops at a dead position.
         """
         law, gone = self.way
         now = gone + np.asarray(time, dtype=np.float64)
@@ -133,18 +125,9 @@ class LinkageStudy:
         return [link_stroke(self.linkage, start=low, end=high) for low, high in ends]
 
     def in_range(self, angles_deg: npt.ArrayLike, name: str) -> FloatArray:
-        """Driver angles, shape (N,), deg, as those of its ranges, rad.
+        """Driver angles (N,), deg, as those of its ranges, rad.
 
-        Parameters
-        ----------
-        angles_deg : array_like, shape (N,), deg
-        name : str
-            What the message calls them.
-
-        Raises
-        ------
-        ProblemError
-            The linkage is open at one of them.
+        ProblemError, which calls them `name`, where the linkage is open at one of them.
         """
         angles = np.radians(np.atleast_1d(np.asarray(angles_deg, dtype=np.float64)))
         if self.sweep.turns:
@@ -158,6 +141,14 @@ class LinkageStudy:
             wrong = np.degrees(angles[np.isnan(found)][0])
             raise ProblemError(f"{name} is {wrong:.6g}; the driver moves {self.reach}")
         return found
+
+    @property
+    def chosen(self) -> FloatArray:
+        """The driver angles asked for, rad, shape (N,); by default one."""
+        if self.asked.at_deg:
+            return self.in_range(self.asked.at_deg, "at_deg")
+        low, high = self.sweep.ranges[0]
+        return np.array([low if self.sweep.turns else (low + high) / 2])
 
     @property
     def reach(self) -> str:

@@ -39,17 +39,9 @@ _FAR = 1 / 90  # of its motion
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """The driver's motion that is analysed.
+    """The driver's motion that is analysed: one whole turn, or the ranges between dead positions, rad.
 
-    Parameters
-    ----------
-    spec : LinkageSpec
-    speed_rpm : float
-        Of the driver.
-    ranges : tuple of pairs of float, rad
-        Of the driver: one whole turn, or those between dead positions.
-    turns : bool
-        Whether the driver turns fully without a dead position.
+    It `turns` where the driver turns fully without a dead position.
     """
 
     spec: LinkageSpec
@@ -61,11 +53,8 @@ class Sweep:
     def of(cls, spec: LinkageSpec, speed_rpm: float | None = None) -> Sweep:
         """All that the driver can do, by default at the speed of the file, or else 1 rad/s.
 
-        Raises
-        ------
-        ProblemError
-            The linkage closes at no driver angle, its C and D are one point, or a speed that is not finite or
-            beyond 1e20.
+        ProblemError where the linkage closes at no driver angle, its C and D are one point, or a speed is not
+        finite or beyond 1e20.
         """
         given = spec.dynamics
         if speed_rpm is None:

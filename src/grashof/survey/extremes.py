@@ -33,9 +33,9 @@ _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
 
 def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
-    """A row for each quantity: least and largest value, and the driver angles of both.
+    """Least and largest value of each quantity, and the driver angles of both: NaN where it is constant.
 
-    The angles are NaN where the quantity is constant; all four of an angle that turns fully.
+    All four are NaN of an angle that turns fully.
     """
     rows, listed = [], [quantity for quantity in quantities if _listed(quantity)]
     for number, ((low, high), law) in enumerate(zip(sweep.ranges, sweep.laws, strict=True), start=1):
@@ -78,10 +78,7 @@ class _Samples:
     def extremes(self, quantity: Quantity, values: FloatArray) -> Extremes | None:
         """Of a quantity with these samples, at driver angles; None of an angle that turns fully.
 
-        Raises
-        ------
-        AssemblyError
-            It has no value somewhere.
+        AssemblyError where it has no value.
         """
         turns, period = self.sweep.turns, quantity.period
         values = counted_on(self.state.theta2, values, period)

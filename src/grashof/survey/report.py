@@ -107,10 +107,7 @@ def _notes(sweep: Sweep) -> tuple[str, ...]:
 
 
 def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
-    """Tracks of the centres of mass of links 2, 3, 4, and of all together, each of shape (N, 2).
-
-    Without masses: of the points halfway between the joints.
-    """
+    """Tracks (N, 2) of the centres of mass of links 2, 3, 4 and all; without masses, of points half way."""
     linkage, masses = report.sweep.spec.linkage, report.masses
     tracks: dict[str, FloatArray] = {}
     with dead_positions_unwarned():

@@ -18,6 +18,7 @@ from grashof.problems.files.on_disk import WRITING, versions, write_whole
 RECORD = SWEEP_RECORD
 TASKS = "tasks"
 _OURS = re.compile(r"[0-9a-f]{32}\.json")
+_SHAPE = {"status", "found", "note", "decides", "designs", "drawing", "seconds"}  # of a result
 
 
 def fingerprint(combinations: Sequence[Any]) -> str:
@@ -28,38 +29,15 @@ def fingerprint(combinations: Sequence[Any]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Checkpoints:
-    """The finished tasks of a sweep in its folder.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the sweep.
-    """
+    """The finished tasks of a sweep in its folder."""
 
     folder: Path
 
     def read(self, study: str, keys: Collection[str], *, resume: bool) -> dict[str, dict[str, Any]]:
-        """What is finished of some tasks; leaves the disk alone.
+        """Results of the finished among the tasks `keys`, by task; leaves the disk alone.
 
-        Parameters
-        ----------
-        study : str
-            Its fingerprint.
-        keys : collection of str
-            Its tasks.
-        resume : bool
-            Whether to go on with what the folder holds.
-
-        Returns
-        -------
-        dict
-            Results by task.
-
-        Raises
-        ------
-        ProblemError
-            The folder holds an unfinished sweep and `resume` is False, or that of another study or of other
-            versions and it is True.
+        ProblemError where the folder holds an unfinished sweep and `resume` is False, or one of another
+        fingerprint `study` or of other versions and it is True.
         """
         record = self._record()
         if not resume:
@@ -99,10 +77,7 @@ class Checkpoints:
         path = self.folder / RECORD
         if not path.is_file():
             return None
-        try:
-            record = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError):
-            record = None
+        record = _content(path)
         kinds = {"complete": bool, "tasks": int, "versions": dict, "study": str}
         if not isinstance(record, dict) or not all(isinstance(record.get(k), t) for k, t in kinds.items()):
             raise ProblemError(f"{path}: is not the record of a sweep; name another folder")
@@ -123,13 +98,9 @@ class Checkpoints:
         return ours
 
     def _result(self, path: Path) -> dict[str, Any]:
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError, RecursionError):
-            content = None
-        result = (
-            content.get("result") if isinstance(content, dict) and content.get("task") == path.stem else None
-        )
+        content = _content(path)
+        ours = isinstance(content, dict) and content.get("task") == path.stem
+        result = content.get("result") if ours else None
         if not isinstance(result, dict) or not result.keys() >= _SHAPE:
             raise ProblemError(
                 f"{path}: is not a finished task of this sweep; remove it to have it solved again"
@@ -154,4 +125,9 @@ class Checkpoints:
         write_whole(path, {"task": key, "result": result})
 
 
-_SHAPE = {"status", "found", "note", "decides", "designs", "drawing", "seconds"}
+def _content(path: Path) -> Any:
+    """What a JSON file states; None where it cannot be read."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None

@@ -18,20 +18,9 @@ from grashof.sweep.study import MOST_COMBINATIONS, Source, Study
 
 @dataclass(frozen=True, slots=True)
 class Combination:
-    """One problem of a sweep.
+    """One problem of a sweep, with its cells of the table and a label that distinguishes it.
 
-    Parameters
-    ----------
-    cells : mapping
-        Values of the varied keys, and what names the source, by column of the table.
-    name : str
-        What the problem is called.
-    label : str
-        What distinguishes it, in words.
-    text : str
-        The problem file; empty where it states no problem.
-    wrong : tuple of str
-        Why it states none, a line each.
+    `text`, the problem file, is empty where it states no problem; `wrong` tells why, a line each.
     """
 
     cells: Mapping[str, Any]
@@ -44,10 +33,7 @@ class Combination:
 def combinations(study: Study) -> tuple[Combination, ...]:
     """Every combination of a study, the last of the varied keys in turn first.
 
-    Raises
-    ------
-    ProblemError
-        What is wrong in every combination alike: then it is the study that is wrong, or the base problem.
+    ProblemError for what is wrong in all alike: then it is the study that is wrong, or the base problem.
     """
     count = len(study.sources) * prod(len(study.vary[keys[0]]) for keys in study.axes)
     if count > MOST_COMBINATIONS:

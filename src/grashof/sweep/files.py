@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import platform
-from collections.abc import Mapping
-from importlib.metadata import version
+from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from grashof.output.folder import SWEEP_PAGE, SWEEP_RECORD, check_writable, own_files, replacing_own_files
-from grashof.output.run_files import write_csv, write_json, write_page
+from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
 from grashof.problems import ProblemError
-from grashof.problems.files.on_disk import versions
+from grashof.problems.files.on_disk import PACKAGES
 from grashof.sweep.result import Sweep
 from grashof.sweep.study import Study
 
@@ -31,20 +29,12 @@ def check_folder(folder: Path | None, study: Study) -> None:
 
 
 def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
-    """The record of a sweep, but for its files.
-
-    Parameters
-    ----------
-    done : Sweep
-    mark : str
-        Fingerprint of the study, by which `Checkpoints` knows it again.
-    complete : bool
-    """
+    """The record of a sweep but for its files; `mark` is the fingerprint of the study in `Checkpoints`."""
     return {
         "study": mark,
         "name": done.study.name,
         "study_toml": done.study.text,
-        "versions": {"python": platform.python_version(), **versions(), "pandas": version("pandas")},
+        "versions": versions_of((*PACKAGES, "pandas")),
         "designs_listed": done.study.designs,
         "complete": complete,
         "combinations": len(done.combinations),
@@ -62,13 +52,7 @@ def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
 
 
 def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
-    """Write all files of a sweep; of one without any result the record alone.
-
-    Returns
-    -------
-    list of str
-        Names of the files, sorted.
-    """
+    """Write all files of a sweep, of one without any result the record alone; their names, sorted."""
     record = record_of(done, mark, complete=done.complete)
     if not done.results:
         before = own_files(folder, SWEEP_RECORD)
@@ -88,7 +72,7 @@ def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
         return _write_record(fresh, record)
 
 
-def _write_record(folder: Path, record: Mapping[str, Any], others: set[str] | None = None) -> list[str]:
-    files = sorted({*(path.name for path in folder.iterdir()), *(others or ()), SWEEP_RECORD})
+def _write_record(folder: Path, record: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
+    files = listed_files(folder, SWEEP_RECORD, others)
     write_json(folder / SWEEP_RECORD, {**record, "files": files})
     return files

@@ -22,8 +22,6 @@ _PLACES = {name for name, limit in LIMITS.items() if limit.kind in (Kind.INSIDE,
 def key_parts(key: str, where: str = "key") -> Parts:
     """A dotted key as names and places in lists, which count from 0.
 
-    Examples
-    --------
     >>> key_parts("motion.poses[1].x")
     ('motion', 'poses', 1, 'x')
     """
@@ -37,15 +35,9 @@ def assigned(document: dict[str, Any], parts: Parts, value: Any) -> dict[str, An
     """A parsed problem file with another value at a key; tables that are missing are made.
 
     Of a place such as ``requirements.o2`` a number for x or y fixes it there. ``x``, ``y`` and ``angle``
-    are entries of poses and points stated as lists, too.
+    are entries of poses and points stated as lists, too. ProblemError where a list on the way has no such
+    entry, or something on the way is not a table.
 
-    Raises
-    ------
-    ProblemError
-        A list on the way has no such entry, or something on the way is not a table.
-
-    Examples
-    --------
     >>> assigned({"requirements": {}}, key_parts("requirements.o2.x"), 2.5)
     {'requirements': {'o2': {'x': [2.5, 2.5]}}}
     >>> assigned({"path": {"points": [[0, 0], [1, 2]]}}, key_parts("path.points[1].y"), 3)
@@ -90,13 +82,7 @@ def _joined(where: str, part: str | int) -> str:
 
 
 def overlap(keys: Sequence[Parts]) -> bool:
-    """Whether one key lies within another one, or is the same.
-
-    Examples
-    --------
-    >>> overlap([("requirements", "o2"), ("requirements", "o2", "x")]), overlap([("a", "b"), ("a", "c")])
-    (True, False)
-    """
+    """Whether one key lies within another one, or is the same."""
     return any(
         one == other[: len(one)] for i, one in enumerate(keys) for j, other in enumerate(keys) if i != j
     )

@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from math import isfinite
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
 from grashof.page.designs import legend
-from grashof.page.render import DRAWING, render
+from grashof.page.render import DRAWING, plain, render
 from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
@@ -45,22 +43,16 @@ class Heading:
 
 
 def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> str:
-    """The page of a sweep as HTML.
-
-    Parameters
-    ----------
-    done : Sweep
-    frame : DataFrame
-        Its table.
-    record : mapping
-        "versions" and counts of the sweep.
-    """
+    """The page of a sweep as HTML, from its table and from the "versions" and counts in its record."""
     best = frame.drop_duplicates("combination")
     shown = best.iloc[:_ROWS]
     columns = _columns(done, shown)
     places = [int(number) - 1 for number in shown["combination"]]
     scenes, of_place = _scenes(done, places)
-    rows = [[_value(row[column.key]) for column in columns] for row in shown.to_dict("records")]
+    rows = [
+        [None if row[column.key] is pd.NA else plain(row[column.key]) for column in columns]
+        for row in shown.to_dict("records")
+    ]
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
     meant, *_ = ONE_LOOP
     kinds = {each["linkage"].get("mechanism", meant) for each in drawn} or {meant}
@@ -161,15 +153,6 @@ def _scenes(done: Sweep, places: Sequence[int]) -> tuple[list[dict[str, Any]], d
             scenes.setdefault(key, scene)
             of_place[place] = numbers.setdefault(key, len(numbers))
     return list(scenes.values()), of_place
-
-
-def _value(value: Any) -> float | int | str | bool | None:
-    """A cell as JSON knows it."""
-    if value is None or value is pd.NA:
-        return None
-    if isinstance(value, np.generic):
-        value = value.item()
-    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _text(value: Any) -> str:

@@ -18,6 +18,7 @@ from grashof.figures.parts import COUPLER, DRIVER, GROUND, KEPT_OUT, OUTPUT
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.sweep.result import Sweep
+from grashof.wording.numbers import with_unit
 
 _WRITTEN = 144  # cells of a grid up to which each has its number
 _ROUNDING = 1e-6  # of a value
@@ -25,16 +26,10 @@ _NAMED = 60  # points up to which each has the number of its combination
 
 
 def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
-    """The trade-off of a sweep.
+    """The trade-off of a sweep, whose table is `frame`.
 
     Over one varied number what decides and the size of the best designs; over two the same as grids; else
     one against the other, with the Pareto-optimal ones joined.
-
-    Parameters
-    ----------
-    done : Sweep
-    frame : DataFrame
-        Its table.
     """
     with rc_context(STYLE):
         best = frame.drop_duplicates("combination")
@@ -71,7 +66,7 @@ def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mappin
     An error that is nothing but rounding decides nothing.
     """
     stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
-    size = {"column": "size", "label": _with_unit("size", stated), "better": -1}
+    size = {"column": "size", "label": _named("size", stated), "better": -1}
     met = (best["error"].fillna(0.0) <= _ROUNDING * best["size"].fillna(1.0)).all()
     columns = {each["column"] for each in stated}
     if len(columns) == 1 and not (met and columns == {"error"}):
@@ -81,10 +76,9 @@ def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mappin
     return {"column": quantity.column, "label": f"{quantity.words} (deg)", "better": 1}, size
 
 
-def _with_unit(label: str, stated: Sequence[Mapping[str, Any]]) -> str:
+def _named(label: str, stated: Sequence[Mapping[str, Any]]) -> str:
     units = {each["length_unit"] for each in stated}
-    unit = units.pop() if len(units) == 1 else ""
-    return f"{label} ({unit})" if unit else label
+    return with_unit(label, units.pop() if len(units) == 1 else "")
 
 
 def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:
@@ -193,13 +187,7 @@ def _front(
 
 
 def not_beaten(costs: FloatArray) -> BoolArray:
-    """Which rows of costs (N, 2) no other row beats; shape (N,).
-
-    Examples
-    --------
-    >>> not_beaten(np.array([[1.0, 3.0], [2.0, 2.0], [2.0, 3.0], [1.0, 3.0]])).tolist()
-    [True, True, False, True]
-    """
+    """Which rows of costs (N, 2) no other row beats; shape (N,)."""
     rows, places = np.unique(costs, axis=0, return_inverse=True)
     least = np.minimum.accumulate(np.append(np.inf, rows[:, 1]))[:-1]  # of the rows before each
     kept: BoolArray = (rows[:, 1] < least)[places.ravel()]

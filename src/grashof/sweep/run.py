@@ -15,6 +15,7 @@ from grashof.problems import ProblemError
 from grashof.problems.values.checks import whole_number
 from grashof.sweep.checkpoints import Checkpoints, fingerprint
 from grashof.sweep.combinations import Combination, combinations
+from grashof.sweep.files import check_folder, record_of, write_sweep
 from grashof.sweep.result import Step, Sweep
 from grashof.sweep.solving import solved
 from grashof.sweep.study import Study, load_study
@@ -75,7 +76,8 @@ def sweep(
     made = combinations(stated)
     options = Options(stated.designs, stated.time_limit)
     keys = tuple(task_key(one.name, one.text, options) if one.text else "" for one in made)
-    kept, finished = _opened(stated, made, keys, out, resume)
+    mark = fingerprint([[dict(one.cells), key] for one, key in zip(made, keys, strict=True)])
+    kept, finished = _opened(stated, made, keys, mark, out, resume)
     results = _of_combinations(made, keys, finished)
     places: dict[str, list[int]] = {}
     for number, key in enumerate(keys):
@@ -95,7 +97,7 @@ def sweep(
     finally:
         done = Sweep(stated, made, results, perf_counter() - begun)
         if kept is not None:
-            _write(kept.folder, done, keys)
+            write_sweep(kept.folder, done, mark)
     return done
 
 
@@ -103,25 +105,19 @@ def _opened(
     study: Study,
     made: Sequence[Combination],
     keys: Sequence[str],
+    mark: str,
     out: str | os.PathLike[str] | None,
     resume: bool,
 ) -> tuple[Checkpoints | None, dict[str, dict[str, Any]]]:
     """The folder of the sweep with its record, and the finished tasks in it."""
-    from grashof.sweep.files import check_folder, record_of
-
     check_folder(None if out is None else Path(out), study)
     if out is None:
         return None, {}
     kept = Checkpoints(Path(out))
-    mark = _fingerprint(made, keys)
     finished = kept.read(mark, keys, resume=resume)
     begun = Sweep(study, tuple(made), _of_combinations(made, keys, finished))
     kept.begin(record_of(begun, mark, complete=False), finished)
     return kept, finished
-
-
-def _fingerprint(made: Sequence[Combination], keys: Sequence[str]) -> str:
-    return fingerprint([[dict(one.cells), key] for one, key in zip(made, keys, strict=True)])
 
 
 def _of_combinations(
@@ -131,9 +127,3 @@ def _of_combinations(
     known = {number: finished[key] for number, key in enumerate(keys) if key in finished}
     wrong = {number: invalid(one.wrong) for number, one in enumerate(made) if not one.text}
     return known | wrong
-
-
-def _write(folder: Path, done: Sweep, keys: Sequence[str]) -> None:
-    from grashof.sweep.files import write_sweep
-
-    write_sweep(folder, done, _fingerprint(done.combinations, keys))

@@ -28,22 +28,9 @@ def solved(
 ) -> Generator[Finished, None, None]:
     """Key and result of every task as it ends, in no order; those that were stopped are left out.
 
-    Parameters
-    ----------
-    tasks : sequence of (str, str, str)
-    options : mapping
-        Of `grashof.sweep.task.Options`.
-    stop : callable
-        Asked while tasks are solved; no other task begins once it returns True.
-    executor : concurrent.futures.Executor, optional
-        Where to solve; not shut down. It gets text and plain values only.
-    workers : int
-        Processes of its own without one; 1 solves here.
-
-    Raises
-    ------
-    SolverError
-        A process was lost, though nobody asked to stop.
+    No task begins once `stop` is True. The executor, which gets text and plain values only, is not shut down;
+    without one, `workers` processes of its own, or this one, solve. SolverError where a process was lost,
+    though nobody asked to stop. `options` are those of `grashof.sweep.task.Options`.
     """
     if executor is not None:
         yield from _elsewhere(executor, solve_task, tasks, options, stop)

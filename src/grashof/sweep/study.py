@@ -37,22 +37,9 @@ _SIGNIFICANT = 12  # digits of the values of a range: 0.1 + 0.2 is 0.3
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A problem that the varied keys are set in.
+    """A parsed problem file that the varied keys are set in; its tables of loads are relative to its folder.
 
-    Parameters
-    ----------
-    name : str
-        What the problem is called.
-    cells : mapping
-        What distinguishes it from the other sources, by column of the table; empty for a single one.
-    document : dict
-        The parsed problem file.
-    label : str
-        The same in words.
-    wrong : str
-        Why the file is none; empty where it is one.
-    folder : Path, optional
-        Where it is; its tables of loads are relative to that.
+    `cells` and `label` distinguish it from other sources, empty for a single one; `wrong` is why it is none.
     """
 
     name: str

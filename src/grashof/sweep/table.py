@@ -26,19 +26,10 @@ def varied_columns(combinations: Sequence[Combination]) -> tuple[str, ...]:
 def sweep_frame(
     combinations: Sequence[Combination], results: Mapping[int, Mapping[str, Any]]
 ) -> pd.DataFrame:
-    """The rows of all combinations that are finished, in their order.
+    """A row for each design of the combinations finished (`results` of `solve_task`), in their order.
 
-    Parameters
-    ----------
-    combinations : sequence of Combination
-    results : mapping of int to mapping
-        What `solve_task` gave, by the place of the combination.
-
-    Returns
-    -------
-    DataFrame
-        ``combination`` (from 1), the varied keys, ``status``, ``designs`` (how many were found), the
-        columns of candidates.csv and ``note``, what stood in the way.
+    It has ``combination`` (from 1), the varied keys, ``status``, ``designs`` (how many were found), the
+    columns of candidates.csv and ``note``, what stood in the way.
     """
     varied = varied_columns(combinations)
     rows = [

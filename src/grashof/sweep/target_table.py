@@ -22,26 +22,11 @@ _TARGETS = {"path": "points", "motion": "poses"}
 
 
 def target_rows(path: Path, base: Mapping[str, Any]) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-    """Rows of a CSV laid over a base problem.
+    """Rows of a CSV laid over a base problem: for each its cells by column, and the problem with its targets.
 
-    Parameters
-    ----------
-    path : Path
-        A header line ``x1,y1,x2,y2,...`` for a path or ``x1,y1,angle1_deg,x2,...`` for a motion; besides,
-        ``name`` and dotted keys of the problem file. An empty cell leaves a part of a pose free, a target
-        with empty cells only is left out.
-    base : mapping
-        The parsed problem file.
-
-    Returns
-    -------
-    list of (dict, dict)
-        For each row its cells by column, and the problem file with its targets.
-
-    Raises
-    ------
-    ProblemError
-        All that is wrong with the table, a line each.
+    The header is ``x1,y1,x2,y2,...`` for a path or ``x1,y1,angle1_deg,x2,...`` for a motion; besides ``name``
+    and dotted keys of the problem file. An empty cell leaves a part of a pose free, a target with empty cells
+    only is left out. ProblemError for all that is wrong with the table, a line each.
     """
     lines = csv_rows(path, "a CSV of points or poses")
     header = lines[0] if lines else []

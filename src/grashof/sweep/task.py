@@ -23,14 +23,7 @@ OBJECTIVE = "objective"  # column of what several goals amount to
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How a task is solved.
-
-    Parameters
-    ----------
-    designs : int
-        Best designs that are kept.
-    time_limit : float, s, optional
-    """
+    """How many of the best designs of a task are kept, and its time limit, s."""
 
     designs: int = 1
     time_limit: float | None = None
@@ -39,8 +32,6 @@ class Options:
 def task_key(name: str, text: str, options: Options) -> str:
     """Name of a task: the same for the same problem, options and versions only.
 
-    Examples
-    --------
     >>> task_key("a", "", Options()) == task_key("a", "", Options(designs=2))
     False
     """
@@ -51,17 +42,7 @@ def task_key(name: str, text: str, options: Options) -> str:
 def solve_task(
     name: str, text: str, options: Mapping[str, Any], stop: Callable[[], bool] = lambda: False
 ) -> dict[str, Any] | None:
-    """Solve a problem; what it gives is JSON, None where it was stopped.
-
-    Parameters
-    ----------
-    name, text : str
-        The problem's name and its file.
-    options : mapping
-        Of `Options`.
-    stop : callable
-        Asked between batches.
-    """
+    """Solve a problem file with `Options`; JSON, or None where `stop`, asked between batches, was True."""
     from grashof.synth import synthesize
 
     begun = perf_counter()

@@ -13,14 +13,7 @@ _NAMED = 2  # designs of each reason, by their ids
 
 
 def enclosure_line(result: Result) -> str:
-    """How many designs are verified by intervals, and what is not shown of which; empty without designs.
-
-    Examples
-    --------
-    >>> from grashof import load, synthesize
-    >>> enclosure_line(synthesize(load("luggage"), enough=5).top(3)).partition(" by ")[2]
-    'intervals of the driver angle, over their whole motion.'
-    """
+    """How many designs are verified by intervals, and what is not shown of which; empty without designs."""
     named = list(zip((each.id for each in result.candidates), enclosures(result), strict=True))
     if any(each.contradicts for _, each in named):
         wrong = _by_reason({name: each.why for name, each in named if each.contradicts})
@@ -38,8 +31,6 @@ def enclosure_line(result: Result) -> str:
 def _by_reason(missing: dict[str, str]) -> str:
     """What is not shown, each once, after the first designs that it is of.
 
-    Examples
-    --------
     >>> _by_reason({"1f": "order", "2e": "closure", "3d": "order", "4c": "order"})
     '1f, 3d and another (order), 2e (closure)'
     """

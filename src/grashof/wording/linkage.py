@@ -9,8 +9,6 @@ from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
 def dimensions_text(spec: LinkageSpec) -> str:
     """The lengths of a linkage with their unit, after its kind where that is no four-bar.
 
-    Examples
-    --------
     >>> from grashof.problems import load_linkage_spec
     >>> dimensions_text(load_linkage_spec("engine"))
     'slider-crank, r2 40, r3 120, offset -20 mm'

@@ -15,16 +15,7 @@ _NOTHING = 90.0  # deg: a bound that says nothing
 
 
 def proof_line(result: Result) -> str:
-    """What is proven of a list; empty where the question does not arise.
-
-    Numbers are rounded to the safe side: bounds up, values down.
-
-    Examples
-    --------
-    >>> from grashof import load, synthesize
-    >>> proof_line(synthesize(load("luggage"), enough=5))
-    'Proven: no four-bar meets these requirements with more than 27.35 deg; number 1 has 27.33 deg.'
-    """
+    """What is proven of a list, rounded to the safe side; empty where the question does not arise."""
     proof = result.proof
     if proof is None:
         return ""
@@ -34,15 +25,7 @@ def proof_line(result: Result) -> str:
 
 
 def bound_line(proof: Proof, at_least: float | None = None) -> str:
-    """What is proven of a problem without a list; or whether a design has `at_least` so much, deg.
-
-    Examples
-    --------
-    >>> bound_line(Proof(claim=Claim.BEST, quantity="", lower=27.3314, upper=27.3414))
-    'Proven: no four-bar meets these requirements with more than 27.35 deg; a design has 27.33 deg.'
-    >>> bound_line(Proof(claim=Claim.BOUND, quantity="", lower=27.3314, upper=90.0), at_least=20)
-    'Proven: a design that the judge accepts has 27.33 deg.'
-    """
+    """What is proven of a problem without a list; or whether a design has `at_least` so much, deg."""
     if _reached(proof, at_least):
         return f"Proven: a design that the judge accepts has {_down(proof.lower)} deg."
     return _line(proof, "a design has" if proof.lower is not None else "")
@@ -124,8 +107,6 @@ def _down(value: float | None) -> str:
 def work_line(proof: Proof) -> str:
     """What a proof took.
 
-    Examples
-    --------
     >>> work_line(Proof(claim=Claim.BEST, quantity="", pieces=(42, 40), pairs=3049, levels=5, seconds=0.1))
     '42 by 40 pieces of all dyads, 3049 pairs, halved 5 times, 0.10 s'
     """

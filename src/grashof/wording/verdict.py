@@ -23,17 +23,8 @@ _KEYS = (
 def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     """A user's own linkage with the verdict on it, by the judge that every design of a list has passed.
 
-    Parameters
-    ----------
-    problem : Problem
-        Its list of kinds need not have that of the linkage.
-    spec : LinkageSpec
-        With a cylinder, that one drives it; without one, where the problem asks for one, the best.
-
-    Raises
-    ------
-    ProblemError
-        Lengths in different units, or a linkage of two loops.
+    The problem's list of kinds need not have its own. Its cylinder drives it, or, where the problem asks for
+    one and it has none, the best. ProblemError for lengths in different units, or a linkage of two loops.
     """
     if len(spec.linkage.mechanism.dyads) > 1:
         word = spec.linkage.mechanism.word

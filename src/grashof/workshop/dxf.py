@@ -21,18 +21,9 @@ _COLOURS = {CUT: _RED, ENGRAVE: _CYAN, PINS: _MAGENTA, NOTES: _GREY}
 
 
 def dxf(drawing: Sheet) -> str:
-    """A drawing as the text of a DXF file: in mm, outlines as polylines with true arcs, holes as circles.
+    """A drawing as DXF text: in mm, outlines as polylines with true arcs, holes as circles.
 
-    The same drawing gives the same text: the file carries no time and no random identifier.
-
-    Parameters
-    ----------
-    drawing : Sheet
-
-    Raises
-    ------
-    ProblemError
-        ezdxf is not installed.
+    The same text each time, without time or random identifier; ProblemError where ezdxf is not installed.
     """
     ezdxf = ezdxf_installed()
     with _without_times(ezdxf):

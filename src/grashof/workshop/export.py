@@ -26,16 +26,7 @@ from grashof.workshop.workbook import listed_candidates, workbook
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A file that can be written of a linkage; `xlsx`, of a whole list, is none of them.
-
-    Parameters
-    ----------
-    ending : str
-    parts : callable, optional
-        Its content from the plan of the parts and a heading.
-    model : callable, optional
-        Or from the linkage as a model.
-    """
+    """A file that can be written of the parts under a heading, or of the model; `xlsx` is none of them."""
 
     ending: str
     parts: Callable[[Plan, str], str | bytes] | None = None
@@ -59,17 +50,9 @@ WORKBOOK = "xlsx"
 
 @dataclass(frozen=True, slots=True)
 class Making:
-    """How big the parts are made, and for which motion.
+    """How big the parts are made, for which range of driver angles; the scale of a model is 0.05 or 1:20.
 
-    Parameters
-    ----------
-    sizes : PlateSizes
-    scale : str
-        Of a model: a number, or a ratio such as 1:20.
-    mm_per_unit : float, optional
-        Where the length unit is not mm, cm, m, in or ft.
-    theta2_deg : pair of float, optional
-        Range of driver angles used.
+    `mm_per_unit` is for a length unit that is not mm, cm, m, in or ft.
     """
 
     sizes: PlateSizes
@@ -80,16 +63,7 @@ class Making:
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """What came of an export.
-
-    Parameters
-    ----------
-    plan : Plan or None
-        What is drawn, if anything is.
-    written : tuple of Path
-    refused : tuple of str
-        Why the other formats cannot represent this linkage, a line each.
-    """
+    """What came of an export: the plan, if one is drawn, and why other formats are refused, a line each."""
 
     plan: Plan | None
     written: tuple[Path, ...]
@@ -97,26 +71,10 @@ class Exported:
 
 
 def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Exported:
-    """Write what is asked for; a format that cannot represent the linkage costs the others nothing.
+    """Write files by `FORMATS` or xlsx; a format that cannot represent the linkage costs the others nothing.
 
-    Parameters
-    ----------
-    linkage : str
-        As for `load_linkage`; for a workbook alone also ``DIR/candidates.json#1,3,5``.
-    making : Making
-    files : dict of str to Path
-        By the names of `FORMATS`, and xlsx.
-
-    Returns
-    -------
-    Exported
-
-    Raises
-    ------
-    ProblemError
-        Bad input, named, or no format can represent the linkage.
-    OSError
-        The disk is full or the folder is lost.
+    `linkage` is as for `load_linkage`; for a workbook alone also ``DIR/candidates.json#1,3,5``. ProblemError
+    for bad input, named, or where no format can represent it; OSError for a full disk or a lost folder.
     """
     if not files:
         options = ", ".join(f"--{name}" for name in (*FORMATS, WORKBOOK))

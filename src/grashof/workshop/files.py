@@ -66,10 +66,7 @@ def write_xlsx(
 def write_whole(contents: Mapping[Path, bytes]) -> None:
     """Write files beside their places first, and put them there when all are whole.
 
-    Raises
-    ------
-    OSError
-        The disk is full or a folder is lost, named by the file; every file is then as it was before.
+    OSError names the file whose disk is full or folder is lost; every file is then as it was before.
     """
     with ExitStack() as folders:
         fresh = {}

@@ -31,19 +31,9 @@ def plated(kind: Mechanism) -> tuple[Link, ...]:
 def link_plates(
     linkage: Linkage, sizes: PlateSizes, slots: tuple[Slot, ...]
 ) -> tuple[dict[str, Plate], list[str]]:
-    """Plates of the moving links that are plates, by their names, and a note where P has no hole.
+    """Plates of the moving links of one linkage, in mm, by name, and a note where P has no hole.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        One linkage, in mm.
-    sizes : PlateSizes
-    slots : tuple of Slot
-
-    Raises
-    ------
-    ProblemError
-        A link too short or too long for its width, or holes and slots too near to each other.
+    ProblemError for a link too short or too long for its width, or holes and slots too near to each other.
     """
     kind = linkage.mechanism
     for name, length in zip(kind.lengths, linkage.lengths.tolist(), strict=True):
@@ -76,14 +66,7 @@ def base_plate(
 ) -> Plate:
     """The base, twice as wide as the links, x along it from O2: holes for the ground pivots, and slots.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        In mm, with O2 at the origin.
-    posts : dict of str to ndarray of shape (2,)
-        Other holes in it; the last one comes after those of the pivots.
-    sizes : PlateSizes
-    slots : tuple of Slot
+    The linkage is in mm with O2 at the origin; `posts` (2,) are other holes, the last after the pivots'.
     """
     ground = points_on(linkage, linkage.mechanism.links[0])
     holes = {name.upper(): rotated(at[None], -base_angle(linkage))[0] for name, at in ground.items()}

@@ -116,21 +116,10 @@ class Plate:
 
 
 def outline(corners: npt.ArrayLike, radius: float) -> FloatArray:
-    """Everything within `radius` of a point, a line or a convex polygon, as lines and arcs.
+    """Everything within `radius` of a point, a line or a convex polygon (n, 2), counter-clockwise.
 
-    Parameters
-    ----------
-    corners : array_like, shape (n, 2)
-        Counter-clockwise.
-    radius : float
+    As x, y and bulge (tangent of a quarter of the arc's angle) of each vertex, (2 max(n, 1) or 2, 3).
 
-    Returns
-    -------
-    ndarray, shape (2 max(n, 1) or 2, 3)
-        x, y and bulge (tangent of a quarter of the arc's angle) of each vertex, counter-clockwise.
-
-    Examples
-    --------
     >>> outline([(0, 0), (50, 0)], 10).round(6).tolist()
     [[0.0, 10.0, 1.0], [0.0, -10.0, 0.0], [50.0, -10.0, 1.0], [50.0, 10.0, 0.0]]
     """

@@ -14,10 +14,7 @@ DRIVER, RETURN_CRANK = "driver", "return crank"
 
 
 class ReturnCrank(NamedTuple):
-    """How a driver with two crank pins is divided, so that a link turns on the inner one between its plates.
-
-    `pin` joins the two plates, `far` is on the return crank, which is `turned` against the driver, rad.
-    """
+    """A driver in two plates on `pin`, of which the return crank, `turned` by so many rad, holds `far`."""
 
     pin: str
     far: str

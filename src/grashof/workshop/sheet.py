@@ -54,15 +54,9 @@ Shape = Outline | Circle | Text
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A drawing in mm, x to the right, y up, from the origin to (width, height).
+    """A drawing in mm, x to the right, y up, from the origin to (width, height), mm.
 
-    Parameters
-    ----------
-    title : str
-    shapes : tuple of Outline, Circle or Text
-    layers : tuple of str
-        Names: `CUT`, `ENGRAVE`, `ASSEMBLY_0` and so on from the base up, `ASSEMBLY_PINS`, `NOTES`.
-    width, height : float, mm
+    Layers: `CUT`, `ENGRAVE`, `ASSEMBLY_0` and so on from the base up, `ASSEMBLY_PINS`, `NOTES`.
     """
 
     title: str
@@ -73,14 +67,7 @@ class Sheet:
 
 
 def sheet(plan: Plan, title: str = "") -> Sheet:
-    """Lay a plan out: the parts in a column, the assembly to their right, the parts list below.
-
-    Parameters
-    ----------
-    plan : Plan
-    title : str
-        Stands over the parts list; what cannot be printed is left out.
-    """
+    """A plan as parts in a column, the assembly at their right, the list below under the printable title."""
     title = printable(title)[:_TITLE_LENGTH]
     gap = plan.sizes.width / 2
     cut, size = _column(plan, gap)
@@ -106,8 +93,6 @@ def sheet(plan: Plan, title: str = "") -> Sheet:
 def printable(text: str) -> str:
     r"""A text in one line, without what no file can hold or nobody can see.
 
-    Examples
-    --------
     >>> printable("Two\n lines\x07")
     'Two lines'
     """

@@ -16,10 +16,9 @@ from grashof.workshop.plates import PlateSizes
 
 
 class Slot(NamedTuple):
-    """A slide: the pin that is its slider or block, and the slot of another link that this pin runs in.
+    """A slide: the pin of its slider or block and the slot in another link, `ends` (2, 2) in its plate, mm.
 
-    `slider` and `link` are numbers of links, 1 the base; `ends` are centres in the frame of the link's plate,
-    shape (2, 2), mm.
+    `slider` and `link` are numbers of links, 1 the base.
     """
 
     pin: str
@@ -34,15 +33,7 @@ class Slot(NamedTuple):
 
 
 def slots_of(linkage: Linkage, ranges: Iterable[tuple[float, float]], sizes: PlateSizes) -> tuple[Slot, ...]:
-    """The slots of a linkage in mm, half a clearance longer than the travel at either end.
-
-    Parameters
-    ----------
-    linkage : Linkage
-    ranges : iterable of pair of float, rad
-        Driver angles that it moves through.
-    sizes : PlateSizes
-    """
+    """Slots, in mm, half a clearance longer at either end than the travel over `ranges` of theta2, rad."""
     ranges, found = tuple(ranges), []
     for index, dyad in enumerate(linkage.mechanism.dyads):
         if not dyad.slides:

@@ -25,14 +25,7 @@ _ANGLE = 0.1  # rad, between such flats
 def step(plan: Plan) -> bytes:
     """The assembly as a STEP file: every part and pin a body with its name, in mm, z across the layers.
 
-    Parameters
-    ----------
-    plan : Plan
-
-    Raises
-    ------
-    ProblemError
-        build123d is not installed.
+    ProblemError where build123d is not installed.
     """
     cad = _build123d()
     return _written(lambda path: cad.export_step(assembly(plan), path, timestamp=""), ".step")
@@ -45,17 +38,7 @@ def stl(plan: Plan) -> bytes:
 
 
 def assembly(plan: Plan) -> Any:
-    """Every part and pin where it belongs, O2 in the origin of the lowest layer.
-
-    Parameters
-    ----------
-    plan : Plan
-
-    Returns
-    -------
-    Compound
-        Its children are solids in mm, each with the name of its part.
-    """
+    """A Compound of every part and pin in place, named solids in mm, O2 in the origin of the lowest layer."""
     cad = _build123d()
     thick, children = plan.sizes.thickness, []
     for part in plan.parts:

@@ -37,8 +37,6 @@ _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never 
 def pinned(kind: Mechanism) -> dict[str, tuple[str, ...]]:
     """What each pin joins; what is no plate that moves is the base. The pin of a slide runs in a slot.
 
-    Examples
-    --------
     >>> from grashof.problems import SliderCrank
     >>> pinned(SliderCrank.mechanism)
     {'O2': ('ground', 'driver'), 'A': ('driver', 'coupler'), 'B': ('coupler', 'ground')}
@@ -67,20 +65,10 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class Stack:
-    """Who lies where.
+    """Layers of the links that are plates, the base on 0, the pins of the joints and between two bases.
 
-    Parameters
-    ----------
-    layers : mapping of str to int
-        Of the links that are plates; the base is on layer 0.
-    pins : tuple of Pin
-        Of the joints, and the posts between two bases.
-    posts : tuple of float, mm
-        Where the posts stand along the base, from O2; none with a single base.
-    met : tuple of str
-        For each order on one base that was tried before: two parts that would come too close, and where.
-    crank : ReturnCrank or None
-        How the driver is divided into two plates, if it is.
+    `posts` are where the second base is held, mm along the base from O2; `met` tells, for each order on one
+    base that was tried before, which two parts would come too close, and where; `crank` divides the driver.
     """
 
     layers: Mapping[str, int]
@@ -97,14 +85,7 @@ class Stack:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """A linkage at every angle of a sweep.
-
-    Parameters
-    ----------
-    theta2 : ndarray, shape (n,), rad
-    places : mapping of str to ndarray, shape (n, 3)
-        Of each link and pin: where the origin of its plate is, x and y in mm, and its angle in rad.
-    """
+    """A linkage at `theta2` (n,), rad; `places` of the plates of links and pins (n, 3), mm, mm and rad."""
 
     theta2: FloatArray
     places: Mapping[str, FloatArray]
@@ -113,25 +94,10 @@ class Motion:
 def ranges_of_use(
     linkage: Linkage, within: tuple[float, float] | None = None, at: float | None = None
 ) -> tuple[tuple[float, float], ...]:
-    """Driver angles that the plates are to move through.
+    """Driver angles, rad, of the plates' motion: `within`, or the whole turn, or all between dead positions.
 
-    Parameters
-    ----------
-    linkage : Linkage
-    within : pair of float, rad, optional
-        First and last angle used.
-    at : float, rad, optional
-        An angle used: of two ranges between dead positions only the one with it counts.
-
-    Returns
-    -------
-    tuple of pair of float, rad
-        By default the whole turn, or all that lies between dead positions.
-
-    Raises
-    ------
-    ProblemError
-        The linkage cannot be assembled on `within`, or at all.
+    Of two ranges between dead positions only the one with the angle `at` counts, if it is given. ProblemError
+    where the linkage cannot be assembled on `within`, or at all.
     """
     ends = driver_ranges(linkage)
     whole = tuple((float(low), float(high)) for low, high in ends if np.isfinite(low))
@@ -153,15 +119,7 @@ def ranges_of_use(
 
 
 def sweep(linkage: Linkage, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
-    """The linkage at so many driver angles that no joint moves farther than `step` from one to the next.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        One linkage, in mm.
-    ranges : tuple of pair of float, rad
-    step : float, mm
-    """
+    """One linkage, in mm, at so many angles of `ranges`, rad, that no joint moves farther than `step`, mm."""
     # Closer towards the ends, where at a dead position the links run away from their driver.
     share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
     theta2 = np.concatenate([_fine(linkage, low + (high - low) * share, step) for low, high in ranges])
@@ -190,29 +148,11 @@ def placed(points: FloatArray, place: FloatArray) -> FloatArray:
 
 
 def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: PlateSizes) -> Stack:
-    """The least number of layers on which nothing meets.
+    """The least number of layers on which nothing meets, lengths in mm; ProblemError if no order is free.
 
-    Parameters
-    ----------
-    plates : mapping of str to Plate
-        Of the links that have one.
-    linkage : Linkage
-        In mm.
-    motion : Motion
-        Swept in steps of at most the clearance, so that nothing can pass unseen between two of them.
-    sizes : PlateSizes
-
-    Returns
-    -------
-    Stack
-        With two bases, joined by posts outside the reach of the links, where no order on one base is free:
-        the second one carries some of the ground pivots from the other side. With a return crank where that
-        does not help.
-
-    Raises
-    ------
-    ProblemError
-        No order is free, as may be of a six-bar.
+    The motion has steps of at most the clearance, so that nothing passes unseen between two of them. Where no
+    order on one base is free, a second base, joined by posts outside the reach of the links, carries some of
+    the ground pivots from the other side; where that does not help, the driver has a return crank.
     """
     joints, met = pinned(linkage.mechanism), dict[str, None]()
     tried = _Bench(plates, joints, motion, sizes)

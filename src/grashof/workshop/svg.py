@@ -15,14 +15,7 @@ _LEVELS = ("#008040", "#0080a0")
 
 
 def svg(drawing: Sheet) -> str:
-    """A drawing as the text of an SVG file: in mm, outlines as paths with true arcs, holes as circles.
-
-    Every layer is a group with its name as id; red is cut and blue engraved.
-
-    Parameters
-    ----------
-    drawing : Sheet
-    """
+    """A drawing as SVG text in mm, true arcs, red to cut, blue to engrave, each layer a group by its name."""
     size = (_number(drawing.width), _number(drawing.height))
     root = ET.Element("svg", xmlns="http://www.w3.org/2000/svg", version="1.1")
     root.attrib |= {"width": f"{size[0]}mm", "height": f"{size[1]}mm", "viewBox": f"0 0 {size[0]} {size[1]}"}

@@ -43,25 +43,10 @@ _UNITS = {quantity.column: quantity.unit for quantity in QUANTITIES.values() if 
 
 
 def workbook(chosen: Sequence[LinkageSpec | ListedDesign], candidates: pd.DataFrame | None = None) -> bytes:
-    """An Excel workbook: the candidate list, if there is one, then a sheet for each linkage.
+    """An .xlsx file of the candidate list, if any, as candidates.csv has it, then a sheet for each linkage.
 
-    Numbers have 16 digits there; Excel calculates with 15.
-
-    Parameters
-    ----------
-    chosen : sequence of LinkageSpec or ListedDesign
-    candidates : DataFrame, optional
-        The list, as candidates.csv has it.
-
-    Returns
-    -------
-    bytes
-        The .xlsx file; the same for the same input, without any time.
-
-    Raises
-    ------
-    ProblemError
-        openpyxl is not installed.
+    Numbers have 16 digits there; Excel calculates with 15. The bytes are the same for the same input, without
+    any time. ProblemError where openpyxl is not installed.
     """
     book = _openpyxl().Workbook()
     book.remove(book.active)
@@ -78,20 +63,7 @@ def workbook(chosen: Sequence[LinkageSpec | ListedDesign], candidates: pd.DataFr
 
 
 def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFrame:
-    """The candidates.csv beside a candidates.json, checked to be of the same run.
-
-    Parameters
-    ----------
-    path : Path
-        Of the candidates.json.
-    designs : sequence of ListedDesign
-        Out of it.
-
-    Raises
-    ------
-    ProblemError
-        It is missing, is not a table, or lists other designs.
-    """
+    """The candidates.csv beside a candidates.json; ProblemError if missing, no table, or of other designs."""
     import pandas as pd
 
     table = path.with_name("candidates.csv")
