@@ -99,7 +99,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.position import solve_position
+    >>> from grashof.analysis import solve_position
     >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> jack = Cylinder("driver", base=(0, -2), point=(1, 0))

@@ -55,13 +55,10 @@ def joint_name(linkage: Linkage, joint: Joint) -> str:
 
 
 def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]:
-    """Angle and angular velocity of the second link of a joint relative to the first; in a slide its travel.
+    """Angle (...), rad, and angular velocity of the second link of a joint relative to the first.
 
-    Returns
-    -------
-    ndarray, shape (...), rad and rad/s; or length and length/s
-        The travel of the slider's pin from the foot of O2 on the line of the slide, or of B from A along
-        the rod.
+    In a slide its travel and the rate of that: of the slider's pin from the foot of O2 on the line of the
+    slide, or of B from A along the rod.
     """
     row = state.linkage.mechanism.every_joint[joint]
     first, second = row.links

@@ -125,7 +125,7 @@ def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Load
     --------
     A bar of 3 kg as the output of a square, P at B: half of its weight times the length.
 
-    >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.analysis import Body
     >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> bar = Masses(Body(0), Body(0), Body(3.0, 0.0, (1.0, 0.0)))
