@@ -38,11 +38,6 @@ class Standing(NamedTuple):
     closed: Closed
     arms: tuple[Vector, Vector]
 
-    @property
-    def across(self) -> Vector:
-        """Unit vector across its slide, to its left."""
-        return self.closed.cos4, self.closed.sin4
-
 
 class Frames(NamedTuple):
     """How the links of a motion lie: directions of the u-axes of their frames, and the dyads."""

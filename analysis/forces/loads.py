@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import Joint, joined, joint_motion, joint_name, joints_of, slides_of
+from grashof.analysis.forces.joints import Joint, joined, joint_motion, joints_of, slides_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -324,9 +324,9 @@ def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
             names = ", ".join(each.name for each in joints_of(linkage))
             raise wrong_value("joint of a torsion spring", spring.joint.name, f"one of {names}")
         if spring.joint in slides_of(linkage):
-            where, links = joint_name(linkage, spring.joint), joined(linkage, spring.joint)
+            links = joined(linkage, spring.joint)
             raise ProblemError(
-                f"a torsion spring is at the {where} between links {links}, which do not turn "
+                f"a torsion spring is at the slide between links {links}, which do not turn "
                 "against each other; it must be at a pin"
             )
         angle, _ = joint_motion(state, spring.joint)
