@@ -127,15 +127,12 @@ def free_response(
     if at.ndim != 1 or len(at) < 2 or not (np.diff(at) > 0).all():
         raise ProblemError("time is not a rising sequence of two or more numbers")
     _check_start(linkage, masses, theta2)
-    drive = torque if callable(torque) else None
-    constant = 0.0 if callable(torque) else float(torque)
 
     def given(now: FloatArray, angle: FloatArray, rate: FloatArray) -> FloatArray:
-        if drive is None:
-            return np.full(now.shape, constant)
-        return np.array(
-            [float(drive(*each)) for each in zip(now.tolist(), angle.tolist(), rate.tolist(), strict=True)]
-        )
+        if not callable(torque):
+            return np.full(now.shape, float(torque))
+        states = zip(now.tolist(), angle.tolist(), rate.tolist(), strict=True)
+        return np.array([float(torque(*each)) for each in states])
 
     def rates(senses: FloatArray | None) -> Acceleration:
         def alpha2(now: FloatArray, angle: FloatArray, rate: FloatArray, guess: FloatArray) -> FloatArray:

@@ -71,7 +71,7 @@ def greatest_of(bar: BarForces, value: Callable[..., FloatArray], *pieces: Float
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def deflection(bar: BarForces, stiffness: float) -> FloatArray:
-    """Deflection to the left of a bar held in its joints, (..., K - 1, 6), length over length^0 to length^5.
+    """Deflection, to its left, of a bar held in its joints: coefficients (..., K - 1, 6) as those of `bar`.
 
     w'' = M / (E I), with the stiffness E I in N length^2, integrated twice exactly, and w = 0 in both joints:
     a beam with overhangs (Timoshenko, *Strength of Materials*, part I, ch. V; Shigley, sec. 4-3).
@@ -100,7 +100,7 @@ def deflection(bar: BarForces, stiffness: float) -> FloatArray:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def greatest_deflection(bar: BarForces, bow: FloatArray) -> Along:
-    """Greatest size of a deflection, by Newton's method in cells in which the slope changes its sign."""
+    """Greatest size of a deflection, overhangs too, by Newton's method where the slope changes its sign."""
     first = _derivative(bow)
     second, cells = _derivative(first), _cells(bar)
     low, high = cells[..., :-1], cells[..., 1:]
