@@ -22,7 +22,7 @@ class Plane:
     joints: ComplexArray  # (J,): the link's own points, in its frame
     middle: complex  # in its frame: its pivot of the ground, or half way from A to B
     reach: float  # from there to pivots: as far as it is long, a slider or block as far as link 2 is
-    power: FloatArray | None = None  # (M,), N length, that motion takes; None where nothing limits the force
+    power: FloatArray | None = None  # (M,): what a drive gives, N length; None without limit of force
 
 
 class Driven(NamedTuple):
