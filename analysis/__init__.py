@@ -25,11 +25,10 @@ from grashof.analysis.forces.balancing import (
     balance_torque,
     balance_turn,
 )
-from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, virtual_work_torque
+from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics, motor_torque, virtual_work_torque
 from grashof.analysis.forces.energy import Energies, Powers, energies, mechanical_energy, powers
 from grashof.analysis.forces.equilibrium import Equilibria, equilibria
-from grashof.analysis.forces.flywheel import Flywheel, size_flywheel
-from grashof.analysis.forces.flywheel_speed import flywheel_speed
+from grashof.analysis.forces.flywheel import Flywheel, flywheel_speed, size_flywheel
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.loads import (
@@ -50,7 +49,6 @@ from grashof.analysis.forces.mass import (
     uniform_bar,
     uniform_bars,
 )
-from grashof.analysis.forces.motor import motor_torque
 from grashof.analysis.forces.reciprocating import (
     ReciprocatingBalance,
     balance_reciprocating,

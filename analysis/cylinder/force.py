@@ -19,28 +19,11 @@ _ROUNDS, _SECANTS, _SETTLED = 60, 30, 1e-13
 
 
 def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads: Loads) -> FloatArray:
-    """Force of the cylinder, in kg, s and the length unit: newtons over the metre.
+    """Force of a cylinder without mass or friction of its own, shape (...), in newtons over the metre.
 
-    Parameters
-    ----------
-    state : Kinematics
-        Of a single linkage, shape (...).
-    cylinder : Cylinder
-        Its own mass and friction are left out.
-    masses : Masses
-    loads : Loads
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Positive where it pushes; infinite where its length stands, or friction locks it.
-
-    Notes
-    -----
-    Virtual work (Norton, *Design of Machinery*, sec. 11.10): the cylinder gives the power that a torque T on
-    link 2 would give, F dL/dtheta2 = T. Friction in pins, and that of slides by the force across them,
-    follow from forces that a cylinder makes others than a torque does: there F is put on the link and
-    corrected until no torque is left.
+    Positive where it pushes; infinite where its length stands, or friction locks it. Virtual work (Norton,
+    *Design of Machinery*, sec. 11.10): F dL/dtheta2 = T, the torque on link 2. Friction that grows with joint
+    forces depends on what drives: there F is put on the link and corrected until no torque is left.
     """
     found = cylinder_state(cylinder, state.linkage, state)
     out = found.pivot - np.asarray(cylinder.base)

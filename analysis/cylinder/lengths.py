@@ -50,16 +50,9 @@ class CylinderState:
 
 @dataclass(frozen=True, slots=True)
 class CylinderFigures:
-    """What a cylinder does over a motion.
+    """Least and greatest length over a motion, and the least lever angle, rad.
 
-    Parameters
-    ----------
-    closed, open : float, length
-        Least and greatest length.
-    angle_min : float, rad
-        Least lever angle; 0 where the length does not go one way.
-    monotone : bool
-        The length goes one way, and nowhere does it stand: the cylinder drives.
+    `monotone`: the length goes one way and nowhere stands, so that the cylinder drives; else the angle is 0.
     """
 
     closed: float
@@ -99,7 +92,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.position import solve_position
+    >>> from grashof.analysis import solve_position
     >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> jack = Cylinder("driver", base=(0, -2), point=(1, 0))
@@ -123,21 +116,10 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 
 
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
-    """Extremes of a cylinder over a motion, right to rounding.
+    """Extremes of a cylinder over a motion, right to rounding, from ever closer samples.
 
-    Parameters
-    ----------
-    cylinder : Cylinder
-    travel : Travel
-
-    Returns
-    -------
-    CylinderFigures
-
-    Notes
-    -----
-    Samples, ever closer about the extremes of lever and length. The lever changes its sign where the
-    length turns back, so that the least of it, signed, decides whether the length goes one way.
+    The lever changes its sign where the length turns back, so that the least of it, signed, decides whether
+    the length goes one way.
     """
 
     def curves(places: FloatArray) -> FloatArray:

@@ -30,20 +30,8 @@ class Travel:
     Its places are driver angles where link 2 turns fully. Otherwise they are angles phi with
     theta2 = middle - half cos(phi) on the assembly sign(sin(phi)): a turn of phi goes once around the
     circuit, and the linkage moves smoothly with it through the dead positions of link 2 at its multiples
-    of pi.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    start, end : float, rad
-        Places of its ends, in either order.
-    targets : ndarray, shape (N,), rad
-        Places of the targets.
-    middle, half : float, rad
-        Of the range of link 2; NaN where it turns fully.
-    assembly : int
-        Of a linkage whose link 2 turns fully.
+    of pi. `start`, `end`, in either order, and `targets` (N,) are places; `middle` and `half` of the range of
+    link 2 are NaN where it turns fully, and `assembly` counts only there.
     """
 
     linkage: Linkage
@@ -89,33 +77,10 @@ class Travel:
 def travel(
     linkage: Linkage, theta2: FloatArray, assembly: IntArray, ends: tuple[float, float] | None = None
 ) -> Travel | None:
-    """The motion through targets in their order, also through dead positions of link 2.
+    """The motion through targets in their order, also through dead positions; None where none joins them so.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2 : ndarray, shape (N,), rad
-        Driver angle at each target; unwrapped along the motion where link 2 turns fully.
-    assembly : ndarray of int, shape (N,)
-        Assembly at each target.
-    ends : pair of float, rad, optional
-        Driver angles at which a motion on one branch begins and ends, where these are not those of the first
-        target and the last.
-
-    Returns
-    -------
-    Travel or None
-        None where no motion joins the targets in sequence.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
-    >>> moved = travel(rocker, np.radians([90.0, 100.0, 90.0]), np.array([1, 1, -1]))
-    >>> back = np.radians([90.0, 100.0, 95.0, 98.0])  # to and fro: in order neither way around
-    >>> len(moved.dead), travel(rocker, back, np.ones(4, dtype=int)) is None
-    (1, True)
+    theta2 (N,), unwrapped where link 2 turns fully, and assembly (N,) are those of a single linkage at its
+    targets; `ends` the driver angles at which a motion on one branch begins and ends, if not at targets.
     """
     circuits = circuit_index(linkage, theta2, assembly)
     if circuits[0] < 0 or (circuits != circuits[0]).any():

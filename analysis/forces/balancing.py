@@ -97,8 +97,7 @@ def balance_force(
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
-    >>> from grashof.analysis.forces.mass import system_centre, uniform_bars
+    >>> from grashof.analysis import solve_kinematics, system_centre, uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> balanced = balance_force(jack, uniform_bars(jack, 300.0))
@@ -222,7 +221,7 @@ def balance_turn(
 
     Examples
     --------
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars, weight = uniform_bars(jack, (312, 312, 314)), Loads(gravity=(0, -9.81))

@@ -14,13 +14,7 @@ from grashof.problems.values.linkages.mechanism import DyadKind
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bar:
-    """A straight bar along the u-axis of its link.
-
-    Parameters
-    ----------
-    low, high : ndarray, shape (...), length
-        Where it begins and ends, u in the link's frame.
-    """
+    """A straight bar along its link: u in the link's frame where it begins and ends, each of shape (...)."""
 
     low: FloatArray
     high: FloatArray
@@ -39,23 +33,10 @@ class Bar:
 
 
 def bars_of(linkage: Linkage) -> dict[int, Bar]:
-    """The moving links that are bars, by their numbers; sliders and blocks are none.
+    """The moving links that are bars, by their numbers, from joint to joint; sliders and blocks are none.
 
-    Parameters
-    ----------
-    linkage : Linkage
-
-    Notes
-    -----
-    Bars reach from joint to joint. The rod of an inverted slider-crank reaches from A to the farthest
-    place of B on it, `longest_travel`, and to P where that lies farther out or on the other side of A.
-
-    Examples
-    --------
-    >>> from grashof.problems import InvertedSliderCrank
-    >>> shaper = InvertedSliderCrank(o2=(0, 0), o4=(0, -2), r2=1, coupler_point=(4.5, 0.2))
-    >>> {link: float(bar.reach) for link, bar in bars_of(shaper).items()}
-    {2: 1.0, 3: 4.5}
+    The rod of an inverted slider-crank reaches from A to the farthest place of B on it, `longest_travel`, and
+    to P where that lies farther out or on the other side of A.
     """
     found = {2: _from_origin(linkage.r2)}
     for loop, dyad in enumerate(linkage.mechanism.dyads):
@@ -71,22 +52,16 @@ def bars_of(linkage: Linkage) -> dict[int, Bar]:
 
 
 def bar_lengths(linkage: Linkage) -> dict[int, float]:
-    """Lengths of the bars of a single linkage between their joints, by link.
-
-    That of a rod which slides through a block is `longest_travel`, at which it buckles most easily.
-    """
+    """Lengths between joints by link; of a rod through a block `longest_travel`, where it buckles first."""
     found = {link: float(bar.reach) for link, bar in bars_of(linkage).items()}
     is_rod = linkage.mechanism.dyads[0].kind is DyadKind.RPR
     return found | ({3: float(longest_travel(linkage))} if is_rod else {})
 
 
 def longest_travel(linkage: Linkage) -> FloatArray:
-    """Greatest distance between A and B on the rod of an inverted slider-crank, shape (...), length.
+    """Greatest distance between A and B on the rod of an inverted slider-crank, shape (...).
 
-    Notes
-    -----
-    sqrt(s^2 - offset^2) with the greatest distance s = r1 + r2 of A from O4, which the driver reaches
-    whether it turns or swings; 0 where the linkage never closes.
+    A comes as far as r1 + r2 from O4 whether the driver turns or swings; 0 where the linkage never closes.
     """
     farthest = linkage.r1 + linkage.r2
     return np.nan_to_num(np.abs(dyad_of(linkage).place(farthest, np.zeros_like(farthest)).reach))

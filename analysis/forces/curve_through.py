@@ -13,30 +13,11 @@ from grashof.problems.values.arrays import FloatArray
 def curve_through(
     rows: Sequence[Sequence[float]], *, period: float | None = None
 ) -> Callable[[FloatArray], FloatArray]:
-    """The monotone cubic curve through (place, value, value, ...).
+    """The monotone cubic (Fritsch & Carlson 1980) through rows (N, 1 + K) of a rising place and K values.
 
-    Parameters
-    ----------
-    rows : sequence, shape (N, 1 + K)
-        Places rising; of a period, from one end of it to the other, with equal values there.
-    period : float, optional
-        In the unit of the places.
-
-    Returns
-    -------
-    callable
-        From places of shape (...) to values of shape (..., K); NaN outside the rows without a period.
-
-    Notes
-    -----
-    Fritsch & Carlson 1980, *Monotone piecewise cubic interpolation*: continuous with its slope, and
-    without the overshoot of a spline at the corners of a measured load.
-
-    Examples
-    --------
-    >>> load = curve_through([(0, 9.0), (90, 20.0), (180, 20.0), (360, 9.0)], period=360)
-    >>> load(np.array([45.0, 135.0, 495.0])).ravel().round(3).tolist()
-    [14.5, 20.0, 20.0]
+    A function from places (...) to values (..., K), NaN outside the rows; or of a period, in the unit of the
+    places, from one end of which the rows go to the other, with equal values there. It has no overshoot of a
+    spline at the corners of a measured load.
     """
     table = np.array(rows, dtype=np.float64)
     places, values = table[:, 0], table[:, 1:]

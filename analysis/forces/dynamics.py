@@ -1,10 +1,11 @@
-"""Inverse dynamics: the drive torque and joint forces that a motion takes."""
+"""Inverse dynamics: the drive torque and joint forces that a motion takes, and what a motor gives for it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from grashof.analysis.forces.joint_forces import Frames, JointForces, Need, frames_of, joint_forces
 from grashof.analysis.forces.joints import Joint, joint_motion, joints_of
@@ -119,8 +120,7 @@ def inverse_dynamics(
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import solve_kinematics, uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> state = solve_kinematics(jack, np.radians(60), 2 * np.pi / 3)
@@ -137,7 +137,7 @@ def inverse_dynamics(
     found = joint_forces(frames, needs, moments)
     if radius.any():
         turning = _turning(state, radius, senses)
-        moments, found = _with_friction(frames, needs, moments, turning, loads.friction.slide_length)
+        moments, found = _with_friction(frames, needs, moments, found, turning, loads.friction.slide_length)
     shaking = _shaking(frames, outside[1], moments, found)
     none = np.full(state.shape, np.nan)
     across, moment = next((found.slides[joint] for joint in sorted(found.slides)), (none, none))
@@ -186,6 +186,61 @@ def virtual_work_torque(
     for joint in joints_of(state.linkage):
         torque = torque - joint_moments[joint] * joint_motion(per_turn, joint)[1]
     return torque[()]
+
+
+def motor_torque(
+    torque: npt.ArrayLike,
+    omega2: npt.ArrayLike,
+    alpha2: npt.ArrayLike,
+    gear_ratio: float,
+    gear_efficiency: float = 1.0,
+    inertia: float = 0.0,
+) -> FloatArray:
+    """Torque of a motor that drives link 2 through a gear.
+
+    Parameters
+    ----------
+    torque : array_like, shape (...), N length
+        Of the drive on link 2.
+    omega2, alpha2 : array_like, shape (...), rad/s and rad/s^2
+    gear_ratio : float
+        Speed of the motor over that of link 2.
+    gear_efficiency : float
+        Power out of the gear over power into it, whichever side drives.
+    inertia : float, kg length^2
+        Of the motor.
+
+    Returns
+    -------
+    ndarray, shape (...), N length
+        Counter-clockwise, as the torque on link 2; at rest as of a motor that drives.
+
+    Notes
+    -----
+    Behind the gear the torque is T / (n eta) where the motor drives (T omega2 > 0) and T eta / n where
+    the load does; the motor's own inertia takes I n alpha2 besides.
+
+    Examples
+    --------
+    >>> motor_torque([90.0, -90.0], 2.0, 0.0, 30, 0.9).round(6).tolist()
+    [3.333333, -2.7]
+    >>> float(motor_torque(0.0, 2.0, 5.0, 30, inertia=0.02))
+    3.0
+    """
+    torque = np.asarray(torque, dtype=np.float64)
+    driven = torque * np.asarray(omega2) >= 0
+    geared = np.where(driven, torque / gear_efficiency, torque * gear_efficiency) / gear_ratio
+    found: FloatArray = geared + inertia * gear_ratio * np.asarray(alpha2)
+    return found
+
+
+def friction_and_springs(
+    state: Kinematics, masses: Masses, loads: Loads, senses: FloatArray | None = None
+) -> FloatArray:
+    """`Dynamics.joint_moments`, which need no joint forces where no friction grows with these."""
+    if loads.friction.of(state.linkage, "radius").any():
+        return inverse_dynamics(state, masses, loads, senses).joint_moments
+    return known_joint_moments(state, loads, senses)
 
 
 def _need(
@@ -243,10 +298,14 @@ def _turning(state: Kinematics, radius: FloatArray, senses: FloatArray | None) -
 
 
 def _with_friction(
-    frames: Frames, needs: dict[int, Need], known: FloatArray, turning: FloatArray, slide_length: float
+    frames: Frames,
+    needs: dict[int, Need],
+    known: FloatArray,
+    found: JointForces,
+    turning: FloatArray,
+    slide_length: float,
 ) -> tuple[FloatArray, JointForces]:
-    """Joint moments with friction in proportion to the joint forces, and those forces."""
-    found = joint_forces(frames, needs, known)
+    """Joint moments with friction in proportion to the joint forces, and those forces; without it `found`."""
     settled = np.zeros(known.shape[1:], dtype=bool)
     for _ in range(_MOST_ROUNDS):
         sizes = _pressing(found, slide_length)

@@ -70,8 +70,7 @@ def energies(state: Kinematics, masses: Masses, loads: Loads | None = None) -> E
 
     Examples
     --------
-    >>> from grashof.analysis.forces.mass import Body
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
+    >>> from grashof.analysis import Body, solve_kinematics
     >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> at_a = Masses(Body(2.0, 0.0, (1.0, 0.0)), Body(0.0), Body(0.0))

@@ -86,7 +86,7 @@ def equilibria(
     --------
     A pendulum as the crank, 1 m long: it hangs still and stands upright.
 
-    >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.analysis import Body
     >>> from grashof.problems import FourBar
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> pendulum = Masses(Body(2.0, 0.0, (1.0, 0.0)), Body(0), Body(0))

@@ -1,8 +1,7 @@
-"""The flywheel that keeps a driver's speed even."""
+"""The flywheel that keeps a driver's speed even, and how the speed goes up and down with it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +9,10 @@ import numpy as np
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.analysis.numerics.quadrature import gauss_legendre, held, integrate
+from grashof.analysis.numerics.quadrature import Curve, Panels, gauss_legendre, held, integrate
 from grashof.problems import AssemblyError, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
@@ -79,7 +78,7 @@ def size_flywheel(
 
     Examples
     --------
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
@@ -94,6 +93,78 @@ def size_flywheel(
             f"omega2 is {omega2!r} and fluctuation {fluctuation!r}; they must be a speed other than 0 and "
             "a share above 0 and below 2"
         )
+    motion, torque, panels, taken = _turn(linkage, masses, omega2, loads)
+    mean = held(float(panels.total) / TURN, 2 * float(panels.error) / TURN)
+    samples = np.concatenate([[0.0], gauss_legendre(panels.edges)[0], [1.0]])
+    at = np.append(0.0, _passages(lambda share: mean - torque(share), samples))
+    # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
+    theta2 = motion.theta2(at)
+    gained = mean * theta2 - taken(at)
+    least, most = (int(choose(gained)) for choose in (np.argmin, np.argmax))
+    energy = float(gained[most] - gained[least])
+    slowest, fastest = theta2[[least, most]].tolist()
+    return Flywheel(energy / (fluctuation * omega2**2), energy, mean, slowest, fastest)
+
+
+def flywheel_speed(
+    linkage: Linkage,
+    masses: Masses,
+    omega2: float,
+    wheel: Flywheel,
+    theta2: FloatArray,
+    loads: Loads | None = None,
+) -> FloatArray:
+    """Speed of the driver over a turn with a flywheel, the drive giving the mean torque.
+
+    Parameters
+    ----------
+    linkage, masses, omega2, loads
+        As for `size_flywheel`.
+    wheel : Flywheel
+        That was sized with them.
+    theta2 : ndarray, shape (N,), rad
+        Driver angles from 0 to 2 pi, rising.
+
+    Returns
+    -------
+    ndarray, shape (N,), rad/s
+        Its least and largest value lie evenly about the mean speed.
+
+    Notes
+    -----
+    inertia (omega^2 - omega_max^2) / 2 is the energy that the flywheel has given since it was fastest
+    (Norton, *Design of Machinery*, sec. 11.11). As the torque is that of a steady speed this holds for
+    small fluctuations.
+
+    Examples
+    --------
+    >>> from grashof.analysis import size_flywheel, uniform_bars
+    >>> from grashof.problems import FourBar
+    >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+    >>> bars, weight = uniform_bars(jack, (312, 312, 314)), Loads(gravity=(0, -9.81))
+    >>> wheel = size_flywheel(jack, bars, 2.0, 0.05, weight)
+    >>> at = np.sort([wheel.slowest, wheel.fastest])
+    >>> sorted(flywheel_speed(jack, bars, 2.0, wheel, at, weight).round(6).tolist())
+    [1.95, 2.05]
+    """
+    if not wheel.inertia > 0:
+        return np.full(np.shape(theta2), omega2)
+    motion, _, _, taken = _turn(linkage, masses, omega2, loads)
+
+    def gained(angle: FloatArray) -> FloatArray:
+        return wheel.mean_torque * angle - taken(motion.share(angle))
+
+    fluctuation = wheel.energy / (wheel.inertia * omega2**2)
+    most = float(gained(np.array([wheel.fastest]))[0])
+    lost = np.maximum(most - gained(np.asarray(theta2)), 0.0)
+    square = ((1 + fluctuation / 2) * omega2) ** 2 - 2 * lost / wheel.inertia
+    return np.asarray(np.sign(omega2) * np.sqrt(np.maximum(square, 0.0)))
+
+
+def _turn(
+    linkage: Linkage, masses: Masses, omega2: float, loads: Loads | None
+) -> tuple[EvenMotion, Curve, Panels, Curve]:
+    """A steady turn; by shares of it the torque that it takes, panels of the work, and the work so far."""
     motion = even_motion(linkage, 0.0, TURN)
 
     def torque(share: FloatArray) -> FloatArray:
@@ -104,19 +175,10 @@ def size_flywheel(
         return torque(share) * motion.rate(share)
 
     panels = integrate(work, motion.edges(_PANELS))
-    mean = held(float(panels.total) / TURN, 2 * float(panels.error) / TURN)
-    samples = np.concatenate([[0.0], gauss_legendre(panels.edges)[0], [1.0]])
-    at = np.append(0.0, _passages(lambda share: mean - torque(share), samples))
-    # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
-    theta2 = motion.theta2(at)
-    gained = mean * theta2 - panels.until(work, at)
-    least, most = (int(choose(gained)) for choose in (np.argmin, np.argmax))
-    energy = float(gained[most] - gained[least])
-    slowest, fastest = theta2[[least, most]].tolist()
-    return Flywheel(energy / (fluctuation * omega2**2), energy, mean, slowest, fastest)
+    return motion, torque, panels, lambda share: panels.until(work, share)
 
 
-def _passages(curve: Callable[[FloatArray], FloatArray], places: FloatArray) -> FloatArray:
+def _passages(curve: Curve, places: FloatArray) -> FloatArray:
     """Where a curve changes sign, smoothly or not, by halving between places where it is sampled."""
     positive = curve(places) > 0
     changes = np.flatnonzero(positive[1:] != positive[:-1])

@@ -10,10 +10,10 @@ from enum import StrEnum
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.dynamics import friction_and_springs
 from grashof.analysis.forces.energy import mechanical_energy
 from grashof.analysis.forces.joints import joint_motion, joints_of
-from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, torsion_moments
+from grashof.analysis.forces.loads import Friction, Loads, torsion_moments
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
 from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, Turning, solve_kinematics
@@ -115,7 +115,7 @@ def free_response(
 
     Examples
     --------
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import uniform_bars
     >>> from grashof.problems import FourBar
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> free = free_response(crank_rocker, uniform_bars(crank_rocker, 2.0), [0, 1, 2], 0.0, 5.0)
@@ -127,15 +127,12 @@ def free_response(
     if at.ndim != 1 or len(at) < 2 or not (np.diff(at) > 0).all():
         raise ProblemError("time is not a rising sequence of two or more numbers")
     _check_start(linkage, masses, theta2)
-    drive = torque if callable(torque) else None
-    constant = 0.0 if callable(torque) else float(torque)
 
     def given(now: FloatArray, angle: FloatArray, rate: FloatArray) -> FloatArray:
-        if drive is None:
-            return np.full(now.shape, constant)
-        return np.array(
-            [float(drive(*each)) for each in zip(now.tolist(), angle.tolist(), rate.tolist(), strict=True)]
-        )
+        if not callable(torque):
+            return np.full(now.shape, float(torque))
+        states = zip(now.tolist(), angle.tolist(), rate.tolist(), strict=True)
+        return np.array([float(torque(*each)) for each in states])
 
     def rates(senses: FloatArray | None) -> Acceleration:
         def alpha2(now: FloatArray, angle: FloatArray, rate: FloatArray, guess: FloatArray) -> FloatArray:
@@ -148,11 +145,11 @@ def free_response(
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         # A step that is tried may meet a dead position, before an event ends the motion there.
         warnings.simplefilter("ignore", DeadPositionWarning)
-        rubbing = _Rubbing(linkage, _rubbing(linkage, loads))
-        path, ending = _moved(rates, at, theta2, omega2, tolerance, rubbing)
+        path, ending = _moved(rates, at, theta2, omega2, tolerance, _Rubbing.of(linkage, loads))
         end = path[-1].end
         reached = at if ending is Ending.TIME else at[at <= end]
-        state = solve_kinematics(linkage, *_along(path, reached))
+        whole = Path(tuple(panel for part in path for panel in part.panels), None)
+        state = solve_kinematics(linkage, *whole.at(reached))
     return FreeResponse(reached, state, mechanical_energy(state, masses, loads), ending, end)
 
 
@@ -165,7 +162,7 @@ def generalised_inertia(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses)
 
     Examples
     --------
-    >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.analysis import Body
     >>> from grashof.problems import FourBar
     >>> rod = Masses(Body(3.0, 0.2, (0.5, 0.0)), Body(0), Body(0))
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
@@ -177,16 +174,15 @@ def generalised_inertia(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rubbing:
-    """Joints whose friction has the sense in which they turn, or slide, however slowly.
-
-    Parameters
-    ----------
-    linkage : Linkage
-    joints : tuple of int
-    """
+    """Joints whose friction has the sense in which they turn, or slide, however slowly."""
 
     linkage: Linkage
     joints: tuple[int, ...]
+
+    @classmethod
+    def of(cls, linkage: Linkage, loads: Loads) -> _Rubbing:
+        coulomb, radius = (loads.friction.of(linkage, name) for name in ("coulomb", "radius"))
+        return cls(linkage, tuple(joint for joint in joints_of(linkage) if coulomb[joint] or radius[joint]))
 
     def senses(self, theta2: float, sense: int) -> FloatArray:
         """In which the joints are about to turn where the driver turns in a sense, shape (J,)."""
@@ -254,12 +250,6 @@ def _sets_off(
     return 0
 
 
-def _along(path: list[Path], time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Driver angle, speed and acceleration at times of a motion."""
-    whole = Path(tuple(panel for part in path for panel in part.panels), None)
-    return whole.at(time)
-
-
 def _equation_of_motion(
     unit: Kinematics,
     omega2: FloatArray,
@@ -284,10 +274,7 @@ def _equation_of_motion(
         push = (omega2**2)[:, None] * centre.acceleration - gravity
         still = still + body.mass * (push * centre.velocity).sum(axis=-1)
         still = still + omega2**2 * body.inertia * alpha * omega
-    if loads.friction.of(unit.linkage, "radius").any():
-        rubbing = inverse_dynamics(_scaled(unit, omega2, guess), masses, loads, senses).joint_moments
-    else:
-        rubbing = known_joint_moments(state, loads, senses)
+    rubbing = friction_and_springs(_scaled(unit, omega2, guess), masses, loads, senses)
     rubbing = rubbing - torsion_moments(state, loads)
     for joint in joints_of(unit.linkage):
         if rubbing[joint].any():
@@ -319,9 +306,3 @@ def _check_start(linkage: Linkage, masses: Masses, theta2: float) -> None:
     bodies = masses.by_link(linkage).values()
     if not any(np.any(body.mass > 0) or np.any(body.inertia > 0) for body in bodies):
         raise ProblemError("the links have no inertia, so no torque gives them a motion")
-
-
-def _rubbing(linkage: Linkage, loads: Loads) -> tuple[int, ...]:
-    """The joints whose friction does not vanish with their speed."""
-    coulomb, radius = (loads.friction.of(linkage, name) for name in ("coulomb", "radius"))
-    return tuple(joint for joint in joints_of(linkage) if coulomb[joint] or radius[joint])

@@ -29,24 +29,14 @@ class Need(NamedTuple):
 
 
 class Standing(NamedTuple):
-    """A dyad as it stands in a motion.
+    """A dyad in a motion.
 
-    Parameters
-    ----------
-    dyad : HostedDyad
-    closed : Closed
-    arms : pair of vectors
-        Of C and D from the origins of their hosts' frames, on the ground from O2; of a slide that of E.
+    The arms are of C and D (of a slide E) from the origins of their hosts' frames, on the ground from O2.
     """
 
     dyad: HostedDyad
     closed: Closed
     arms: tuple[Vector, Vector]
-
-    @property
-    def across(self) -> Vector:
-        """Unit vector across its slide, to its left."""
-        return self.closed.cos4, self.closed.sin4
 
 
 class Frames(NamedTuple):
@@ -86,16 +76,7 @@ def frames_of(state: Kinematics) -> Frames:
 
 
 class JointForces(NamedTuple):
-    """Forces in the joints, each as `Dynamics.forces` has it, and what slides and drive do.
-
-    Parameters
-    ----------
-    forces : list of vectors
-    slides : dict of int to pair of ndarray
-        By joint: the force of the slide on the slider or block across it, and the moment.
-    torque : ndarray
-        Of the drive.
-    """
+    """Forces as in `Dynamics`, by joint those across slides and their moments, and the drive torque."""
 
     forces: list[Vector]
     slides: dict[int, Vector]
@@ -103,18 +84,8 @@ class JointForces(NamedTuple):
 
 
 def joint_forces(frames: Frames, needs: Mapping[int, Need], moments: FloatArray) -> JointForces:
-    """Forces in the joints that meet the needs of all links.
+    """Forces in the joints that meet the needs of all moving links; `moments` (J, ...) as in `Dynamics`.
 
-    Parameters
-    ----------
-    frames : Frames
-    needs : mapping of int to Need
-        Of the moving links.
-    moments : ndarray, shape (J, ...), N length
-        Of friction and torsion springs, on the second link of each joint; in a slide the force along it.
-
-    Notes
-    -----
     Of a dyad the balance of both links gives the force between them (`grashof.analysis.mechanism.dyad`);
     those on its hosts follow, and ease what these need.
     """

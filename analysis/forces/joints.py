@@ -49,19 +49,11 @@ def pins_of(linkage: Linkage) -> tuple[Joint, ...]:
     return tuple(Joint(k) for k, joint in enumerate(linkage.mechanism.every_joint) if not joint.slides)
 
 
-def joint_name(linkage: Linkage, joint: Joint) -> str:
-    """What a joint is called in tables and messages: O2, A, ..., or slide."""
-    return "slide" if joint in slides_of(linkage) else joint.name
-
-
 def joint_motion(state: Kinematics, joint: int) -> tuple[FloatArray, FloatArray]:
-    """Angle and angular velocity of the second link of a joint relative to the first; in a slide its travel.
+    """Angle (...), rad, and angular velocity of the second link of a joint relative to the first.
 
-    Returns
-    -------
-    ndarray, shape (...), rad and rad/s; or length and length/s
-        The travel of the slider's pin from the foot of O2 on the line of the slide, or of B from A along
-        the rod.
+    In a slide its travel and the rate of that: of the slider's pin from the foot of O2 on the line of the
+    slide, or of B from A along the rod.
     """
     row = state.linkage.mechanism.every_joint[joint]
     first, second = row.links
@@ -93,9 +85,3 @@ def output_rate(state: Kinematics) -> FloatArray:
     if slide is not None and state.linkage.mechanism.dyads[-1].kind is DyadKind.RRP:
         return slide.velocity
     return state.turning[-1].omega
-
-
-def moving_origins(linkage: Linkage) -> tuple[int, ...]:
-    """The links whose frames begin in a point that moves."""
-    kind = linkage.mechanism
-    return tuple(link.number for link in kind.links[1:] if link.points[0] not in kind.ground)

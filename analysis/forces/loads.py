@@ -4,19 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import (
-    Joint,
-    joined,
-    joint_motion,
-    joint_name,
-    joints_of,
-    slides_of,
-)
+from grashof.analysis.forces.joints import Joint, joined, joint_motion, joints_of, slides_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -228,33 +221,14 @@ class Loads:
 
 @dataclass(slots=True, eq=False)
 class Wrench:
-    """What pushes and turns one link, joints and drive left out.
-
-    Parameters
-    ----------
-    force : ndarray, shape (..., 2), N
-    moment : ndarray, shape (...), N length
-        About the origin of the link's frame (O2 for the ground).
-    """
+    """Force (..., 2), and moment about the origin of its frame (of the ground O2), of all loads on a link."""
 
     force: FloatArray
     moment: FloatArray
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PlacedLoad:
-    """A force and a moment on a link, with the place where they act.
-
-    Parameters
-    ----------
-    link : int
-        1 to 4; of a six-bar to 6.
-    at : array_like, shape (..., 2), length
-        (u, v) in the link's frame, the ground's being the global one.
-    force : ndarray, shape (..., 2), N
-        In global axes.
-    moment : ndarray, shape (...), N length
-    """
+class PlacedLoad(NamedTuple):
+    """A force (..., 2) in global axes and a moment on a link, at a place (u, v) of its frame."""
 
     link: int
     at: npt.ArrayLike
@@ -300,7 +274,7 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
     for load in placed_loads(state, loads):
         wrench = found[load.link]
         if load.force.any():
-            place = _carried(state, load.link, load.at).position
+            place = state.point(load.link, load.at).position
             wrench.force = wrench.force + load.force
             wrench.moment = wrench.moment + cross(place - state.origin(load.link).position, load.force)
         wrench.moment = wrench.moment + load.moment
@@ -309,10 +283,8 @@ def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
 
 def spring_ends(state: Kinematics, spring: Spring) -> tuple[PointMotion, PointMotion]:
     """How the two ends of a spring move."""
-    return (
-        _carried(state, spring.first_link, spring.first_at),
-        _carried(state, spring.second_link, spring.second_at),
-    )
+    first, second = (spring.first_link, spring.first_at), (spring.second_link, spring.second_at)
+    return state.point(*first), state.point(*second)
 
 
 def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> FloatArray:
@@ -329,19 +301,9 @@ def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> Floa
 
 
 def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | None = None) -> FloatArray:
-    """Moments that joints exert on their second link, friction that grows with the force left out.
+    """Moments (J, ...) of joints on their second links, of slides forces, as far as no joint force is needed.
 
-    Parameters
-    ----------
-    state : Kinematics
-    loads : Loads
-    senses : ndarray, shape (J,), optional
-        In which friction takes the joints to turn, or to slide; by default as they do.
-
-    Returns
-    -------
-    ndarray, shape (J, ...), N length
-        In a slide the force along it, N.
+    `senses` (J,) are those in which friction takes the joints to turn, or to slide; by default as they do.
     """
     moments = torsion_moments(state, loads)
     viscous, coulomb = (loads.friction.of(state.linkage, name) for name in ("viscous", "coulomb"))
@@ -354,13 +316,7 @@ def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | No
 
 
 def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
-    """The same of torsion springs alone.
-
-    Raises
-    ------
-    ProblemError
-        One of them is at a slide, in which links do not turn against each other.
-    """
+    """The same of torsion springs alone; ProblemError where one is at a slide, whose links do not turn."""
     linkage = state.linkage
     moments = np.zeros((len(joints_of(linkage)), *state.shape))
     for spring in loads.torsion_springs:
@@ -368,9 +324,9 @@ def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
             names = ", ".join(each.name for each in joints_of(linkage))
             raise wrong_value("joint of a torsion spring", spring.joint.name, f"one of {names}")
         if spring.joint in slides_of(linkage):
-            where, links = joint_name(linkage, spring.joint), joined(linkage, spring.joint)
+            links = joined(linkage, spring.joint)
             raise ProblemError(
-                f"a torsion spring is at the {where} between links {links}, which do not turn "
+                f"a torsion spring is at the slide between links {links}, which do not turn "
                 "against each other; it must be at a pin"
             )
         angle, _ = joint_motion(state, spring.joint)
@@ -380,11 +336,3 @@ def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
 
 def _value(given: Varying, state: Kinematics) -> FloatArray:
     return np.asarray(given(state) if callable(given) else given, dtype=np.float64)
-
-
-def _carried(state: Kinematics, link: int, at: npt.ArrayLike) -> PointMotion:
-    if link != 1:
-        return state.point(link, at)
-    place = np.asarray(at, dtype=np.float64)
-    still = np.zeros(2)
-    return PointMotion(place, still, still, still)

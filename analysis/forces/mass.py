@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.bars import Bar, bars_of
+from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
@@ -235,7 +235,8 @@ def uniform_bars(
     )
     bodies = dict.fromkeys(links, Body(0.0))
     for link, bar in bars_of(linkage).items():
-        bodies[link] = _along(bar, uniform_bar(bar.reach, each[link - 2], wide[link - 2]))
+        whole = uniform_bar(bar.reach, each[link - 2], wide[link - 2])
+        bodies[link] = Body(whole.mass, whole.inertia, bar.middle)  # where it lies on its link
     bars = Masses(*bodies.values())
     return loaded(bars, linkage, payload) if np.any(np.asarray(payload) != 0) else bars
 
@@ -281,11 +282,6 @@ def _listed(numbers: Sequence[int]) -> str:
     return f"{', '.join(most)} and {last}"
 
 
-def _along(bar: Bar, body: Body) -> Body:
-    """A uniform bar where it lies on its link."""
-    return Body(body.mass, body.inertia, bar.middle)
-
-
 def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
     """Motion of the centre of mass of all moving links.
 
@@ -304,18 +300,16 @@ def system_centre(masses: Masses, state: Kinematics) -> PointMotion:
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> bars = uniform_bars(jack, (312, 312, 314))
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
+    >>> from grashof.analysis import solve_kinematics
     >>> system_centre(bars, solve_kinematics(jack, np.radians(90))).position.round(6).tolist()
     [1.382152, 4.431897]
     """
     total = masses.total
     if not np.all(total > 0):
         raise ProblemError("the links have no mass, so no centre of mass")
-    moments: list[FloatArray] = []
+    moments = np.zeros(())
     for link, body in masses.by_link(state.linkage).items():
         centre, share = state.point(link, body.centre), np.asarray(body.mass / total)[..., None]
         parts = (centre.position, centre.velocity, centre.acceleration, centre.jerk)
-        moments = [share * part for part in parts] if not moments else [
-            known + share * part for known, part in zip(moments, parts, strict=True)
-        ]  # fmt: skip
+        moments = moments + share * np.stack(parts)
     return PointMotion(*moments)

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
 from grashof.analysis.forces.curve_through import curve_through
 from grashof.analysis.forces.joints import Joint, joint_motion, slides_of
-from grashof.analysis.forces.loads import (
-    AppliedForce,
-    AppliedMoment,
-    Friction,
-    Loads,
-    Spring,
-    TorsionSpring,
-)
+from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import Body, Masses, given_masses, loaded, uniform_bars
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import DynamicsSpec, ProblemError
@@ -101,7 +94,11 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
         )  # fmt: skip
     return Loads(
         gravity=np.array(spec.gravity) / metre,
-        forces=tuple(_forces(spec.loads, metre, clock)),
+        forces=tuple(
+            AppliedForce(load.link, load.at, _varying(load, metre, clock), load.frame == "link")
+            for load in spec.loads
+            if not load.is_moment
+        ),
         moments=tuple(
             AppliedMoment(load.link, _varying(load, metre**2, clock)) for load in spec.loads if load.is_moment
         ),
@@ -115,12 +112,6 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
         ),
         friction=friction,
     )
-
-
-def _forces(loads: Sequence[LoadSpec], metre: float, clock: Clock | None) -> Iterator[AppliedForce]:
-    for load in loads:
-        if not load.is_moment:
-            yield AppliedForce(load.link, load.at, _varying(load, metre, clock), load.frame == "link")
 
 
 def _ends(between: tuple[Place, Place]) -> tuple[int, tuple[float, float], int, tuple[float, float]]:
@@ -170,7 +161,8 @@ def _place(state: Kinematics, load: LoadSpec) -> FloatArray:
 
 def _within(travel: FloatArray, load: LoadSpec) -> FloatArray:
     """A travel, put back where rounding carries it past the rows of a load."""
-    low, high = (load.values or ((0.0,),))[0][0], (load.values or ((0.0,),))[-1][0]
+    rows = load.values or ((0.0,),)
+    low, high = rows[0][0], rows[-1][0]
     slack = TRAVEL_ROUNDING * max(abs(low), abs(high))
     known = np.asarray(travel)[np.isfinite(travel)]
     least, most = known.min(initial=high), known.max(initial=low)

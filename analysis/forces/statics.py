@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import joint_motion, joints_of, moving_origins, output_rate
+from grashof.analysis.forces.joints import joint_motion, joints_of, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
@@ -125,7 +125,7 @@ def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Load
     --------
     A bar of 3 kg as the output of a square, P at B: half of its weight times the length.
 
-    >>> from grashof.analysis.forces.mass import Body
+    >>> from grashof.analysis import Body
     >>> from grashof.problems import FourBar
     >>> square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
     >>> bar = Masses(Body(0), Body(0), Body(3.0, 0.0, (1.0, 0.0)))
@@ -160,7 +160,8 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in range(2, len(outside) + 1):
         power = power + outside[link].moment * virtual.angular(link)[1]
-    for link in moving_origins(state.linkage):
+    kind = state.linkage.mechanism
+    for link in (row.number for row in kind.links[1:] if row.points[0] not in kind.ground):
         if outside[link].force.any():
             power = power + (outside[link].force * virtual.origin(link).velocity).sum(axis=-1)
     moments = known_joint_moments(state, loads)

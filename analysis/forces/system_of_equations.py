@@ -7,9 +7,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
+from grashof.analysis.forces.dynamics import friction_and_springs
 from grashof.analysis.forces.joints import Joint, joints_of, slide_direction, slide_normal, slides_of
-from grashof.analysis.forces.loads import Loads, cross, known_joint_moments, wrenches
+from grashof.analysis.forces.loads import Loads, cross, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
@@ -67,10 +67,9 @@ def system_of_equations(
     loads : Loads, optional
         None by default.
     joint_moments : ndarray, shape (J, ...), N length, optional
-        Of friction and torsion springs, on the second link of each joint (in a slide the force along it),
-        as `Dynamics` has them. By
-        default those of the loads; friction that grows with the joint forces, which would make the
-        system nonlinear, is taken from `inverse_dynamics`.
+        Of friction and torsion springs, as `Dynamics` has them. By default those of the loads; friction
+        that grows with the joint forces, which would make the system nonlinear, is taken from
+        `inverse_dynamics`.
 
     Returns
     -------
@@ -83,8 +82,7 @@ def system_of_equations(
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import solve_kinematics, uniform_bars
     >>> from grashof.problems import FourBar
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> state = solve_kinematics(jack, np.radians(60), 2 * np.pi / 3)
@@ -94,7 +92,7 @@ def system_of_equations(
     """
     loads = Loads() if loads is None else loads
     if joint_moments is None:
-        joint_moments = _moments_in_joints(state, masses, loads)
+        joint_moments = friction_and_springs(state, masses, loads)
     linkage, gravity, outside = state.linkage, loads.gravity_vector(), wrenches(state, loads)
     bodies = masses.by_link(linkage)
     columns = [_column(state, joint) for joint in joints_of(linkage)]
@@ -161,10 +159,3 @@ def _column(state: Kinematics, joint: Joint) -> _Column:
         across, along = slide_normal(state, second), slide_direction(state, second)
         return _Column((f"F{by}{on}n", f"M{first}{second}"), row.links, on, place, (across,), along)
     return _Column((f"F{by}{on}x", f"F{by}{on}y"), row.links, on, place, tuple(np.eye(2)), None)
-
-
-def _moments_in_joints(state: Kinematics, masses: Masses, loads: Loads) -> FloatArray:
-    if loads.friction.of(state.linkage, "radius").any():
-        found: Dynamics = inverse_dynamics(state, masses, loads)
-        return found.joint_moments
-    return known_joint_moments(state, loads)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,14 +17,7 @@ _ZOOMS = 3
 
 
 class Along(NamedTuple):
-    """The greatest value along a bar, and where.
-
-    Parameters
-    ----------
-    value : ndarray, shape (...)
-    at : ndarray, shape (...), length
-        Distance from the link's origin.
-    """
+    """The greatest value along a bar, shape (...), and its distance from the link's origin, length."""
 
     value: FloatArray
     at: FloatArray
@@ -32,60 +25,33 @@ class Along(NamedTuple):
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def greatest(bar: BarForces, terms: FloatArray, spans: BoolArray | None = None) -> Along:
-    """Greatest value of polynomials of degree three at most, one for each span.
+    """Greatest value of polynomials of degree three at most, coefficients (..., K - 1, N) as those of `bar`.
 
-    Parameters
-    ----------
-    bar : BarForces
-    terms : ndarray, shape (..., K - 1, 4) or fewer coefficients
-        As those of `bar`.
-    spans : ndarray of bool, shape (..., K - 1), optional
-        Which spans count; by default all that there are.
-
-    Notes
-    -----
-    At the ends of the spans and where the derivative, a quadratic, is zero: for the moment where the
-    shear force is zero.
+    It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) says which
+    count; by default all that there are.
     """
-    places = np.concatenate([_ends(bar), _stationary(bar, terms)], axis=-1)
-    return _best(bar, polynomial(terms, places), places, spans)
+    places = _candidates(bar, terms)
+    return _best(bar, polynomial(terms, places), places, spans)[0]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def greatest_size(bar: BarForces, *polynomials: FloatArray) -> Along:
     """Greatest magnitude of any of several polynomials, as for `greatest`."""
-    ends = _ends(bar)
-    places, sizes = [], []
-    for terms in polynomials:
-        places.append(np.concatenate([ends, _stationary(bar, terms)], axis=-1))
-        sizes.append(np.abs(polynomial(terms, places[-1])))
-    return _best(bar, np.concatenate(sizes, axis=-1), np.concatenate(places, axis=-1))
+    places = [_candidates(bar, terms) for terms in polynomials]
+    sizes = [np.abs(polynomial(terms, at)) for terms, at in zip(polynomials, places, strict=True)]
+    return _best(bar, np.concatenate(sizes, axis=-1), np.concatenate(places, axis=-1))[0]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def greatest_of(bar: BarForces, value: Callable[..., FloatArray], *pieces: FloatArray) -> Along:
-    """Greatest value of a smooth function of some polynomials.
+    """Greatest value of a smooth function of polynomials: samples in each span, then ever closer ones."""
 
-    Parameters
-    ----------
-    bar : BarForces
-    value : callable
-        Of one array for each of the polynomials.
-    *pieces : ndarray, shape (..., K - 1, N)
-
-    Notes
-    -----
-    Samples in each span, then ever closer ones about the greatest of them.
-    """
-
-    def of(own: list[FloatArray], places: FloatArray) -> FloatArray:
+    def of(own: Sequence[FloatArray], places: FloatArray) -> FloatArray:
         return value(*(polynomial(terms, places) for terms in own))
 
-    share = np.linspace(0, 1, _CELLS + 1)
-    places = bar.spans[..., None] * share
-    _, at, span = _outermost(bar, of(list(pieces), places), places)
-    chosen = span[..., None, None]
-    own = [np.take_along_axis(terms, chosen, axis=-2)[..., 0, :] for terms in pieces]
+    places = _cells(bar)
+    (_, at), span = _best(bar, of(pieces, places), places)
+    own = [np.take_along_axis(terms, span[..., None, None], axis=-2)[..., 0, :] for terms in pieces]
     whole = np.take_along_axis(bar.spans, span[..., None], axis=-1)
     start = np.take_along_axis(bar.stations, span[..., None], axis=-1)[..., 0]
     inside, step = at - start, whole[..., 0] / _CELLS
@@ -105,23 +71,10 @@ def greatest_of(bar: BarForces, value: Callable[..., FloatArray], *pieces: Float
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def deflection(bar: BarForces, stiffness: float) -> FloatArray:
-    """Deflection of a bar that is held in its joints, to the left of the line through them.
+    """Deflection, to its left, of a bar held in its joints: coefficients (..., K - 1, 6) as those of `bar`.
 
-    Parameters
-    ----------
-    bar : BarForces
-    stiffness : float, N length^2
-        Elastic modulus times second moment of area.
-
-    Returns
-    -------
-    ndarray, shape (..., K - 1, 6), length over length^0 to length^5
-        Coefficients in the distance from the station before, as those of `bar`.
-
-    Notes
-    -----
-    w'' = M / (E I), integrated twice exactly, with w = 0 in both joints: a simply supported beam with
-    overhangs (Timoshenko, *Strength of Materials*, part I, ch. V; Shigley, sec. 4-3).
+    w'' = M / (E I), with the stiffness E I in N length^2, integrated twice exactly, and w = 0 in both joints:
+    a beam with overhangs (Timoshenko, *Strength of Materials*, part I, ch. V; Shigley, sec. 4-3).
     """
     bent = bar.moment / stiffness
     spans, stations = bar.spans, bar.stations
@@ -147,22 +100,16 @@ def deflection(bar: BarForces, stiffness: float) -> FloatArray:
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
 def greatest_deflection(bar: BarForces, bow: FloatArray) -> Along:
-    """Greatest size of a deflection, between the joints or beyond.
-
-    Notes
-    -----
-    Newton's method in every cell of a span in which the slope changes its sign.
-    """
-    first, second = _derivative(bow), _derivative(_derivative(bow))
-    share = np.linspace(0, 1, _CELLS + 1)
-    cells = bar.spans[..., None] * share
+    """Greatest size of a deflection, overhangs too, by Newton's method where the slope changes its sign."""
+    first = _derivative(bow)
+    second, cells = _derivative(first), _cells(bar)
     low, high = cells[..., :-1], cells[..., 1:]
     tilt = polynomial(first, cells)
     at = low + (high - low) * _finite(tilt[..., :-1] / (tilt[..., :-1] - tilt[..., 1:]))
     for _ in range(_NEWTON):
         at = np.clip(at - _finite(polynomial(first, at) / polynomial(second, at)), low, high)
     places = np.concatenate([cells, at], axis=-1)
-    return _best(bar, np.abs(polynomial(bow, places)), places)
+    return _best(bar, np.abs(polynomial(bow, places)), places)[0]
 
 
 def _derivative(terms: FloatArray) -> FloatArray:
@@ -174,34 +121,30 @@ def _finite(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(values), values, 0.0)
 
 
-def _ends(bar: BarForces) -> FloatArray:
-    spans = bar.spans
-    return np.stack([np.zeros_like(spans), spans], axis=-1)
+def _cells(bar: BarForces) -> FloatArray:
+    return bar.spans[..., None] * np.linspace(0, 1, _CELLS + 1)
 
 
-def _stationary(bar: BarForces, terms: FloatArray) -> FloatArray:
-    """Where the derivatives are zero, within the spans; two places for each, shape (..., K - 1, 2)."""
+def _candidates(bar: BarForces, terms: FloatArray) -> FloatArray:
+    """Ends of the spans, and two places within each where the derivatives are zero, shape (..., K - 1, 4)."""
     slope = [terms[..., k] * k for k in range(1, terms.shape[-1])] + [np.zeros(())] * 2
     constant, linear, square = slope[:3]
     root = np.sqrt(linear**2 - 4 * square * constant)
     sum_of_both = -(linear + np.where(linear < 0, -root, root)) / 2
     roots = np.stack(np.broadcast_arrays(sum_of_both / square, constant / sum_of_both), axis=-1)
-    return np.clip(np.where(np.isnan(roots), 0.0, roots), 0.0, bar.spans[..., None])
+    spans = bar.spans[..., None]
+    level = np.clip(np.where(np.isnan(roots), 0.0, roots), 0.0, spans)
+    return np.concatenate([np.zeros_like(spans), spans, level], axis=-1)
 
 
-def _best(bar: BarForces, values: FloatArray, places: FloatArray, spans: BoolArray | None = None) -> Along:
-    value, at, _ = _outermost(bar, values, places, spans)
-    return Along(value, at)
-
-
-def _outermost(
+def _best(
     bar: BarForces, values: FloatArray, places: FloatArray, spans: BoolArray | None = None
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Greatest of values (..., K - 1, S) at places in their spans; where it is, and in which span."""
+) -> tuple[Along, IntArray]:
+    """Greatest of values (..., K - 1, S) at places in their spans, and in which span it is."""
     counted = np.where((bar.real if spans is None else spans)[..., None], values, -np.inf)
     flat = counted.reshape(*counted.shape[:-2], -1)
     top = flat.argmax(axis=-1)[..., None]
     span = top // counted.shape[-1]
     inside = np.take_along_axis(places.reshape(*places.shape[:-2], -1), top, axis=-1)
     at = np.take_along_axis(bar.stations, span, axis=-1) + inside
-    return np.take_along_axis(flat, top, axis=-1)[..., 0], at[..., 0], span[..., 0]
+    return Along(np.take_along_axis(flat, top, axis=-1)[..., 0], at[..., 0]), span[..., 0]

@@ -11,10 +11,9 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.loads import Loads, cross, placed_loads
+from grashof.analysis.forces.loads import Loads, cross, placed_loads, turned
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.analysis.strength.bar_frame import BarFrame, bar_frame
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
@@ -176,8 +175,7 @@ def section_forces(
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
-    >>> from grashof.analysis.forces.mass import uniform_bars
+    >>> from grashof.analysis import solve_kinematics, uniform_bars
     >>> from grashof.problems import FourBar
     >>> rectangle = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1)
     >>> resting = solve_kinematics(rectangle, np.pi / 2, 0.0)
@@ -188,34 +186,82 @@ def section_forces(
     loads = Loads() if loads is None else loads
     links = _checked(state, links)
     found = inverse_dynamics(state, masses, loads) if found is None else found
-    pushed = {link: list(_joint_loads(state, found, link)) for link in links}
-    for load in placed_loads(state, loads):
-        if load.link in pushed:
-            pushed[load.link].append(_hung(state, load.link, load.at, load.force, load.moment))
-    gravity, bars = loads.gravity_vector(), {}
-    for link, points in pushed.items():
+    acting, gravity, bars = list(placed_loads(state, loads)), loads.gravity_vector(), {}
+    for link in links:
+        bar = _frame(state, link)
+        points = list(_joint_loads(state, found, link, bar))
+        points += [bar.hung(load.at, load.force, load.moment) for load in acting if load.link == link]
         pieces = [piece for piece in masses.of(link).pieces if np.any(piece.mass) or np.any(piece.inertia)]
-        spreads = [_spread(state, link, piece, gravity) for piece in pieces]
-        bars[link] = _cut(link, state, points, spreads)
+        spreads = [_spread(state, link, bar, piece, gravity) for piece in pieces]
+        bars[link] = _cut(link, bar.length, state.shape, points, spreads)
     return bars
 
 
 class _Point(NamedTuple):
-    """A force and a couple on the bar itself, in the link's frame."""
+    """A load on the bar itself at u, shape (...): forces along it and across it and a couple, (..., 3)."""
 
     at: FloatArray
-    force: FloatArray
-    couple: FloatArray
+    load: FloatArray
 
 
 class _Spread(NamedTuple):
-    """A force and a couple for each unit of length, linear in u: the value at u = 0, and the slope."""
+    """Such loads for each unit of length from low to high, linear in u: those at u = 0, and their slopes."""
 
     low: FloatArray
     high: FloatArray
-    force: tuple[FloatArray, FloatArray]
-    couple: tuple[FloatArray, FloatArray]
+    at_zero: FloatArray
+    slope: FloatArray
     point: _Point  # the same where it has no length
+
+
+class _BarFrame(NamedTuple):
+    """How a bar, whose own u runs to its other joint, lies in its link's frame, and where it ends."""
+
+    theta: FloatArray
+    sign: FloatArray  # -1 where the other joint lies against the link's u-axis
+    length: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    def own(self, at: npt.ArrayLike) -> FloatArray:
+        """A place of the link's frame in that of the bar."""
+        place: FloatArray = np.asarray(at, dtype=np.float64) * self.sign[..., None]
+        return place
+
+    def turned(self, force: FloatArray) -> FloatArray:
+        """A vector of global axes in the frame of the bar."""
+        return turned(np.asarray(force), -self.theta) * self.sign[..., None]
+
+    def foot(self, at: FloatArray) -> FloatArray:
+        """Where a point (u, v) of the bar's frame hangs on the bar, shape (...)."""
+        (u, v), same = (at[..., 0], at[..., 1]), _SAME * (self.high - self.low)
+        nearest = np.clip(u, self.low, self.high)
+        beyond = np.abs(u - nearest)
+        on_joint = (beyond <= same) | (np.abs(v) > beyond)
+        foot = np.where(on_joint, nearest, u)
+        foot = np.where(np.abs(foot) <= same, 0.0, foot)
+        return np.where(np.abs(foot - self.length) <= same, self.length, foot)
+
+    def hung(self, at: npt.ArrayLike, force: FloatArray, couple: npt.ArrayLike) -> _Point:
+        """A force in global axes at a point (u, v) of the link's frame as the bar feels it."""
+        place, own = self.own(at), self.turned(force)
+        foot = self.foot(place)
+        arm = place - np.stack([foot, np.zeros_like(foot)], axis=-1)
+        return _Point(foot, _load(own, np.asarray(couple) + cross(arm, own)))
+
+
+def _frame(state: Kinematics, link: int) -> _BarFrame:
+    bar, theta, ahead = bars_of(state.linkage)[link], state.angular(link)[0], np.ones(())
+    slide = state.slides[(link - 3) // 2] if (link, link + 1) in state.linkage.mechanism.slides else None
+    if slide is not None:
+        sign = np.where(slide.travel < 0, -1.0, 1.0)
+        ends = bar.low * sign, bar.high * sign
+        return _BarFrame(theta, sign, np.abs(slide.travel), np.minimum(*ends), np.maximum(*ends))
+    return _BarFrame(theta, ahead, np.asarray(bar.high), np.asarray(bar.low), np.asarray(bar.high))
+
+
+def _load(force: FloatArray, couple: FloatArray) -> FloatArray:
+    return np.stack(np.broadcast_arrays(force[..., 0], force[..., 1], couple), axis=-1)
 
 
 def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
@@ -229,56 +275,31 @@ def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
     return bars if links is None else links
 
 
-def _foot(at: FloatArray, bar: BarFrame) -> FloatArray:
-    """Where a point (u, v) of a bar's frame hangs on the bar, shape (...)."""
-    (u, v), same = (at[..., 0], at[..., 1]), _SAME * (bar.high - bar.low)
-    nearest = np.clip(u, bar.low, bar.high)
-    beyond = np.abs(u - nearest)
-    on_joint = (beyond <= same) | (np.abs(v) > beyond)
-    foot = np.where(on_joint, nearest, u)
-    foot = np.where(np.abs(foot) <= same, 0.0, foot)
-    return np.where(np.abs(foot - bar.length) <= same, bar.length, foot)
-
-
-def _hung(
-    state: Kinematics, link: int, at: npt.ArrayLike, force: FloatArray, couple: npt.ArrayLike
-) -> _Point:
-    """A force in global axes at a point (u, v) as the bar feels it."""
-    bar = bar_frame(state, link)
-    place = bar.own(at)
-    foot = _foot(place, bar)
-    arm = place - np.stack([foot, np.zeros_like(foot)], axis=-1)
-    own = bar.turned(force)
-    return _Point(foot, own, np.asarray(couple) + cross(arm, own))
-
-
-def _joint_loads(state: Kinematics, found: Dynamics, link: int) -> Iterator[_Point]:
+def _joint_loads(state: Kinematics, found: Dynamics, link: int, bar: _BarFrame) -> Iterator[_Point]:
     """What the joints of a link exert on it, the drive with them."""
-    linkage, bar = state.linkage, bar_frame(state, link)
+    linkage = state.linkage
     points = linkage.mechanism.links[link - 1].points
     for number, joint in enumerate(linkage.mechanism.every_joint):
         if link not in joint.links:
             continue
         first, second = joint.links
         force = found.forces[number] if link == first or first == 1 else -found.forces[number]
-        between = (first, second) in linkage.mechanism.slides and first != 1
-        moment = found.slide_moment if between else found.joint_moments[number]
+        moment = found.slide_moment if joint.slides and first != 1 else found.joint_moments[number]
         couple = moment if link == second else -moment
         if number == 0:
             couple = couple + found.torque
         name = joint.name.lower()
         if name in points[2:]:
-            yield _hung(state, link, getattr(linkage, name), force, couple)
+            yield bar.hung(getattr(linkage, name), force, couple)
         else:
             at = np.zeros(()) if name == points[0] else bar.length
-            yield _Point(at, bar.turned(force), couple)
+            yield _Point(at, _load(bar.turned(force), couple))
 
 
-def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _Spread:
+def _spread(state: Kinematics, link: int, bar: _BarFrame, body: Body, gravity: FloatArray) -> _Spread:
     """Weight and inertia of a body, spread along the bar."""
-    bar, mass, inertia = bar_frame(state, link), np.asarray(body.mass), np.asarray(body.inertia)
-    centre = bar.own(body.centre)
-    foot = _foot(centre, bar)
+    mass, inertia, centre = np.asarray(body.mass), np.asarray(body.inertia), bar.own(body.centre)
+    foot = bar.foot(centre)
     arm_u, arm_v = centre[..., 0] - foot, centre[..., 1]
     farther = np.maximum(foot - bar.low, bar.high - foot)
     half = np.where(inertia > 0, np.sqrt(3 * inertia / mass), 0.0)
@@ -287,59 +308,44 @@ def _spread(state: Kinematics, link: int, body: Body, gravity: FloatArray) -> _S
     turning = inertia - mass * half**2 / 3
     _, omega, alpha, _ = state.angular(link)
     origin = bar.turned(state.point(link, (0.0, 0.0)).acceleration - gravity)
-    pull, line, turn = omega**2, *(_over(each, 2 * half) for each in (mass, turning))
-
-    def inertial(u: FloatArray) -> FloatArray:
-        """Of a unit of mass that hangs on the bar at u."""
-        x, y = u + arm_u, arm_v
-        return -np.stack(
-            [origin[..., 0] - alpha * y - pull * x, origin[..., 1] + alpha * x - pull * y], axis=-1
-        )
-
+    pull, line, turn = omega**2, *(np.where(half > 0, each / (2 * half), 0.0) for each in (mass, turning))
     arm = np.stack(np.broadcast_arrays(arm_u, arm_v), axis=-1)
+
+    def inertial(share: FloatArray, u: FloatArray, couple: FloatArray) -> FloatArray:
+        """Load of a share of the mass that hangs on the bar at u, with a couple."""
+        x, y = u + arm_u, arm_v
+        push = [origin[..., 0] - alpha * y - pull * x, origin[..., 1] + alpha * x - pull * y]
+        force = share[..., None] * -np.stack(push, axis=-1)
+        return _load(force, cross(arm, force) - couple)
+
     slope = line[..., None] * np.stack([pull, -alpha], axis=-1)
-    at_origin = line[..., None] * inertial(np.zeros(()))
-    whole = mass[..., None] * inertial(foot)
-    has_length = half > 0
+    whole = np.where((half > 0)[..., None], 0.0, inertial(mass, foot, np.zeros(())))
     return _Spread(
         foot - half,
         foot + half,
-        (at_origin, slope),
-        (cross(arm, at_origin) - turn * alpha, cross(arm, slope)),
-        _Point(
-            foot - half,
-            np.where(has_length[..., None], 0.0, whole),
-            np.where(has_length, 0.0, cross(arm, whole)),
-        ),
+        inertial(line, np.zeros(()), turn * alpha),
+        _load(slope, cross(arm, slope)),
+        _Point(foot - half, whole),
     )
 
 
-def _over(whole: FloatArray, stretch: FloatArray) -> FloatArray:
-    """Share of a unit of length, none where there is no length."""
-    return np.where(stretch > 0, whole / stretch, 0.0)
-
-
-def _cut(link: int, state: Kinematics, points: list[_Point], spreads: list[_Spread]) -> BarForces:
+def _cut(
+    link: int, length: FloatArray, shape: tuple[int, ...], points: list[_Point], spreads: list[_Spread]
+) -> BarForces:
     """Equilibrium of ever longer parts of the bar, from its first station to its last."""
-    shape = state.shape
-    ends = [_Point(spread.high, np.zeros(2), np.zeros(())) for spread in spreads]
+    ends = [_Point(spread.high, np.zeros(3)) for spread in spreads]
     every = [*points, *(spread.point for spread in spreads), *ends]
-    places = _stacked([point.at for point in every], shape)
+    places = np.stack([np.broadcast_to(point.at, shape) for point in every], axis=-1)
     order = np.argsort(places, axis=-1, kind="stable")
     stations = np.take_along_axis(places, order, axis=-1)
-    along, across, couples = (
-        np.take_along_axis(_stacked(values, shape), order, axis=-1)
-        for values in (
-            [point.force[..., 0] for point in every],
-            [point.force[..., 1] for point in every],
-            [point.couple for point in every],
-        )
-    )
+    outer = np.stack([np.broadcast_to(point.load, (*shape, 3)) for point in every], axis=-2)
+    jumps = np.moveaxis(np.take_along_axis(outer, order[..., None], axis=-2) * (-1, 1, -1), -1, 0)
     steps, loaded = np.diff(stations, axis=-1), _loaded(stations, spreads)
-    normal, shear, moment = -along[..., 0], across[..., 0], -couples[..., 0]
+    values = jumps[..., 0]
     pieces: tuple[list[FloatArray], ...] = ([], [], [])
     for span in range(len(every) - 1):
-        pull, pull_slope, push, push_slope, turn, turn_slope = loaded[..., span]
+        (pull, push, turn), (pull_slope, push_slope, turn_slope) = loaded[..., span]
+        normal, shear, moment = values
         terms = (
             (normal, -pull, -pull_slope / 2),
             (shear, push, push_slope / 2),
@@ -347,34 +353,21 @@ def _cut(link: int, state: Kinematics, points: list[_Point], spreads: list[_Spre
         )
         for piece, own in zip(pieces, terms, strict=True):
             piece.append(np.stack(own, axis=-1))
-        normal, shear, moment = (polynomial(piece[-1], steps[..., span, None])[..., 0] for piece in pieces)
-        normal = normal - along[..., span + 1]
-        shear = shear + across[..., span + 1]
-        moment = moment - couples[..., span + 1]
-    length = np.broadcast_to(bar_frame(state, link).length, shape)
-    rest = SectionForce(normal[()], shear[()], moment[()])
+        beyond = [polynomial(piece[-1], steps[..., span, None])[..., 0] for piece in pieces]
+        values = np.stack(beyond) + jumps[..., span + 1]
     along_bar, across_bar, bending = (np.stack(piece, axis=-2) for piece in pieces)
-    return BarForces(link, length, stations, along_bar, across_bar, bending, rest)
-
-
-def _stacked(values: list[FloatArray], shape: tuple[int, ...]) -> FloatArray:
-    return np.stack([np.broadcast_to(value, shape) for value in values], axis=-1)
+    whole_length = np.broadcast_to(length, shape)
+    return BarForces(link, whole_length, stations, along_bar, across_bar, bending, SectionForce(*values))
 
 
 def _loaded(stations: FloatArray, spreads: list[_Spread]) -> FloatArray:
-    """Load along and across and couple, for each unit of length: each where a span begins, and its slope.
-
-    Shape (6, ..., K - 1).
-    """
-    start = stations[..., :-1]
-    middle = start + np.diff(stations, axis=-1) / 2
-    total = np.zeros((6, *start.shape))
+    """Loads of `_Spread` where the spans begin, and their slopes, shape (2, 3, ..., K - 1)."""
+    start = stations[..., :-1, None]
+    middle = start + np.diff(stations, axis=-1)[..., None] / 2
+    total = np.zeros((2, *start.shape[:-1], 3))
     for spread in spreads:
-        inside = (spread.low[..., None] < middle) & (middle < spread.high[..., None])
-        rows = ((spread.force[0][..., 0], spread.force[1][..., 0]),
-                (spread.force[0][..., 1], spread.force[1][..., 1]), spread.couple)  # fmt: skip
-        for row, (at_origin, slope) in enumerate(rows):
-            steep = np.asarray(slope)[..., None]
-            total[2 * row] += np.where(inside, np.asarray(at_origin)[..., None] + steep * start, 0.0)
-            total[2 * row + 1] += np.where(inside, steep, 0.0)
-    return total
+        inside = (spread.low[..., None, None] < middle) & (middle < spread.high[..., None, None])
+        slope = spread.slope[..., None, :]
+        total[0] += np.where(inside, spread.at_zero[..., None, :] + slope * start, 0.0)
+        total[1] += np.where(inside, slope, 0.0)
+    return np.moveaxis(total, -1, 1)

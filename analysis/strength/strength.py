@@ -19,8 +19,7 @@ from grashof.analysis.strength.along_bar import (
     greatest_size,
 )
 from grashof.analysis.strength.section_forces import BarForces, section_forces
-from grashof.analysis.strength.stress import von_mises
-from grashof.analysis.strength.structure import UNITS, Structure
+from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.section import CrossSection
 from grashof.problems.values.linkages.linkage import Linkage
@@ -84,17 +83,13 @@ def strength_at(
     forces = section_forces(state, structure.masses, structure.loads, found, links)
     bars = {
         link: {
-            key: Along(along.value * structure.in_si(UNITS[key]), along.at)
+            key: Along(along.value * structure.in_si(MEASURES[key].unit), along.at)
             for key, along in _bar_measures(bar, structure).items()
         }
         for link, bar in forces.items()
     }
-    return StrengthHistory(
-        bars,
-        pin_measures(
-            state.linkage, {joint: found.joint_force(joint) for joint in pins_of(state.linkage)}, structure
-        ),
-    )
+    in_pins = {joint: found.joint_force(joint) for joint in pins_of(state.linkage)}
+    return StrengthHistory(bars, pin_measures(state.linkage, in_pins, structure))
 
 
 def most_telling(keys: Container[str]) -> str:
@@ -157,6 +152,26 @@ def _stresses(bar: BarForces, section: CrossSection) -> dict[str, Along]:
     deeper = inner.value > normal.value
     stress = Along(np.where(deeper, inner.value, normal.value), np.where(deeper, inner.at, normal.at))
     return {"normal_stress": normal, "shear_stress": greatest_size(bar, shear), "stress": stress}
+
+
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def von_mises(axial: FloatArray, bending: FloatArray, shear: FloatArray) -> FloatArray:
+    """Greatest equivalent stress in a section, shape (...).
+
+    Arguments are magnitudes: the stress of the normal force, that of bending in the extreme fibre, and the
+    shear stress at the neutral axis, where it is greatest. At a share y of the way from axis to fibre
+    sigma = axial + bending y and tau = shear (1 - y^2), which is exact for a rectangle, and
+    sigma'^2 = sigma^2 + 3 tau^2 (von Mises; Shigley, *Mechanical Engineering Design*, secs. 3-10, 3-11 and
+    5-5). The greatest lies at y = 0, at y = 1, or at the middle root of y^3 + p y + q = 0.
+    """
+    p = bending**2 / (6 * shear**2) - 1
+    q = axial * bending / (6 * shear**2)
+    third = np.arccos(3 * q / (2 * p) * np.sqrt(-3 / p)) / 3
+    inner = 2 * np.sqrt(-p / 3) * np.cos(third - 2 * np.pi / 3)
+    inner = np.clip(np.where(np.isfinite(inner), inner, 0.0), 0.0, 1.0)
+    squares = [(axial + bending * y) ** 2 + 3 * (shear * (1 - y**2)) ** 2 for y in (0.0, 1.0, inner)]
+    found: FloatArray = np.sqrt(np.max(np.broadcast_arrays(*squares), axis=0))
+    return found
 
 
 def _above(along: Along, least: FloatArray) -> Along:

@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from grashof.analysis.forces.bars import bar_lengths
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import pins_of
+from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.analysis.strength.along_bar import Along
 from grashof.analysis.strength.strength import most_telling, pin_measures, strength_at
-from grashof.analysis.strength.structure import BAR_MEASURES, PIN_MEASURES, Structure, limits_of
+from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems import AssemblyError, DeadPositionWarning
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 
 Motion = Callable[[FloatArray], Kinematics]
-_MEASURES = {measure.key: measure for measure in (*BAR_MEASURES, *PIN_MEASURES)}
+_BUCKLING = {
+    "buckling": "buckling in the plane of motion",
+    "buckling_across": "buckling out of the plane of motion",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,7 @@ class SafetyFactor:
     Parameters
     ----------
     key, label : str
-        Of `FAILURES`.
+        The kind of failure: "yield", "buckling", "buckling_across", "pin_shear" or "bearing".
     part : str
         "link 2" or "O2".
     value : float
@@ -134,10 +137,7 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
 
     Examples
     --------
-    >>> from grashof.analysis.mechanism.driver_samples import driver_samples
-    >>> from grashof.analysis.mechanism.kinematics import solve_kinematics
-    >>> from grashof.analysis.forces.mass import uniform_bars
-    >>> from grashof.analysis.forces.loads import Loads
+    >>> from grashof.analysis import Loads, driver_samples, solve_kinematics, uniform_bars
     >>> from grashof.problems import FourBar, SectionSpec, StrengthSpec
     >>> jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
     >>> steel = StrengthSpec(235e6, 210e9, pin_diameter=0.1)
@@ -155,15 +155,7 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
         lengths, pins = bar_lengths(linkage), pins_of(linkage)
         found = [peak for link in lengths for peak in _bar_peaks(structure, motion, stretches, link)]
         found += _pin_peaks(structure, motion, stretches, linkage)
-    by_part = {(peak.part, peak.key): peak for peak in found}
-    factors = []
-    for limit in limits_of(structure, lengths, pins):
-        peak = by_part[limit.part, limit.measure]
-        value = limit.value / peak.value if peak.value > 0 else np.inf
-        factors.append(
-            SafetyFactor(limit.key, limit.label, limit.part, value, limit.value, peak.place, peak.at)
-        )
-    return StrengthSummary(tuple(found), tuple(factors))
+    return StrengthSummary(tuple(found), tuple(_factors(structure, lengths, pins, found)))
 
 
 def _closing(motion: Motion, stretches: Sequence[FloatArray]) -> Linkage:
@@ -212,7 +204,30 @@ def _pin_peaks(
     ]
 
 
+def _factors(
+    structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint], peaks: Sequence[StrengthPeak]
+) -> Iterator[SafetyFactor]:
+    """Of all that the strength limits, by links (of lengths between their joints) and pins in turn."""
+    strength, by_part = structure.strength, {(peak.part, peak.key): peak for peak in peaks}
+    if strength is None:
+        return
+
+    def factor(key: str, label: str, part: str, measure: str, limit: float) -> SafetyFactor:
+        peak = by_part[part, measure]
+        value = limit / peak.value if peak.value > 0 else np.inf
+        return SafetyFactor(key, label, part, value, limit, peak.place, peak.at)
+
+    for link, length in lengths.items():
+        part = f"link {link}"
+        yield factor("yield", "yield", part, "stress", strength.yield_stress)
+        for key, load in structure.buckling_loads(link, length).items():
+            yield factor(key, _BUCKLING[key], part, "thrust", float(load))
+    for joint in pins if strength.pin_diameter is not None else ():
+        yield factor("pin_shear", "shear of the pin", joint.name, "pin_shear", strength.shear_limit)
+        yield factor("bearing", "bearing pressure", joint.name, "bearing", strength.bearing_limit)
+
+
 def _peak(key: str, part: str, value: float, place: float, at: float) -> StrengthPeak:
-    measure = _MEASURES[key]
+    measure = MEASURES[key]
     at = float(at) if np.isfinite(value) else np.nan
     return StrengthPeak(key, measure.label, measure.unit, part, float(value), float(place), at)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,22 +20,10 @@ from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place
 
-_BUCKLING = {
-    "buckling": "buckling in the plane of motion",
-    "buckling_across": "buckling out of the plane of motion",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """Something that a bar or a pin bears: of a bar the greatest along it.
-
-    Parameters
-    ----------
-    key, label : str
-    unit : str
-        "N", "N m", "Pa", "length" (the linkage's own unit) or "" of a share.
-    """
+    """What a bar (at most along it) or a pin bears: in N, N m, Pa, the linkage's "length", or "", a share."""
 
     key: str
     label: str
@@ -61,7 +49,7 @@ PIN_MEASURES = (
     Measure("pin_shear", "shear stress of the pin", "Pa"),
     Measure("bearing", "bearing pressure", "Pa"),
 )
-UNITS = {measure.key: measure.unit for measure in (*BAR_MEASURES, *PIN_MEASURES)}
+MEASURES = {measure.key: measure for measure in (*BAR_MEASURES, *PIN_MEASURES)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +94,7 @@ class Structure:
         return None if given is None else given / self.in_si("Pa")
 
     def buckling_loads(self, link: int, length: npt.ArrayLike) -> dict[str, FloatArray]:
-        """Loads at which a bar buckles, N, of the length between its joints; by `Limit.key`.
+        """Loads at which a bar buckles, N, of the length between its joints; by key of a `SafetyFactor`.
 
         Notes
         -----
@@ -171,41 +159,3 @@ class Structure:
 def _one_of(value: OneOrEach, index: int) -> float:
     """One of a list, or what is meant for each."""
     return float(value[index] if isinstance(value, Sequence) else value)
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """What a part stands.
-
-    Parameters
-    ----------
-    key, label : str
-        The kind of failure.
-    part : str
-        "link 2", or the joint: "O2".
-    measure : str
-        Key of the `Measure` that it limits.
-    value : float
-        In the unit of that.
-    """
-
-    key: str
-    label: str
-    part: str
-    measure: str
-    value: float
-
-
-def limits_of(structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint]) -> Iterator[Limit]:
-    """All that the strength limits, by links (of lengths between their joints) and pins in turn."""
-    strength = structure.strength
-    if strength is None:
-        return
-    for link, length in lengths.items():
-        part = f"link {link}"
-        yield Limit("yield", "yield", part, "stress", strength.yield_stress)
-        for key, load in structure.buckling_loads(link, length).items():
-            yield Limit(key, _BUCKLING[key], part, "thrust", float(load))
-    for joint in pins if strength.pin_diameter is not None else ():
-        yield Limit("pin_shear", "shear of the pin", joint.name, "pin_shear", strength.shear_limit)
-        yield Limit("bearing", "bearing pressure", joint.name, "bearing", strength.bearing_limit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Cylinder, CylinderSpec, Linkage
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.synth.cylinder.closed_form import best_on_arm, best_on_slide
 from grashof.synth.cylinder.planes import Plane, driven, planes_of
 from grashof.synth.cylinder.room import Room
@@ -24,37 +24,11 @@ def best_cylinder(
     one_branch: bool = True,
     effort: float = 1.0,
 ) -> Cylinder | None:
-    """The cylinder of the greatest worst lever angle within limits.
+    """The cylinder of the greatest worst lever angle within limits; None where none was found.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    angles : tuple of ndarray, shape (M,), rad
-        theta2, theta3 and theta4 at samples of the task motion, in its order.
-    spec : CylinderSpec
-    power : ndarray, shape (M,), optional
-        Of a driver of link 2 at 1 rad/s, N times the length; what a limit of the force needs.
-    force : float, N
-        Greatest force that is allowed.
-    one_branch : bool
-        Link 2 does not pass a dead position; otherwise it cannot be the driven one.
-    effort : float
-        Of so many samples on links 3 and 4.
-
-    Returns
-    -------
-    Cylinder or None
-        None where none was found.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3)
-    >>> from grashof.analysis import solve_position
-    >>> at = solve_position(linkage, np.linspace(0.7, 1.4, 33))
-    >>> best_cylinder(linkage, (at.theta2, at.theta3, at.theta4), CylinderSpec(on=["driver"])).on
-    'driver'
+    Of a single linkage whose theta2, theta3 and theta4 (M,) are samples of the task motion. A limit of the
+    force, N, needs the power (M,) of a driver of link 2 at 1 rad/s, N length. Without `one_branch` link 2
+    passes a dead position, so that it cannot be driven. The effort multiplies the samples of a search.
     """
     theta2, theta3, theta4 = map(np.unwrap, angles)
     planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
@@ -98,15 +72,10 @@ def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[comple
     )
     if pivots is None:
         return None
-    points, bases = _sound(room, *pivots)
+    points, bases = room.kept(pivots[0] * (1 - 1e-9), pivots[1])  # rounding puts none beyond its limits
     found = driven(plane, points, bases)
     fine = np.flatnonzero((room.beyond(found) <= 0) & (found.least > 0))
     if not len(fine):
         return None
     first = fine[0]
     return complex(points[first]), complex(bases[first]), float(found.least[first])
-
-
-def _sound(room: Room, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Pivots that rounding puts nowhere beyond their limits."""
-    return room.kept(points * (1 - 1e-9), bases)

@@ -16,36 +16,13 @@ _AT_B = 1e-12  # share of the reach within which a pivot is B
 def best_on_arm(
     pivot: complex, start: float, end: float, room: Room
 ) -> tuple[ComplexArray, ComplexArray] | None:
-    """Pivots Q and C of cylinders on an arm about a pivot of the ground, of the best lever angle there is.
+    """Points (K,) of a link about a pivot, and bases (K,), of cylinders of the best lever angle there is.
 
-    Parameters
-    ----------
-    pivot : complex, length
-        O2 or O4.
-    start, end : float, rad
-        Directions of the arm's link at the ends of the motion.
-    room : Room
-
-    Returns
-    -------
-    ndarray of complex, shape (K,), ndarray of complex, shape (K,)
-        Points in the link's frame and bases on the ground, those of the longest arm first; None where the
-        limits allow none.
-
-    Notes
-    -----
-    Over a range R of the arm the worst angle between cylinder and arm is at most 90 deg - R / 2, reached by
-    every C on the line through the ends Q0 and Q1 of the way of Q, outside them: the angle in between is
-    greater. With d = |O2 C|, the arm q and s = sin(R / 2) the closed length L follows from
+    Those of the longest arm come first; None where the limits allow none. The link turns from start to end,
+    rad. Over a range R of the arm the worst angle between cylinder and arm is at most 90 deg - R / 2, reached
+    by every base C on the line through the ends of the way of the point Q, outside them: the angle in
+    between is greater. With d = |O2 C|, the arm q and s = sin(R / 2) the closed length L follows from
     d^2 = L^2 + 2 L q s + q^2, and the stroke is 2 q s.
-
-    Examples
-    --------
-    >>> at = np.array([3.0, 0.0])
-    >>> room = Room(0j, np.array([1 + 0j]), 1.0, at, at, (0.0, np.inf), 1.6, np.inf)
-    >>> points, bases = best_on_arm(0j, 0.0, np.pi / 3, room)
-    >>> float(abs(points[0]).round(6)), complex(bases[0])
-    (1.0, (3+0j))
     """
     half = abs(end - start) / 2
     sine, cosine = np.sin(half), np.cos(half)
@@ -77,33 +54,12 @@ def best_on_arm(
 def best_on_slide(
     first: complex, last: complex, along: complex, room: Room
 ) -> tuple[ComplexArray, ComplexArray] | None:
-    """Pivots Q and C of cylinders in line with a slide, whose lever angle is 90 deg all the way.
+    """Points (K,) of a slider and bases (K,) of cylinders in line with its slide: the lever angle is 90 deg.
 
-    Parameters
-    ----------
-    first, last : complex, length
-        B at the ends of the motion.
-    along : complex
-        Unit vector along the slide, and along u of the slider.
-    room : Room
-
-    Returns
-    -------
-    ndarray of complex, shape (K,), ndarray of complex, shape (K,)
-        Points in the slider's frame and bases on the ground, those first whose cylinder passes closest to B,
-        and of those the shortest; None where the limits allow none.
-
-    Notes
-    -----
-    The stroke S is that of the slider, so that a closed length L opens to (L + S) / L. A base C beside the
-    line of B has Q as far beside B; along the slide Q is where L needs it, at best in B.
-
-    Examples
-    --------
-    >>> room = Room(0j, np.zeros(1), 1.0, np.array([-9.0, 0]), np.array([0.0, 0]), (0.0, np.inf), 1.5, np.inf)
-    >>> points, bases = best_on_slide(4 + 0j, 6 + 0j, 1 + 0j, room)
-    >>> complex(points[0]), complex(bases[0])
-    (0j, 0j)
+    Those come first whose cylinder passes closest to B, and of those the shortest; None where the limits
+    allow none. B goes from first to last; `along` is the unit vector of the slide, and of u of the slider.
+    The stroke S is that of the slider, so that a closed length L opens to (L + S) / L. A base beside the line
+    of B has the point as far beside B; along the slide the point is where L needs it, at best in B.
     """
     low, high = sorted((_along(along, first), _along(along, last)))
     least, most = max(room.closed[0], (high - low) / (room.ratio - 1)), room.closed[1]

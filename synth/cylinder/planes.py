@@ -13,34 +13,16 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plane:
-    """The frame of a moving link at M samples of the motion, in its order.
+    """The frame of a moving link at M samples of the motion, in its order; places are x + i y, u + i v."""
 
-    Parameters
-    ----------
-    origin, axis : ndarray of complex, shape (M,), length and 1
-        Of the frame: O2, A, and O4 or B of a slider; the unit vector along u.
-    slide : ndarray of complex, shape (M,)
-        How the origin moves.
-    turn : ndarray, shape (M,)
-        How the link turns.
-    joints : ndarray of complex, shape (J,), length
-        The link's own points, in its frame.
-    middle : complex, length
-        Of the link, in its frame: its pivot of the ground, or half way from A to B.
-    reach : float, length
-        How far from there it may carry pivots: as far as it is long, a slider or block as far as link 2 is.
-    power : ndarray, shape (M,), or None
-        What a drive has to give in that motion, in N times the length; None where nothing limits the force.
-    """
-
-    origin: ComplexArray
-    axis: ComplexArray
-    slide: ComplexArray
-    turn: FloatArray
-    joints: ComplexArray
-    middle: complex
-    reach: float
-    power: FloatArray | None = None
+    origin: ComplexArray  # (M,): O2, A, and O4 or B of a slider
+    axis: ComplexArray  # (M,): the unit vector along u
+    slide: ComplexArray  # (M,): how the origin moves
+    turn: FloatArray  # (M,): how the link turns
+    joints: ComplexArray  # (J,): the link's own points, in its frame
+    middle: complex  # in its frame: its pivot of the ground, or half way from A to B
+    reach: float  # from there to pivots: as far as it is long, a slider or block as far as link 2 is
+    power: FloatArray | None = None  # (M,): what a drive gives, N length; None without limit of force
 
 
 class Driven(NamedTuple):
@@ -71,15 +53,9 @@ class _Loop(NamedTuple):
 def planes_of(
     linkage: Linkage, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
 ) -> dict[str, Plane]:
-    """The planes of links 2, 3 and 4, by the words for them.
+    """The planes of links 2, 3 and 4 of a single linkage, by the words for them.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2, theta3, theta4 : ndarray, shape (M,), rad
-    power : ndarray, shape (M,), or None
-        Of a driver of link 2 at 1 rad/s, N times the length: the drive torque.
+    Angles are of shape (M,); so is the power of a driver of link 2 at 1 rad/s, N length: the drive torque.
     """
     e2, e3, e4 = (np.exp(1j * angle) for angle in (theta2, theta3, theta4))
     loop = _loop(linkage, e2, e3, e4)

@@ -24,16 +24,7 @@ Pivots = tuple[complex, complex]  # of the link, and the base
 def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     """The least lever t made greatest with all levers at least t, by quadratic programmes (SLSQP).
 
-    Parameters
-    ----------
-    plane : Plane
-    room : Room
-    pivots : complex, complex
-
-    Returns
-    -------
-    complex, complex
-        They may be beyond the limits.
+    The pivots that come of it may be beyond the limits.
     """
     from scipy import optimize  # only here, and few problems have cylinders
 
@@ -65,18 +56,7 @@ def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     """The same by linear programmes in a region of trust.
 
     Where as many levers and limits meet as there are unknowns, this converges as Newton's method does (Madsen
-    1975, minimax); a limit that is overstepped costs in proportion, so that it may begin beyond.
-
-    Parameters
-    ----------
-    plane : Plane
-    room : Room
-    pivots : complex, complex
-
-    Returns
-    -------
-    complex, complex
-        They may be beyond the limits.
+    1975, minimax); a limit that is overstepped costs in proportion, so that it may begin, and end, beyond.
     """
     scale, trust = _Scale.of(plane, room), _FIRST
     x = np.clip(scale.unknowns(pivots), *scale.bounds)
@@ -168,15 +148,8 @@ class _Scale:
 
     def margins(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Levers, and what the limits leave, of (N, 4) unknowns."""
-        room = self.room
         points, bases = self.pivots(x)
         found = driven(self.plane, points, bases)
-        with np.errstate(divide="ignore"):
-            closed = np.log(np.maximum(found.closed, 1e-300))
-            rows = [np.log(room.ratio) - np.log(found.ratio)]
-            rows += [closed - np.log(room.closed[0])] if room.closed[0] > 0 else []
-            rows += [np.log(room.closed[1]) - closed] if np.isfinite(room.closed[1]) else []
-            rows += [np.log(room.force) - np.log(found.force + 1e-300)] if np.isfinite(room.force) else []
-        rows.append(1 - (np.abs(points - room.middle) / room.reach) ** 2)
-        limits = np.stack(rows, axis=1)
+        inside = 1 - (np.abs(points - self.room.middle) / self.room.reach) ** 2
+        limits = np.concatenate([self.room.left(found), inside[:, None]], axis=1)
         return found.levers, np.clip(np.where(np.isnan(limits), 0.0, limits), -50.0, 50.0)

@@ -11,49 +11,28 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.cylinder.planes import Driven, Plane
 
 INSET = 1e-7  # share: limits are kept with this to spare, so that the judge finds them kept
+_TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Room:
-    """The limits of a cylinder on one link.
+    """The limits of a cylinder on one link."""
 
-    Parameters
-    ----------
-    middle, joints, reach : complex, ndarray of complex, shape (J,), float, length
-        Of the link, see `Plane`: its pivot Q may be that far from the middle.
-    low, high : ndarray, shape (2,), length
-        Corners of the box in which its base C may be.
-    closed, ratio, force : pair of float
-        Limits of the closed length, of the greatest length over it, and of the force.
-    """
-
-    middle: complex
+    middle: complex  # of the link, as `joints` and `reach`, see `Plane`: its pivot may be that far from there
     joints: ComplexArray
     reach: float
-    low: FloatArray
+    low: FloatArray  # corners (2,) of the box in which its base may be
     high: FloatArray
     closed: Limits
-    ratio: float
+    ratio: float  # most of the greatest length over the closed one
     force: float
 
     @classmethod
     def of(cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf) -> Room:
-        """The room of a cylinder.
+        """The room of a cylinder on the link of a plane.
 
-        Parameters
-        ----------
-        plane : Plane
-            Of the link that it acts on.
-        spec : CylinderSpec
-        around : ndarray of complex, shape (N,), length
-            Places that the linkage reaches.
-        force : float
-            Greatest force that is allowed.
-
-        Notes
-        -----
-        Sides of the base that the problem leaves open are those of the box around the linkage, further out by
-        its diagonal, or by what the least closed length takes.
+        Sides of the base that the problem leaves open are those of the box around the places (N,) that the
+        linkage reaches, further out by its diagonal, or by what the least closed length takes.
         """
         corners = np.array([[np.min(part), np.max(part)] for part in (around.real, around.imag)])
         closed = (0.0, np.inf) if spec.closed is None else spec.closed
@@ -71,17 +50,19 @@ class Room:
         carried = plane.middle, plane.joints, plane.reach
         return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET))
 
+    def left(self, found: Driven) -> FloatArray:
+        """What limits leave K cylinders, in logarithms, a column each, negative beyond."""
+        with np.errstate(divide="ignore"):
+            closed, force = (np.log(np.maximum(each, _TINY)) for each in (found.closed, found.force))
+            columns = [np.log(self.ratio) - np.log(found.ratio)]
+            columns += [closed - np.log(self.closed[0])] if self.closed[0] > 0 else []
+            columns += [np.log(self.closed[1]) - closed] if np.isfinite(self.closed[1]) else []
+            columns += [np.log(self.force) - force] if np.isfinite(self.force) else []
+        return np.stack(columns, axis=1)
+
     def beyond(self, found: Driven) -> FloatArray:
         """How far cylinders are beyond the limits, in logarithms; shape (K,), 0 where all are kept."""
-        tiny = np.finfo(np.float64).tiny
-        with np.errstate(divide="ignore"):
-            closed = np.log(np.maximum(found.closed, tiny))
-            over = np.maximum(np.log(np.maximum(self.closed[0], tiny)) - closed, 0.0)
-            over += np.maximum(closed - np.log(self.closed[1]), 0.0)
-            over += np.maximum(np.log(found.ratio) - np.log(self.ratio), 0.0)
-            if np.isfinite(self.force):
-                over += np.maximum(np.log(np.maximum(found.force, tiny)) - np.log(self.force), 0.0)
-        return np.asarray(over)
+        return np.asarray(np.maximum(-self.left(found), 0.0).sum(axis=1))
 
     def kept(self, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Pivots put back to where they may be."""

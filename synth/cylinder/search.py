@@ -33,18 +33,8 @@ def best_by_search(
 ) -> tuple[complex, complex, float] | None:
     """Pivot of the link, base, and the sine of the worst lever angle, of the best cylinder found.
 
-    Parameters
-    ----------
-    plane : Plane
-    room : Room
-    seed : int
-    effort : float
-        Of so many samples.
-
-    Returns
-    -------
-    complex, complex, float; or None
-        None where no sample and nothing near one drives the linkage within the limits.
+    None where no sample, of which `effort` multiplies the number, and nothing near one drives the linkage
+    within the limits.
     """
     rng = np.random.default_rng(seed)
     found, near = _searched(plane, room, effort, rng)

@@ -32,7 +32,7 @@ from grashof.analysis import (
     strength_over,
     uniform_bars,
 )
-from grashof.analysis.strength.stress import von_mises
+from grashof.analysis.strength.strength import von_mises
 from grashof.problems import AssemblyError, FourBar, ProblemError, SectionSpec, StrengthSpec
 from grashof.problems.values.dynamics.dynamics_spec import metres
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.analysis.strength.stress import von_mises
+from grashof.analysis.strength.strength import von_mises
 
 SIZE = st.floats(0, 1e9) | st.just(0.0) | st.floats(1e-12, 1)
 
