@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View
 from grashof.synth.programme.kinds import FOUR_BAR
@@ -19,7 +20,6 @@ from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
 from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at
-from grashof.synth.programme.vector import Vector
 from grashof.synth.theory.burmester import Displacements
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them

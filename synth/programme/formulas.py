@@ -19,7 +19,7 @@ import numpy as np
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.vector import Vector
+from grashof.synth.loop.vector import Vector
 
 
 class View:

@@ -10,11 +10,12 @@ import numpy as np
 
 from grashof.problems import InvertedSliderCrank, Requirements, Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import InvertedSliderCrankClosure
+from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.instant import InvertedInstant
 from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, both_ways, by_two
-from grashof.synth.programme.slider_instants import InvertedInstant
-from grashof.synth.theory.closure import InvertedSliderCrankClosure
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes, both_ways, by_two
 from grashof.synth.theory.function_inverted import InvertedSliderCranks
 
 
@@ -59,18 +60,6 @@ class InvertedKind(Kind):
         room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
         by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
-
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:  # closure: RPR
-        r2, _, offset = lengths
-        diagonal = 1 - r2[:, None] * e2
-        beside2 = np.abs(diagonal) ** 2 - offset[:, None] ** 2
-        closes: BoolArray = np.all(beside2 > 1e-12, axis=1)
-        rod = np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        e3 = diagonal / (rod - 1j * offset[:, None])
-        e3 = e3 / np.abs(e3)
-        return e3, 1j * e3, rod, closes
 
     def placed(
         self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray

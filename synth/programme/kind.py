@@ -17,17 +17,18 @@ import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import Closure
+from grashof.synth.loop.dyad import ClosingDyad, as_complex, as_vector
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import Part, View
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.instant import Instant
-from grashof.synth.programme.vector import Vector
-from grashof.synth.theory.closure import Closure
 from grashof.synth.theory.function_output import Generators
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
-Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 
 
 _LENGTHS = ("r1", "r2", "r3", "r4")
@@ -115,12 +116,6 @@ class Kind(ABC):
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
 
     @abstractmethod
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:
-        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
-
-    @abstractmethod
     def placed(
         self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray]:
@@ -156,6 +151,21 @@ class Kind(ABC):
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
         """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+
+    @property
+    def dyad(self) -> ClosingDyad:
+        """Links 3 and 4."""
+        return self.instant.dyad
+
+    def closed(
+        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
+    ) -> LoopAt:
+        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
+        r2, r3, r4 = (each[:, None] for each in lengths)
+        loop = self.dyad.closed(Vector(1.0, 0.0), as_vector(r2 * e2), r3, r4, assembly, _root_of_any)
+        e3, e4 = (as_complex(each) for each in self.dyad.directions(loop, r3, r4))
+        closes: BoolArray = np.all(loop.square > 1e-12, axis=1)
+        return e3, np.broadcast_to(e4, e2.shape), loop.rod, closes
 
     def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
         """Other linkages of the kind, each (5,), that lead P along the same curve, or the body as this does.
@@ -204,9 +214,10 @@ class Kind(ABC):
         return np.logical_and.reduce([margin >= 0 for margin in self.margins(d)])
 
 
-def as_vector(points: ComplexArray) -> Vector:
-    """Complex numbers as plane vectors."""
-    return Vector(points.real, points.imag)
+def _root_of_any(square: FloatArray) -> FloatArray:
+    """Of what is not positive the root of 1: what is open has numbers, too."""
+    root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
+    return root
 
 
 def both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:

@@ -11,10 +11,11 @@ import numpy as np
 from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
+from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
-from grashof.synth.programme.kind import Kind, as_vector
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.vector import Vector
 
 ROUNDING = 1e-10  # sizes, rad: by so much no limit is overstepped
 # The requirements that can stand in the way, named by their fields.
@@ -180,20 +181,6 @@ class Many(View):
     def p_from(self, pivot: ComplexArray) -> Vector:
         """From a pivot (n, N) to the coupler point, at the first target."""
         return as_vector((self._p - pivot[:, 0])[:, None])
-
-
-def coupler_along(kind: Kind, points: ComplexArray, theta2: FloatArray) -> ComplexArray:
-    """From A to B of linkages of slider kinds (n, 5) at driver angles (n, k); NaN where the loop is open."""
-    o2, o4, a, b, p = points.T
-    view = Many(p, o2, a[:, None], o4, b[:, None], kind=kind)
-    unit = view.r1 if kind.turns_with_coupler else view.r3
-    lengths = (view.r2 / unit, np.ones_like(view.r2), view.offset / unit)
-    relative = theta2 - view.theta1
-    r2, r3, offset = (each[:, 0] for each in lengths)
-    e3, _, rod, _ = kind.closed((r2, r3, offset), np.exp(1j * relative), np.ones_like(relative))
-    closed = np.abs(kind.cos_mu(view, kind.at_angle(view, relative))) <= 1
-    coupler: ComplexArray = np.where(closed, unit * rod * e3 * np.exp(1j * view.theta1), np.nan)
-    return coupler
 
 
 def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:

@@ -10,10 +10,10 @@ import numpy as np
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.dual import Dual
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import LOGARITHMIC, View
 from grashof.synth.programme.kind import Lengths
-from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions

@@ -14,6 +14,7 @@ import numpy as np
 
 from grashof.problems import FourBar, SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.loop.dyad import Slider, coupler_of
 from grashof.synth.programme.driver_angles import shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -165,17 +166,18 @@ def _at_points(points: ComplexArray, target: SearchTargets) -> tuple[Placed, Flo
     return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction
 
 
-def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:  # closure: RRP
+def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:
     """Slider-cranks that pass all points: where they stand there, and the shorter sense of the driver."""
     found = through.linkages
     if not isinstance(found, SliderCrank):
         raise TypeError(type(found).__name__)
     o2 = found.o2 @ np.array([1, 1j])
     theta2, direction = shorter_way(through.theta2)
-    a = o2[:, None] + found.r2[:, None] * np.exp(1j * theta2)
+    crank = found.r2[:, None] * np.exp(1j * theta2)
     along, r3 = np.exp(1j * found.slide_angle)[:, None], found.r3[:, None]
-    across = found.offset[:, None] - ((a - o2[:, None]) * along.conj()).imag
-    b = a + along * (through.assembly * np.sqrt((r3 - across) * (r3 + across)) + 1j * across)
+    coupler, _ = coupler_of(Slider(), 1j * along, crank, r3, found.offset[:, None], through.assembly)
+    a = o2[:, None] + crank
+    b = a + coupler
     o4, none = b[:, 0] + (r3 * along)[:, 0], np.zeros(len(o2))
     p = np.broadcast_to(target.points, a.shape)
     return Placed(none, o2, o4, a, b, p, theta2, body_angle=none), direction

@@ -12,6 +12,7 @@ import numpy as np
 
 from grashof.problems import InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dyad import Block, Slider, coupler_of
 from grashof.synth.theory.eight_points import (
     INVERTED_SLIDER_CRANKS,
     SLIDER_CRANKS,
@@ -177,7 +178,6 @@ def _real_solutions(
 
 
 def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int) -> Through:
-    # closure: RRP
     """Those that close.
 
     Parameters
@@ -196,11 +196,10 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
     theta2 = np.angle(_cranks(o2, a, turns, points))
     assembly = np.where(((along.conj() * rod)[:, None] * turns).real < 0, -1.0, 1.0)
     moved = r2[:, None] * np.exp(1j * theta2)
-    across = offset[:, None] - (along.conj()[:, None] * moved).imag  # from A to the slide
     with np.errstate(divide="ignore", invalid="ignore"):
         arm = -a * rod.conj() / r3
-        ahead = assembly * np.sqrt((r3[:, None] - across) * (r3[:, None] + across))
-        e3 = along[:, None] * (ahead + 1j * across) / r3[:, None]
+        sizes = r3[:, None], offset[:, None], assembly
+        _, e3 = coupler_of(Slider(), 1j * along[:, None], moved, *sizes)
         sound = _closes(o2[:, None] + moved + arm[:, None] * e3, points) & (r2 > 0)
     size = _size(points)
     linkages = SliderCrank(
@@ -218,7 +217,7 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
 
 def _inverted_slider_cranks(
     places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
-) -> Through:  # closure: RPR
+) -> Through:
     """Those that close.
 
     Parameters
@@ -238,8 +237,7 @@ def _inverted_slider_cranks(
     assembly = np.where(ahead < 0, -1.0, 1.0)
     moved = r2[:, None] * np.exp(1j * theta2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        travel = assembly * np.sqrt(np.abs(ground - moved) ** 2 - offset[:, None] ** 2)
-        e3 = (ground - moved) / (travel - 1j * offset[:, None])
+        _, e3 = coupler_of(Block(), ground, moved, offset[:, None], offset[:, None], assembly)
         sound = _closes(o2[:, None] + moved + arm[:, None] * e3, points) & (r2 > 0)
     size = _size(points)
     linkages = InvertedSliderCrank(

@@ -192,7 +192,7 @@ class _Model:
         wanted = self.wanted
         output = made.outputs(wanted.turned)
         errors = wanted.centred(output - wanted.output)
-        slopes = wanted.centred(made.slopes(wanted.turned, output))
+        slopes = wanted.centred(made.slopes(wanted.turned))
         weighed = slopes * wanted.weights[:, None]
         normal = weighed.swapaxes(1, 2) @ slopes
         side = (weighed.swapaxes(1, 2) @ errors[..., None])[..., 0]

@@ -10,6 +10,8 @@ import numpy as np
 from grashof.problems import FourBar, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.requirements.function_ground import FunctionGround
+from grashof.synth.loop.dyad import Bars, Closed
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.function_limits import (
     Rows,
@@ -49,6 +51,7 @@ class FourBars(Generators):
     UNKNOWNS = 4
     EXACT = 5
     LINEAR = 3
+    dyad = Bars()
 
     @property
     def lengths(self) -> FloatArray:
@@ -67,29 +70,13 @@ class FourBars(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RRR
-        """theta4, unwrapped along the rotation, from the triangle A-B-O4."""
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
-            seen = r2 * np.exp(1j * (self.shape[:, 3:] + turned)) - 1.0
-            apart = np.abs(seen)
-            cosine = (apart**2 + r4**2 - r3**2) / (2 * apart * r4)
-            angle = np.angle(seen) - self.assembly[:, None] * np.arccos(cosine)
-        unwrapped: FloatArray = np.unwrap(angle, axis=1)
-        return unwrapped
-
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """The loop r2 e2 + r3 e3 = 1 + r4 e4, differentiated and projected on e3: linear in theta4's rate."""
+    @property
+    def links(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
-        theta2 = self.shape[:, 3:] + turned
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            coupler = 1.0 + r4 * np.exp(1j * output) - r2 * np.exp(1j * theta2)
-            along = (coupler / np.abs(coupler)).conj()
-            driver, out = along * np.exp(1j * theta2), along * np.exp(1j * output)
-            lever = -r4 * out.imag  # r4 sin(theta3 - theta4)
-            slopes = [r2 * driver.real, np.broadcast_to(r3, theta2.shape), -r4 * out.real, -r2 * driver.imag]
-            by_shape: FloatArray = np.stack(slopes, axis=-1) / lever[..., None]
-        return by_shape
+        return r2, r3, r4
+
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        return [crank, loop.along, -loop.across, crank.left]
 
     def closes(self, span: float) -> BoolArray:
         """Whether the loop stays closed, off dead positions, all over a rotation; shape (M,)."""

@@ -10,6 +10,8 @@ import numpy as np
 from grashof.problems import InvertedSliderCrank, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.requirements.function_ground import FunctionGround
+from grashof.synth.loop.dyad import Block, Closed
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.function_limits import (
     Rows,
     ShapeLimits,
@@ -44,6 +46,7 @@ class InvertedSliderCranks(Generators):
     UNKNOWNS = 3
     EXACT = 4
     LINEAR = 2
+    dyad = Block()
 
     @property
     def lengths(self) -> FloatArray:
@@ -60,25 +63,13 @@ class InvertedSliderCranks(Generators):
         distance: FloatArray = np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
         return distance
 
-    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RPR
-        """Direction of the rod, unwrapped: that of A-O4, and the offset beside it."""
-        r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            seen = 1.0 - r2 * np.exp(1j * (self.shape[:, 2:] + turned))
-            angle = np.angle(seen) + np.arcsin(offset / np.abs(seen))
-        unwrapped: FloatArray = np.unwrap(angle, axis=1)
-        return unwrapped
+    @property
+    def links(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        offset = self.shape[:, 1:2]
+        return np.exp(self.shape[:, :1]), offset, offset
 
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """Of offset = sin(theta3) + r2 sin(theta2 - theta3): how far O4 is beside the rod's line."""
-        r2 = np.exp(self.shape[:, :1])
-        turn = self.shape[:, 2:] + turned - output
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            rod = np.cos(output) - r2 * np.cos(turn)
-            rod = np.where(rod == 0, np.nan, rod)  # a dead position
-            slopes = [-r2 * np.sin(turn), np.ones_like(turn), -r2 * np.cos(turn)]
-            by_shape: FloatArray = np.stack(slopes, axis=-1) / rod[..., None]
-        return by_shape
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        return [crank, -loop.across, crank.left]
 
     def worst_cosine(self, span: float) -> FloatArray:
         """Abs(offset) over the distance A-O4, where that is least."""

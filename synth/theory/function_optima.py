@@ -151,7 +151,7 @@ class _Linear:
 
     @classmethod
     def of(cls, aim: Aim, made: Generators) -> _Linear:
-        slopes = made.slopes(aim.wanted.turned, made.outputs(aim.wanted.turned))[0]
+        slopes = made.slopes(aim.wanted.turned)[0]
         limits, by_shape = aim.limits(made)
         free = np.append(np.ones(made.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
         return cls(aim, aim.errors(made), slopes, limits[0], by_shape[0], free)

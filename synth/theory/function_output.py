@@ -14,6 +14,8 @@ import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limits
+from grashof.synth.loop.dyad import Closed, ClosingDyad
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.function_limits import ShapeLimits
 
 
@@ -33,6 +35,9 @@ class Generators(ABC):
     LINEAR: ClassVar[int]  # through so many goes one, where both start angles are given
     FIRST_IS_LINK: ClassVar[bool] = True  # of `lengths`; otherwise it is the unit
     ONE_SENSE: ClassVar[bool] = False  # the opposite output is the same linkage, turned by half a turn
+
+    dyad: ClassVar[ClosingDyad]
+    ground: ClassVar[Vector] = Vector(1.0, 0.0)  # as `ClosingDyad.closed` takes it
 
     shape: FloatArray
     assembly: FloatArray
@@ -82,7 +87,21 @@ class Generators(ABC):
         ratio: FloatArray = self.lengths.max(axis=1) / self.lengths.min(axis=1)
         return ratio
 
+    @property
     @abstractmethod
+    def links(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """r2, r3 and r4 or the offset, each (M, 1); anything for what the kind lacks."""
+
+    @abstractmethod
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        """By each number of the shape, how it moves B out of its place."""
+
+    def _closed(self, turned: FloatArray) -> tuple[Vector, Closed]:
+        """O2A, and the loop at driver rotations from the first angle."""
+        theta2, (r2, r3, r4) = self.shape[:, -1:] + turned, self.links
+        crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
+        return crank, self.dyad.closed(self.ground, crank, r3, r4, self.assembly[:, None])
+
     def outputs(self, turned: FloatArray) -> FloatArray:
         """Angle of link 4 or place of the slide, shape (M, N); NaN where the loop is open.
 
@@ -91,10 +110,18 @@ class Generators(ABC):
         turned : ndarray, shape (N,), rad
             Driver rotations from the first angle, growing.
         """
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            crank, loop = self._closed(turned)
+            output: FloatArray = self.dyad.output(loop, crank)
+        return output if self.ONE_SENSE else np.unwrap(output, axis=1)
 
-    @abstractmethod
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
+    def slopes(self, turned: FloatArray) -> FloatArray:
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            crank, loop = self._closed(turned)
+            loop = loop._replace(lever=np.where(loop.lever == 0, np.nan, loop.lever))
+            slopes = [self.dyad.moved_output(loop, move) for move in self.moves(crank, loop)]
+        return np.stack(np.broadcast_arrays(*slopes), axis=-1)
 
     @abstractmethod
     def worst_cosine(self, span: float) -> FloatArray:

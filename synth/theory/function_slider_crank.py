@@ -9,6 +9,8 @@ import numpy as np
 
 from grashof.problems import Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.loop.dyad import Closed, Slider
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.function_limits import (
     Rows,
@@ -46,6 +48,8 @@ class SliderCranks(Generators):
     LINEAR = 3
     FIRST_IS_LINK = False
     ONE_SENSE = True
+    dyad = Slider()
+    ground = Vector(0.0, 1.0)
 
     @property
     def lengths(self) -> FloatArray:
@@ -69,30 +73,14 @@ class SliderCranks(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def _closed(self, turned: FloatArray) -> tuple[FloatArray, ...]:  # closure: RRP
-        """r2 cos(theta2), r2 sin(theta2), h from A to the slide, and B less A along it, each (M, N)."""
-        r2, r3, share = np.exp(self.shape[:, :1]), np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
-        theta2 = self.shape[:, 3:] + turned
-        x, y = r2 * np.cos(theta2), r2 * np.sin(theta2)
-        h = share * r3 - y
-        return x, y, h, self.assembly[:, None] * np.sqrt((r3 - h) * (r3 + h))
+    @property
+    def links(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        r2, r3 = np.exp(self.shape[:, :2, None]).swapaxes(0, 1)
+        return r2, r3, self.shape[:, 2:3] * r3
 
-    def outputs(self, turned: FloatArray) -> FloatArray:
-        """Place of B along the slide."""
-        with np.errstate(invalid="ignore", over="ignore"):
-            x, _, _, ahead = self._closed(turned)
-            place: FloatArray = x + ahead
-        return place
-
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """From x_B = x + sqrt(r3^2 - h^2) with h = offset - y, A in (x, y)."""
-        r3, share = np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            x, y, h, ahead = self._closed(turned)
-            ahead = np.where(ahead == 0, np.nan, ahead)  # a dead position
-            lean = h / ahead
-            slopes = [x + lean * y, (r3**2 - h * share * r3) / ahead, -lean * r3, lean * x - y]
-        return np.stack(slopes, axis=-1)
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        _, r3, offset = self.links
+        return [crank, loop.along - offset * self.ground, -r3 * self.ground, crank.left]
 
     def worst_cosine(self, span: float) -> FloatArray:
         """Abs(h) / r3 at both ends, and where the crank stands square to the slide."""

@@ -13,7 +13,7 @@ from grashof.problems import FourBar, InvertedSliderCrank, Linkage, PathTask, Pr
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Many, coupler_along
+from grashof.synth.programme.screening import Many
 from grashof.synth.programme.start import Start
 
 EVERY = tuple(KINDS)
@@ -101,19 +101,6 @@ def test_strokes_swings_and_time_ratios(mechanism: str) -> None:
         else:
             (part,) = kind.formulas["output_swing"]
             assert float(part.of(view)[0, 0]) == pytest.approx(float(stroke.swing), rel=1e-9)
-
-
-@pytest.mark.parametrize("mechanism", SLIDERS)
-def test_couplers_along_the_motion(mechanism: str) -> None:
-    scaled, rng = scaled_of(mechanism), np.random.default_rng(6)
-    linkages = [as_found(RANDOM[mechanism](rng)) for _ in range(12)]
-    points = np.array([points_of(scaled, linkage, 0.4) for linkage in linkages])
-    theta2 = np.broadcast_to(np.linspace(-3, 3, 50), (12, 50))
-    coupler = coupler_along(scaled.kind, points, theta2)
-    for row, linkage in enumerate(linkages):
-        state = solve_position(linkage, theta2[row])
-        exact = (state.b - state.a) @ np.array([1, 1j]) / scaled.frame.scale
-        np.testing.assert_allclose(coupler[row], exact, atol=1e-9)
 
 
 @pytest.mark.parametrize("mechanism", EVERY)
