@@ -34,6 +34,25 @@ class Closed(NamedTuple):
     square: Any
 
 
+class Sized:
+    """Lengths of a loop; the offset where one of links 3 and 4 slides; 1 where r2 exceeds r1, else 0."""
+
+    r1: Any
+    r2: Any
+    r3: Any
+    r4: Any
+    offset: Any
+    double_crank: Any
+
+
+class Sizes(Sized):
+    """Lengths alone; the offset of slider kinds in place of r4."""
+
+    def __init__(self, r1: Any, r2: Any, r3: Any, r4: Any, double_crank: Any = None) -> None:
+        self.r1, self.r2, self.r3, self.r4, self.offset = r1, r2, r3, r4, r4
+        self.double_crank = (r1 > 0) & (r2 > r1) if double_crank is None else double_crank
+
+
 class Rates(NamedTuple):
     """First and second derivatives of theta3 and theta4 by theta2."""
 
@@ -74,6 +93,26 @@ class ClosingDyad(ABC):
     @abstractmethod
     def moved_output(self, loop: Closed, moved: Vector) -> Any:
         """Derivative of the output by what moves B, held by link 3, by a vector."""
+
+    @abstractmethod
+    def reach(self, sizes: Sized, angle: Any) -> Any:
+        """What decides the transmission angle, with O2A turned by an angle from the ground line."""
+
+    @abstractmethod
+    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
+        """The same with O2A folded over the ground line, and stretched along it."""
+
+    @abstractmethod
+    def cos_mu(self, sizes: Sized, reach: Any) -> Any:
+        """Cosine of the transmission angle from there; beyond 1 the loop does not close."""
+
+    @abstractmethod
+    def margins(self, sizes: Sized) -> tuple[Any, ...]:
+        """Shares of the lengths that are not negative where the driver turns fully."""
+
+    def turns_fully(self, sizes: Sized) -> Any:
+        """Whether the loop closes with O2A folded over the ground line and stretched along it."""
+        return np.logical_and.reduce([margin >= 0 for margin in self.margins(sizes)])
 
     def directions(self, loop: Closed, r3: Any, r4: Any) -> tuple[Vector, Vector]:
         """Unit vectors along link 3, and along O4B or across what slides."""
@@ -116,6 +155,23 @@ class Bars(ClosingDyad):
         rate3, rate4 = (-bend.dot(link) / sine for link in (output, coupler))
         return Rates(speed3, speed4, rate3, rate4)
 
+    def reach(self, sizes: Sized, angle: Any) -> Any:
+        """Square of A-O4."""
+        return _square_of_diagonal(sizes, angle)
+
+    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
+        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
+
+    def cos_mu(self, sizes: Sized, reach: Any) -> Any:
+        """By the law of cosines in A-B-O4."""
+        return (sizes.r3**2 + sizes.r4**2 - reach) / (2 * sizes.r3 * sizes.r4)
+
+    def margins(self, sizes: Sized) -> tuple[Any, ...]:
+        r1, r2, r3, r4 = sizes.r1, sizes.r2, sizes.r3, sizes.r4
+        total = r1 + r2 + r3 + r4
+        longer = (1 - 2 * sizes.double_crank) * (r1 - r2)
+        return (r3 + r4 - r1 - r2) / total, (longer - (r3 - r4)) / total, (longer + (r3 - r4)) / total
+
     def output(self, loop: Closed, crank: Vector) -> Any:
         return np.arctan2(loop.across.y, loop.across.x)
 
@@ -146,6 +202,19 @@ class Slider(ClosingDyad):
         speed3 = -crank.left.dot(loop.across) / loop.lever
         rate3 = (crank.dot(loop.across) + speed3**2 * loop.along.dot(loop.across)) / loop.lever
         return Rates(speed3, 0.0, rate3, 0.0)
+
+    def reach(self, sizes: Sized, angle: Any) -> Any:
+        """From A to the slide's line."""
+        return sizes.offset - sizes.r2 * np.cos(angle)
+
+    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
+        return sizes.offset - sizes.r2, sizes.offset + sizes.r2
+
+    def cos_mu(self, sizes: Sized, reach: Any) -> Any:
+        return reach / sizes.r3
+
+    def margins(self, sizes: Sized) -> tuple[Any, ...]:
+        return _both_ways(sizes.r3 - sizes.r2, sizes.r2 + sizes.r3, sizes.offset)
 
     def output(self, loop: Closed, crank: Vector) -> Any:
         return (crank + loop.along).dot(-loop.across.left)
@@ -181,11 +250,47 @@ class Block(ClosingDyad):
         rate = (crank.dot(across) + 2 * speed * crank.left.dot(along) + speed**2 * r4) / rod
         return Rates(speed, speed, rate, rate)
 
+    def reach(self, sizes: Sized, angle: Any) -> Any:
+        """Square of A-O4."""
+        return _square_of_diagonal(sizes, angle)
+
+    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
+        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
+
+    def cos_mu(self, sizes: Sized, reach: Any) -> Any:
+        return sizes.offset / np.sqrt(reach + 1e-300)
+
+    def margins(self, sizes: Sized) -> tuple[Any, ...]:
+        longer = (1 - 2 * sizes.double_crank) * (sizes.r1 - sizes.r2)
+        return _both_ways(longer, sizes.r1 + sizes.r2, sizes.offset)
+
     def output(self, loop: Closed, crank: Vector) -> Any:
         return np.arctan2(loop.along.y, loop.along.x)
 
     def moved_output(self, loop: Closed, moved: Vector) -> Any:
         return self.turned(loop, moved)
+
+
+def _square_of_diagonal(sizes: Sized, angle: Any) -> Any:
+    return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
+
+
+def _both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:
+    """Shares (longer -+ offset) / (total +- offset), the smaller (longer - |offset|) / (total + |offset|)."""
+    least = 1e-6 * total  # far from a full crank nothing turns round
+    return (
+        (longer - offset) / np.maximum(total + offset, least),
+        (longer + offset) / np.maximum(total - offset, least),
+    )
+
+
+def stroke_of(sizes: Sized) -> Any:
+    """Travel of the slide between the limit positions of a full crank, crank and rod in line."""
+    r2, r3 = sizes.r2, sizes.r3
+    far, near = (
+        np.sqrt(np.maximum((r3 + sign * r2) ** 2 - sizes.offset**2, 1e-12 * r3**2)) for sign in (1, -1)
+    )
+    return far - near
 
 
 def as_vector(points: ComplexArray) -> Vector:

@@ -189,7 +189,7 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
             build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
-        margins = form.kind.margins(Symbols(form, x, places))
+        margins = form.kind.dyad.margins(Symbols(form, x, places))
         build.require(("rotatability",), *(share - margin for share in margins))
 
 
@@ -242,14 +242,14 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """cos(tau) bounds |cos(mu)|, monotone between the ends of the task motion and the ground line."""
-    design, kind = Symbols(form, x, places), form.kind
+    design, dyad = Symbols(form, x, places), form.kind.dyad
 
     def bound(reach: ca.SX) -> tuple[ca.SX, ca.SX]:
-        cosine = kind.cos_mu(design, reach)
+        cosine = dyad.cos_mu(design, reach)
         return ca.cos(x.tau) - cosine, ca.cos(x.tau) + cosine
 
-    for number, reach in enumerate((kind.folded, kind.stretched)):
-        build.row(*bound(reach(design)), limits=_passing(form, number))
+    for number, reach in enumerate(dyad.along_ground(design)):
+        build.row(*bound(reach), limits=_passing(form, number))
     if form.over_task:
         for k in (0, form.targets - 1):
             build.row(*bound(_reach(form, x, places, k)))
@@ -259,7 +259,7 @@ def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) 
 
 
 def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
-    """What decides the transmission angle (`Kind.at_angle`), at a target."""
+    """What decides the transmission angle (`ClosingDyad.reach`), at a target."""
     if "o4" in form.kind.linkage.mechanism.ground:
         return ca.sumsqr(places.a[k] - x.o4)
     return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))

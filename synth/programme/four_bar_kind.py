@@ -14,7 +14,6 @@ from grashof.synth.loop.dimensions import FourBarClosure
 from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.instant import FourBarInstant
 from grashof.synth.programme import formulas
-from grashof.synth.programme.formulas import View
 from grashof.synth.programme.kind import Kind, LoopOf, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.function_four_bar import FourBars
@@ -29,30 +28,6 @@ class FourBarKind(Kind):
     closure = FourBarClosure()
     instant = FourBarInstant
     generators = FourBars
-
-    def folded(self, d: View) -> Any:
-        return formulas.folded(d)
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return formulas.at_angle(d, angle)
-
-    def stretched(self, d: View) -> Any:
-        return formulas.stretched(d)
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return formulas.cos_mu(d, reach)
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        total = d.r1 + d.r2 + d.r3 + d.r4
-        longer = (1 - 2 * d.double_crank) * (d.r1 - d.r2)
-        return (
-            (d.r3 + d.r4 - d.r1 - d.r2) / total,
-            (longer - (d.r3 - d.r4)) / total,
-            (longer + (d.r3 - d.r4)) / total,
-        )
-
-    def turns_fully(self, d: View) -> Any:
-        return formulas.turns_fully(d.r1, d.r2, d.r3, d.r4)
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:

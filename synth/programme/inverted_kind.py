@@ -14,8 +14,7 @@ from grashof.synth.loop.dimensions import InvertedSliderCrankClosure
 from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.instant import InvertedInstant
 from grashof.synth.programme import slider_formulas
-from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kind import Kind, LoopOf, Shapes, both_ways, by_two
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
 from grashof.synth.theory.function_inverted import InvertedSliderCranks
 
 
@@ -30,21 +29,6 @@ class InvertedKind(Kind):
     closure = InvertedSliderCrankClosure()
     instant = InvertedInstant
     generators = InvertedSliderCranks
-
-    def folded(self, d: View) -> Any:
-        return (d.r1 - d.r2) ** 2
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return self.folded(d) + 4 * d.r1 * d.r2 * np.sin(angle / 2) ** 2
-
-    def stretched(self, d: View) -> Any:
-        return (d.r1 + d.r2) ** 2
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return d.offset / np.sqrt(reach + 1e-300)
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        return both_ways((1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2, d.offset)
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T

@@ -21,7 +21,7 @@ from grashof.synth.loop.dimensions import Closure
 from grashof.synth.loop.dyad import ClosingDyad, as_complex, as_vector
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.programme.formulas import Part, View
+from grashof.synth.programme.formulas import Part
 from grashof.synth.programme.frame import Frame
 from grashof.synth.theory.function_output import Generators
 
@@ -33,14 +33,6 @@ LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 
 _LENGTHS = ("r1", "r2", "r3", "r4")
 _ONLY: dict[type, Any] = {}  # the one value of each kind
-
-
-class Lengths(View):
-    """Lengths alone; the offset of slider kinds in place of r4."""
-
-    def __init__(self, r1: Any, r2: Any, r3: Any, r4: Any) -> None:
-        self.r1, self.r2, self.r3, self.r4, self.offset = r1, r2, r3, r4, r4
-        self.double_crank = (r1 > 0) & (r2 > r1)
 
 
 class LoopOf(Protocol):
@@ -90,26 +82,6 @@ class Kind(ABC):
     def mechanism(self) -> str:
         """As files name it."""
         return self.linkage.mechanism.word
-
-    @abstractmethod
-    def folded(self, d: View) -> Any:
-        """What decides the transmission angle, with O2A folded over the ground line."""
-
-    @abstractmethod
-    def at_angle(self, d: View, angle: Any) -> Any:
-        """The same with O2A turned by an angle from the ground line."""
-
-    @abstractmethod
-    def stretched(self, d: View) -> Any:
-        """The same with O2A stretched along the ground line."""
-
-    @abstractmethod
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        """Cosine of the transmission angle from there; beyond 1 the loop does not close."""
-
-    @abstractmethod
-    def margins(self, d: View) -> tuple[Any, ...]:
-        """Shares of the lengths that are not negative where the driver turns fully."""
 
     @abstractmethod
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
@@ -209,24 +181,11 @@ class Kind(ABC):
         of_cranks = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
         return rng.normal(0.0, 0.7, (count, 3)) if anything else of_cranks
 
-    def turns_fully(self, d: View) -> Any:
-        """Whether the loop closes with O2A folded over the ground line and stretched along it."""
-        return np.logical_and.reduce([margin >= 0 for margin in self.margins(d)])
-
 
 def _root_of_any(square: FloatArray) -> FloatArray:
     """Of what is not positive the root of 1: what is open has numbers, too."""
     root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
     return root
-
-
-def both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:
-    """Shares (longer -+ offset) / (total +- offset), the smaller (longer - |offset|) / (total + |offset|)."""
-    least = 1e-6 * total  # far from a full crank nothing turns round
-    return (
-        (longer - offset) / np.maximum(total + offset, least),
-        (longer + offset) / np.maximum(total - offset, least),
-    )
 
 
 def by_two(*rows: list[FloatArray]) -> FloatArray:

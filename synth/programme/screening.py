@@ -171,7 +171,7 @@ class Many(View):
         if o2 is not None and o4 is not None and a is not None and b is not None:
             self.sine = kind.many(self, o2, o4, a, b)
             self.double_crank = self.r2 > getattr(self, "r1", np.inf)
-            self.turns = kind.turns_fully(self)
+            self.turns = kind.dyad.turns_fully(self)
         if theta2 is not None:
             gone = theta2[:, -1:] - theta2[:, :1]
             self.driver_turn, self.direction = np.abs(gone), np.sign(gone)
@@ -354,8 +354,8 @@ def _ways(
     Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
     ranges, has no way around.
     """
-    kind = found.kind
-    fold, stretch = (np.abs(kind.cos_mu(view, reach(view)))[:, 0] for reach in (kind.folded, kind.stretched))
+    dyad = found.kind.dyad
+    fold, stretch = (np.abs(dyad.cos_mu(view, reach))[:, 0] for reach in dyad.along_ground(view))
     ends = found.theta2[:, [0, -1]] - view.theta1
     inside = found.theta2 - view.theta1
     inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
@@ -368,7 +368,7 @@ def _ways(
     even = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 0))
     odd = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 1))
     span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
-    at_ends = kind.cos_mu(view, kind.at_angle(view, ends))
+    at_ends = dyad.cos_mu(view, dyad.reach(view, ends))
     span = np.maximum(span, np.abs(at_ends).max(axis=1))
     return found, violations, span, np.maximum(fold, stretch)
 
@@ -396,6 +396,6 @@ def _rotatability_violation(view: Many, wanted: Requirements) -> FloatArray:
     asked = {Rotatability.CRANK_ROCKER: False, Rotatability.DOUBLE_CRANK: True}.get(wanted.rotatability)
     if asked is not None:
         view.double_crank = np.full_like(view.double_crank, asked)
-    least: FloatArray = np.minimum.reduce([margin[:, 0] for margin in view.kind.margins(view)])
+    least: FloatArray = np.minimum.reduce([margin[:, 0] for margin in view.kind.dyad.margins(view)])
     violation: FloatArray = wanted.rotatability_margin - least
     return violation

@@ -13,9 +13,8 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import SliderCrankClosure
 from grashof.synth.loop.instant import SliderCrankInstant
 from grashof.synth.programme import slider_formulas
-from grashof.synth.programme.formulas import View
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.kind import Kind, LoopOf, Shapes, both_ways, by_two
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
 from grashof.synth.theory.cognates import slider_crank_cognate
 from grashof.synth.theory.function_slider_crank import SliderCranks
 
@@ -31,21 +30,6 @@ class SliderCrankKind(Kind):
     closure = SliderCrankClosure()
     instant = SliderCrankInstant
     generators = SliderCranks
-
-    def folded(self, d: View) -> Any:
-        return d.offset - d.r2
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return d.offset - d.r2 * np.cos(angle)
-
-    def stretched(self, d: View) -> Any:
-        return d.offset + d.r2
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return reach / d.r3
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        return both_ways(d.r3 - d.r2, d.r2 + d.r3, d.offset)
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
+from grashof.synth.loop.dual import Dual
 
 LEAST_ANGLE = float(np.radians(0.3))  # so near to a dead position no generator may come
 
@@ -76,6 +78,12 @@ Rows = tuple[FloatArray, FloatArray]  # values (M, L), derivatives (M, L, K)
 def joined_rows(parts: list[Rows]) -> Rows:
     """All of several limits."""
     values, slopes = zip(*parts, strict=True)
+    return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
+
+
+def as_rows(numbers: Sequence[Dual]) -> Rows:
+    """Numbers (M, 1) with derivatives as columns."""
+    values, slopes = zip(*((each.value, each.slope) for each in numbers), strict=True)
     return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
 
 

@@ -72,14 +72,14 @@ def test_transmission_and_rotatability(mechanism: str) -> None:
         linkage, theta2 = as_found(RANDOM[mechanism](rng)), float(rng.uniform(-3, 3))
         o2, o4, a, b, p = points_of(scaled, linkage, theta2)[:, None]
         view = Many(p, o2, a[:, None], o4, b[:, None], np.array([[theta2]]), kind=kind)
-        cosine = kind.cos_mu(view, kind.at_angle(view, theta2 - view.theta1))
+        cosine = kind.dyad.cos_mu(view, kind.dyad.reach(view, theta2 - view.theta1))
         mu = float(transmission_angle(linkage, theta2))
         assert abs(float(cosine[0, 0])) == pytest.approx(abs(np.cos(mu)), abs=1e-9)
         assert abs(float(view.sine[0, 0])) == pytest.approx(np.sin(mu), abs=1e-9)
-        for reach, turned in ((kind.folded, 0.0), (kind.stretched, np.pi)):
-            there = float(kind.at_angle(view, np.array([[turned]]))[0, 0])
-            assert float(reach(view)[0, 0]) == pytest.approx(there, abs=1e-9)
-        assert bool(kind.turns_fully(view)[0, 0]) == bool(full_rotation(linkage))
+        for reach, turned in zip(kind.dyad.along_ground(view), (0.0, np.pi), strict=True):
+            there = float(kind.dyad.reach(view, np.array([[turned]]))[0, 0])
+            assert float(reach[0, 0]) == pytest.approx(there, abs=1e-9)
+        assert bool(kind.dyad.turns_fully(view)[0, 0]) == bool(full_rotation(linkage))
 
 
 @pytest.mark.parametrize("mechanism", SLIDERS)
