@@ -19,9 +19,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, ClosingDyad, Sizes
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.function_limits import (
-    Rows,
     ShapeLimits,
-    as_rows,
     cosine_rows,
     joined_rows,
     linear_rows,
@@ -155,35 +153,33 @@ class Generators(ABC):
         """Driver angles with O2A folded over the ground line, and stretched along it."""
         return self.theta1, self.theta1 + np.pi
 
-    def limited(self, limits: ShapeLimits) -> Rows:
-        """Limits (M, L), zero or positive where they are kept, and their derivatives (M, L, K)."""
+    def limited(self, limits: ShapeLimits) -> Dual:
+        """Limits (M, L), zero or positive where they are kept, with derivatives by the shape (M, L, K)."""
         every = np.broadcast_to(np.eye(self.UNKNOWNS), (len(self), self.UNKNOWNS, self.UNKNOWNS))
-        shape = [Dual(self.shape[:, [k]], every[:, [k]]) for k in range(self.UNKNOWNS)]
+        shape = [Dual(column, every[:, [k]]) for k, column in enumerate(self.columns)]
         r1, r2, r3, r4 = self.sizes_of(shape)
-        longer = limits.shortest < 0 if limits.shortest else r2.value > r1
-        sizes = Sizes(r1, r2, r3, r4, longer)
+        sizes = Sizes(r1, r2, r3, r4, limits.shortest < 0 if limits.shortest else r2.value > r1)
         logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, : self.LINKS]], axis=1)
-        unit = np.concatenate([np.zeros((1, self.UNKNOWNS)), np.eye(self.UNKNOWNS)[: self.LINKS]])
         with np.errstate(divide="ignore", invalid="ignore"):
-            parts = [ratio_rows(logs, unit, limits.caps), self._transmission(limits, sizes)]
+            parts = [ratio_rows(logs, limits.caps, self.UNKNOWNS), self._transmission(limits, sizes)]
             if limits.offset is not None:
-                dimensions = [r2 / r2, *(np.exp(each) for each in shape[: self.LINKS]), r4]
-                parts.append(linear_rows(limits.offset, *as_rows(dimensions)))
+                dimensions = joined_rows([0.0 * r4 + 1.0, *map(np.exp, shape[: self.LINKS]), r4])
+                parts.append(linear_rows(limits.offset, dimensions))
             if limits.margin is not None:
-                parts.append(as_rows([share - limits.margin for share in self.dyad.margins(sizes)]))
-                parts.extend(self.limited_stroke(sizes, limits.stroke))
+                parts += [share - limits.margin for share in self.dyad.margins(sizes)]
+                parts += self.limited_stroke(sizes, limits.stroke)
         return joined_rows(parts)
 
-    def _transmission(self, limits: ShapeLimits, sizes: Sizes) -> Rows:
+    def _transmission(self, limits: ShapeLimits, sizes: Sizes) -> Dual:
         along = self._on_ground
         places, met, moving = places_met(self.first, limits.span, along, over_cycle=limits.over_cycle)
         slope = np.zeros((*places.shape, self.UNKNOWNS))
         slope[..., -1] = moving
         cosine = self.dyad.cos_mu(sizes, self.dyad.reach(sizes, Dual(places - self.theta1, slope)))
-        return cosine_rows(cosine.value, cosine.slope, met, limits.most_cosine)
+        return cosine_rows(cosine, met, limits.most_cosine)
 
     @staticmethod
-    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Rows]:  # noqa: ARG004
+    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Dual]:  # noqa: ARG004
         """The travel of a full crank within its limits; nothing where the output turns."""
         return []
 

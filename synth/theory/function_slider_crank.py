@@ -10,10 +10,10 @@ import numpy as np
 
 from grashof.problems import Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.function_limits import Rows, as_rows
 from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
@@ -72,10 +72,10 @@ class SliderCranks(Generators):
         return [crank, loop.along - offset * self.ground, -r3 * self.ground, crank.left]
 
     @staticmethod
-    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Rows]:
+    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Dual]:
         travel = stroke_of(sizes)
         sides = [(sign, edge) for sign, edge in zip((1.0, -1.0), stroke, strict=True) if np.isfinite(edge)]
-        return [as_rows([sign * (travel - edge) / max(edge, 1e-3)]) for sign, edge in sides]
+        return [sign * (travel - edge) / max(edge, 1e-3) for sign, edge in sides]
 
     @classmethod
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
