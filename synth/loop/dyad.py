@@ -23,14 +23,13 @@ class Closed(NamedTuple):
     """A loop that a dyad has closed.
 
     Along link 3: AB, or the unit vector along a rod. Across: O4B, or the unit vector across what slides, to
-    the left. From A along link 3 to B. What the turn of link 3 is divided by: the determinant of the closure.
-    The square under its root: positive where the loop is closed and in no dead position.
+    the left. From A along link 3 to B. The square under the root of the closure: positive where the loop is
+    closed and in no dead position.
     """
 
     along: Vector
     across: Vector
     rod: Any
-    lever: Any
     square: Any
 
 
@@ -91,8 +90,8 @@ class ClosingDyad(ABC):
         """Angle of link 4, or place of the slide from the foot of O2."""
 
     @abstractmethod
-    def moved_output(self, loop: Closed, moved: Vector) -> Any:
-        """Derivative of the output by what moves B, held by link 3, by a vector."""
+    def driven_by(self, loop: Closed, moved: Vector) -> Any:
+        """Derivative of the output by what moves B, held by link 3, by a vector; times the lever."""
 
     @abstractmethod
     def reach(self, sizes: Sized, angle: Any) -> Any:
@@ -121,9 +120,9 @@ class ClosingDyad(ABC):
             loop.across / r4 if self.bars > 1 else loop.across,
         )
 
-    def turned(self, loop: Closed, moved: Vector) -> Any:
-        """The same derivative of theta3."""
-        return -moved.dot(loop.across) / loop.lever
+    def lever(self, loop: Closed) -> Any:
+        """The determinant of the closure, by which the turn of link 3 is divided; zero in a dead position."""
+        return loop.along.cross(loop.across)
 
 
 class Bars(ClosingDyad):
@@ -146,10 +145,10 @@ class Bars(ClosingDyad):
         height2 = r3**2 / square - foot**2
         coupler = foot * diagonal + (assembly * root(height2)) * diagonal.left
         output = coupler - diagonal
-        return Closed(coupler, output, r3, coupler.cross(output), height2)
+        return Closed(coupler, output, r3, height2)
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
-        coupler, output, _, sine, _ = loop
+        coupler, output, sine = loop.along, loop.across, self.lever(loop)
         speed3, speed4 = (-crank.left.dot(link) / sine for link in (output, coupler))
         bend = -crank - speed3**2 * coupler + speed4**2 * output
         rate3, rate4 = (-bend.dot(link) / sine for link in (output, coupler))
@@ -175,8 +174,8 @@ class Bars(ClosingDyad):
     def output(self, loop: Closed, crank: Vector) -> Any:
         return np.arctan2(loop.across.y, loop.across.x)
 
-    def moved_output(self, loop: Closed, moved: Vector) -> Any:
-        return -moved.dot(loop.along) / loop.lever
+    def driven_by(self, loop: Closed, moved: Vector) -> Any:
+        return -moved.dot(loop.along)
 
 
 class Slider(ClosingDyad):
@@ -196,11 +195,12 @@ class Slider(ClosingDyad):
         apart = r4 - crank.dot(ground)
         ahead2 = (r3 - apart) * (r3 + apart)
         coupler = apart * ground + (assembly * root(ahead2)) * -ground.left
-        return Closed(coupler, ground, r3, coupler.cross(ground), ahead2)
+        return Closed(coupler, ground, r3, ahead2)
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
-        speed3 = -crank.left.dot(loop.across) / loop.lever
-        rate3 = (crank.dot(loop.across) + speed3**2 * loop.along.dot(loop.across)) / loop.lever
+        lever = self.lever(loop)
+        speed3 = -crank.left.dot(loop.across) / lever
+        rate3 = (crank.dot(loop.across) + speed3**2 * loop.along.dot(loop.across)) / lever
         return Rates(speed3, 0.0, rate3, 0.0)
 
     def reach(self, sizes: Sized, angle: Any) -> Any:
@@ -219,8 +219,8 @@ class Slider(ClosingDyad):
     def output(self, loop: Closed, crank: Vector) -> Any:
         return (crank + loop.along).dot(-loop.across.left)
 
-    def moved_output(self, loop: Closed, moved: Vector) -> Any:
-        return moved.dot(loop.along) / loop.lever
+    def driven_by(self, loop: Closed, moved: Vector) -> Any:
+        return moved.dot(loop.along)
 
 
 class Block(ClosingDyad):
@@ -242,10 +242,10 @@ class Block(ClosingDyad):
         rod2 = square - r4**2
         rod = assembly * root(rod2)
         along = (rod * diagonal + r4 * diagonal.left) / square
-        return Closed(along, along.left, rod, rod, rod2)
+        return Closed(along, along.left, rod, rod2)
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
-        along, across, rod, _, _ = loop
+        along, across, rod, _ = loop
         speed = -crank.left.dot(across) / rod
         rate = (crank.dot(across) + 2 * speed * crank.left.dot(along) + speed**2 * r4) / rod
         return Rates(speed, speed, rate, rate)
@@ -264,11 +264,14 @@ class Block(ClosingDyad):
         longer = (1 - 2 * sizes.double_crank) * (sizes.r1 - sizes.r2)
         return _both_ways(longer, sizes.r1 + sizes.r2, sizes.offset)
 
+    def lever(self, loop: Closed) -> Any:
+        return loop.rod
+
     def output(self, loop: Closed, crank: Vector) -> Any:
         return np.arctan2(loop.along.y, loop.along.x)
 
-    def moved_output(self, loop: Closed, moved: Vector) -> Any:
-        return self.turned(loop, moved)
+    def driven_by(self, loop: Closed, moved: Vector) -> Any:
+        return -moved.dot(loop.across)
 
 
 def _square_of_diagonal(sizes: Sized, angle: Any) -> Any:

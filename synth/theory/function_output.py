@@ -135,8 +135,9 @@ class Generators(ABC):
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             crank, loop = self._closed(turned)
-            loop = loop._replace(lever=np.where(loop.lever == 0, np.nan, loop.lever))
-            slopes = [self.dyad.moved_output(loop, move) for move in self.moves(crank, loop)]
+            lever = self.dyad.lever(loop)
+            lever = np.where(lever == 0, np.nan, lever)
+            slopes = [self.dyad.driven_by(loop, move) / lever for move in self.moves(crank, loop)]
         return np.stack(np.broadcast_arrays(*slopes), axis=-1)
 
     def worst_cosine(self, span: float) -> FloatArray:

@@ -62,9 +62,11 @@ def test_what_moves_b_turns_link_3_and_moves_the_output(word: str, seed: int) ->
         (before, one), (crank, loop), (after, other) = ways
         turned = np.angle(as_complex(other.along) / as_complex(one.along)) / (2 * step)
         output = (dyad.output(other, after) - dyad.output(one, before)) / (2 * step)
-        sound = np.abs(loop.lever) > 0.05
-        np.testing.assert_allclose(dyad.turned(loop, crank.left)[sound], turned[sound], rtol=1e-5, atol=1e-6)
-        moved = dyad.moved_output(loop, crank.left)
+        lever = dyad.lever(loop)
+        sound = np.abs(lever) > 0.05
+        speed3 = -crank.left.dot(loop.across) / lever
+        np.testing.assert_allclose(speed3[sound], turned[sound], rtol=1e-5, atol=1e-6)
+        moved = dyad.driven_by(loop, crank.left) / lever
     whole = np.abs(output) < 1e5  # not where an angle is counted anew
     np.testing.assert_allclose(moved[sound & whole], output[sound & whole], rtol=1e-5, atol=1e-6)
 
