@@ -13,7 +13,6 @@ from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
@@ -318,7 +317,7 @@ def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective:
 
 def arm_of(form: Form, x: Unknowns, places: Places) -> ca.SX:
     """P in the coupler's frame, sizes."""
-    if form.kind is not FOUR_BAR:
+    if not x.arm.is_empty():
         return x.arm
     coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
     return ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])

@@ -92,7 +92,7 @@ class Screened:
         o2, _, a, b, p = self.points.T[..., None]
         coupler = np.take_along_axis(self.coupler, self.visit, axis=1)
         at_a = o2 + np.abs(a - o2) * np.exp(1j * self.theta2)
-        turned = coupler if self.kind is FOUR_BAR else coupler * np.abs(b - a) / np.abs(coupler)
+        turned = coupler if self.kind.dyad.bars else coupler * np.abs(b - a) / np.abs(coupler)
         return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * turned])
 
 
@@ -162,7 +162,7 @@ class Many(View):
             self.r2, self.theta2_start = np.abs(crank[:, :1]), np.angle(crank[:, :1])
         if o4 is not None and b is not None:
             self.b = as_vector(b)
-            if kind is FOUR_BAR:
+            if kind.dyad.bars > 1:
                 self.o4, self.bp, self.r4 = (
                     as_vector(o4[:, None]),
                     self.p_from(b),

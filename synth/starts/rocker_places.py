@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.loop.dyad import Bars, coupler_of
+from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.member_choice import diagonals
 from grashof.synth.starts.placing import Ground, scales
@@ -22,6 +22,8 @@ class RockerPlaces(Places):
     """Of any scale; the ground line, from O2 to O4, counts as 1."""
 
     what: ClassVar[str] = "crank-rockers"
+    advised: ClassVar[str] = "swing"
+    dyad: ClassVar[type[ClosingDyad]] = Bars
     kept: ClassVar[frozenset[str]] = KEPT | {"r1", "r4", "o4", "ground_angle_deg", "output_swing_deg"}
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:

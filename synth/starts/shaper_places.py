@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
-from grashof.synth.loop.dyad import Block, coupler_of, root_or_zero
+from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.placing import Ground, scales
 from grashof.synth.starts.rocker_places import RockerPlaces
@@ -26,6 +26,7 @@ class ShaperPlaces(RockerPlaces):
     """Of any scale, as crank-rockers; their time ratio follows from the swing."""
 
     what: ClassVar[str] = "crank-shapers"
+    dyad: ClassVar[type[ClosingDyad]] = Block
     kept: ClassVar[frozenset[str]] = KEPT | {"r1", "o4", "offset", "ground_angle_deg", "output_swing_deg"}
     mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
 

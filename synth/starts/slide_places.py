@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
-from grashof.synth.loop.dyad import Slider, coupler_of, root_or_zero
+from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.stroke_places import KEPT, Places
 from grashof.synth.theory.limit_positions import Family, Members, lag_of, slider_cranks
@@ -31,6 +31,8 @@ class SlidePlaces(Places):
     """
 
     what: ClassVar[str] = "slider-cranks"
+    advised: ClassVar[str] = "stroke"
+    dyad: ClassVar[type[ClosingDyad]] = Slider
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
     mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
 

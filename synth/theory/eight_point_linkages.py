@@ -7,6 +7,7 @@ for. The real ones among them are linkages; each is closed at every point by its
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -28,8 +29,11 @@ REAL = (
 CLOSES = 1e-9  # largest miss of a point, sizes
 
 
+AnyLinkage = TypeVar("AnyLinkage", SliderCrank, InvertedSliderCrank)
+
+
 @dataclass(frozen=True, slots=True)
-class Through:
+class Through(Generic[AnyLinkage]):
     """Linkages that pass eight points, in any order and branch.
 
     Parameters
@@ -44,13 +48,15 @@ class Through:
         Complex ones that were found, cognates as one.
     """
 
-    linkages: SliderCrank | InvertedSliderCrank
+    linkages: AnyLinkage
     theta2: FloatArray
     assembly: FloatArray
     solutions: int
 
 
-def slider_cranks_through(points: ComplexArray, rng: np.random.Generator, runs: int = RUNS) -> Through:
+def slider_cranks_through(
+    points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
+) -> Through[SliderCrank]:
     """All slider-cranks through eight points, each followed by its cognate.
 
     Parameters
@@ -95,7 +101,7 @@ def slider_cranks_through(points: ComplexArray, rng: np.random.Generator, runs: 
 
 def inverted_slider_cranks_through(
     points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
-) -> Through:
+) -> Through[InvertedSliderCrank]:
     """All inverted slider-cranks through eight points.
 
     Parameters
@@ -177,7 +183,9 @@ def _real_solutions(
     return both[:, :7], np.concatenate([np.ones((len(both), 1)), both[:, 7:]], axis=1), len(found)
 
 
-def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int) -> Through:
+def _slider_cranks(
+    places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
+) -> Through[SliderCrank]:
     """Those that close.
 
     Parameters
@@ -217,7 +225,7 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
 
 def _inverted_slider_cranks(
     places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
-) -> Through:
+) -> Through[InvertedSliderCrank]:
     """Those that close.
 
     Parameters
