@@ -315,7 +315,7 @@ def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective:
     return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
-def arm_of(form: Form, x: Unknowns, places: Places) -> ca.SX:
+def arm_of(x: Unknowns, places: Places) -> ca.SX:
     """P in the coupler's frame, sizes."""
     if not x.arm.is_empty():
         return x.arm
@@ -327,7 +327,7 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> 
     """What a user's function sees of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
-    arm = arm_of(form, x, places)
+    arm = arm_of(x, places)
     named = form.kind.named([scale * length for length in ca.vertsplit(x.r)], x.theta1)
     o2, o4 = scale * x.o2 + origin, None if x.o4.is_empty() else scale * x.o4 + origin
     a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))

@@ -146,7 +146,7 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
 
     In units of its peak at the start.
     """
-    arm, lengths = vector(arm_of(form, x, places)), ca.vertsplit(x.r)
+    arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
     ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
