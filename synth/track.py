@@ -10,6 +10,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.linkages.mechanisms import is_of
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.merit import same_error
@@ -102,7 +103,7 @@ def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
         if not isinstance(design, Candidate):
             raise wrong_value(f"designs[{number}]", design, "a Candidate, as results list them")
         kind = design.linkage.mechanism.word
-        if kind not in problem.mechanism:
+        if not is_of(design.linkage, problem.mechanism):
             asked = ", ".join(problem.mechanism)
             raise ProblemError(f"designs[{number}] is a {kind}; the problem asks for {asked}")
         kinds[kind] = None

@@ -14,7 +14,7 @@ from grashof.analysis.judge.design import greatest
 from grashof.analysis.judge.measures import Values
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.display import Displayed
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, lengths_text
+from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
 from grashof.synth.programme.merit import same_error
 from grashof.synth.theory.distinct import signature
 
@@ -84,7 +84,7 @@ class Candidate(Displayed):
         ]
         numbers = [*signature(linkage), *others]
         text = " ".join(f"{number + 0.0:.5e}" for number in numbers)
-        text += "" if linkage.mechanism.word == FOUR_BAR else linkage.mechanism.word
+        text += kinds_text([linkage.mechanism.word])
         return "d" + hashlib.sha256(text.encode()).hexdigest()[:7]
 
     @property

@@ -11,12 +11,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.burden import NOTHING, Burden
 from grashof.synth.programme.drive import drive_torque, joint_forces
 from grashof.synth.programme.driver_way import drive_of, driver_at
-from grashof.synth.programme.instant import Instant
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.vector import Vector
 
 SCREENED = 25  # instants at which many linkages are compared
 LOOKED_AT = 30 * SCREENED  # instants at which one linkage is looked at
@@ -28,8 +28,8 @@ MOST_PEAKS = 4  # that are reported at once
 # the magnitude, of several the greatest.
 Along: TypeAlias = Callable[[Instant, Burden | None], list[Any]]
 ALONG: dict[str, Along] = {
-    "mechanical_advantage": lambda at, _: [at.speed4],
-    "omega4_max": lambda at, _: [at.driver.pace * at.speed4],
+    "mechanical_advantage": lambda at, _: [at.rates.speed4],
+    "omega4_max": lambda at, _: [at.driver.pace * at.rates.speed4],
     "point_speed_max": lambda at, _: [at.velocity(3, at.point)],
     "point_acceleration_max": lambda at, _: [at.acceleration(3, at.point)],
     "torque_peak": lambda at, burden: drive_torque(at, burden or NOTHING),
@@ -84,7 +84,7 @@ def magnitudes(
     with np.errstate(all="ignore"):
         driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
         base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
-        at = kind.instant.of(base, along, lengths, point, assembly[:, None], driver)
+        at = kind.instant(base, along, lengths, point, assembly[:, None], driver)
         values = ALONG[key](at, Burden.of(problem))
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)

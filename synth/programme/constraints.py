@@ -10,16 +10,15 @@ import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
 from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
 from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at
-from grashof.synth.programme.vector import Vector
 from grashof.synth.theory.burmester import Displacements
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
@@ -189,7 +188,7 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
             build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
-        margins = form.kind.margins(Symbols(form, x, places))
+        margins = form.kind.dyad.margins(Symbols(form, x, places))
         build.require(("rotatability",), *(share - margin for share in margins))
 
 
@@ -242,14 +241,14 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """cos(tau) bounds |cos(mu)|, monotone between the ends of the task motion and the ground line."""
-    design, kind = Symbols(form, x, places), form.kind
+    design, dyad = Symbols(form, x, places), form.kind.dyad
 
     def bound(reach: ca.SX) -> tuple[ca.SX, ca.SX]:
-        cosine = kind.cos_mu(design, reach)
+        cosine = dyad.cos_mu(design, reach)
         return ca.cos(x.tau) - cosine, ca.cos(x.tau) + cosine
 
-    for number, reach in enumerate((kind.folded, kind.stretched)):
-        build.row(*bound(reach(design)), limits=_passing(form, number))
+    for number, reach in enumerate(dyad.along_ground(design)):
+        build.row(*bound(reach), limits=_passing(form, number))
     if form.over_task:
         for k in (0, form.targets - 1):
             build.row(*bound(_reach(form, x, places, k)))
@@ -259,7 +258,7 @@ def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) 
 
 
 def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
-    """What decides the transmission angle (`Kind.at_angle`), at a target."""
+    """What decides the transmission angle (`ClosingDyad.reach`), at a target."""
     if "o4" in form.kind.linkage.mechanism.ground:
         return ca.sumsqr(places.a[k] - x.o4)
     return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))
@@ -316,9 +315,9 @@ def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective:
     return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
-def arm_of(form: Form, x: Unknowns, places: Places) -> ca.SX:
+def arm_of(x: Unknowns, places: Places) -> ca.SX:
     """P in the coupler's frame, sizes."""
-    if form.kind is not FOUR_BAR:
+    if not x.arm.is_empty():
         return x.arm
     coupler, to_p = places.b[0] - places.a[0], places.p[0] - places.a[0]
     return ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
@@ -328,7 +327,7 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> 
     """What a user's function sees of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
-    arm = arm_of(form, x, places)
+    arm = arm_of(x, places)
     named = form.kind.named([scale * length for length in ca.vertsplit(x.r)], x.theta1)
     o2, o4 = scale * x.o2 + origin, None if x.o4.is_empty() else scale * x.o4 + origin
     a, b, p = ([scale * point + origin for point in track] for track in (places.a, places.b, places.p))

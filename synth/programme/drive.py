@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.dynamics.acting import JOINTS, TURNING
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.burden import Burden, Mass, Push
 from grashof.synth.programme.driver_way import pieces
-from grashof.synth.programme.instant import Instant
-from grashof.synth.programme.vector import Vector
 
 _TURN_DEG = 360.0
 _FRICTION_ROUNDS = 3  # each takes the joint forces of the last

@@ -13,7 +13,7 @@ import scipy
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.synth.programme.instant import Moment
+from grashof.synth.loop.instant import Moment
 
 
 def driver_at(motor: MotorSpec | None, omega2: Any, share: Any, first: Any, last: Any, sense: Any) -> Moment:

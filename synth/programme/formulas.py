@@ -17,12 +17,13 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, Limits
+from grashof.problems.values.arrays import TURN, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.vector import Vector
+from grashof.synth.loop.dyad import Sized
+from grashof.synth.loop.vector import Vector
 
 
-class View:
+class View(Sized):
     """A design, or many, at their targets; lengths in sizes, angles in rad.
 
     Scalars are arrays (n, 1), `Dual`, or symbols; what belongs to targets has N columns, or is a symbol of N
@@ -54,10 +55,6 @@ class View:
 
     o2: Vector
     o4: Vector
-    r1: Any
-    r2: Any
-    r3: Any
-    r4: Any
     theta1: Any
     theta2_start: Any
     ap: Vector
@@ -69,8 +66,6 @@ class View:
     direction: Any
     output_turn: Any
     turns: Any
-    double_crank: Any
-    offset: Any
     output_travel: Any
 
 
@@ -145,12 +140,6 @@ def _cosine(opposite: Any, one: Any, other: Any) -> Any:
     return np.minimum(np.maximum(cosine, -_FLAT), _FLAT)
 
 
-def turns_fully(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> BoolArray:
-    """Whether links 3 and 4 close the loop both where link 2 lies along the ground and against it."""
-    fully: BoolArray = (r1 + r2 <= r3 + r4) & (np.abs(r1 - r2) >= np.abs(r3 - r4))
-    return fully
-
-
 def _output_swing(d: View) -> Any:
     """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn.
 
@@ -220,23 +209,3 @@ def range_of(wanted: Requirements, name: str, part: Part) -> Limits:
     """What a field of `wanted` allows for a part."""
     low, high = wanted.ranges(name)[part.axis]
     return low, high
-
-
-def cos_mu(d: View, diagonal2: Any) -> Any:
-    """Cosine of the transmission angle by the law of cosines in A-B-O4, from the square of A-O4."""
-    return (d.r3**2 + d.r4**2 - diagonal2) / (2 * d.r3 * d.r4)
-
-
-def folded(d: View) -> Any:
-    """Square of A-O4 with O2A folded over the ground line."""
-    return (d.r1 - d.r2) ** 2
-
-
-def stretched(d: View) -> Any:
-    """Square of A-O4 with O2A stretched along the ground line."""
-    return (d.r1 + d.r2) ** 2
-
-
-def at_angle(d: View, angle: Any) -> Any:
-    """Square of A-O4 with O2A turned by an angle from the ground line."""
-    return folded(d) + 4 * d.r1 * d.r2 * np.sin(angle / 2) ** 2

@@ -10,11 +10,11 @@ import numpy as np
 
 from grashof.problems import FourBar, Requirements, Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import FourBarClosure
+from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.instant import FourBarInstant
 from grashof.synth.programme import formulas
-from grashof.synth.programme.formulas import View
-from grashof.synth.programme.instant import FourBarInstant
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector
-from grashof.synth.theory.closure import FourBarClosure
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.function_four_bar import FourBars
 
@@ -29,49 +29,10 @@ class FourBarKind(Kind):
     instant = FourBarInstant
     generators = FourBars
 
-    def folded(self, d: View) -> Any:
-        return formulas.folded(d)
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return formulas.at_angle(d, angle)
-
-    def stretched(self, d: View) -> Any:
-        return formulas.stretched(d)
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return formulas.cos_mu(d, reach)
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        total = d.r1 + d.r2 + d.r3 + d.r4
-        longer = (1 - 2 * d.double_crank) * (d.r1 - d.r2)
-        return (
-            (d.r3 + d.r4 - d.r1 - d.r2) / total,
-            (longer - (d.r3 - d.r4)) / total,
-            (longer + (d.r3 - d.r4)) / total,
-        )
-
-    def turns_fully(self, d: View) -> Any:
-        return formulas.turns_fully(d.r1, d.r2, d.r3, d.r4)
-
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:
             return _any_lengths(proportions)
         return _full_crank_lengths(proportions, longer_driver, wanted.rotatability_margin)
-
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:  # closure: RRR
-        r2, r3, r4 = lengths
-        diagonal = 1 - r2[:, None] * e2
-        s = np.abs(diagonal)
-        along = (s**2 + (r3**2 - r4**2)[:, None]) / (2 * s)
-        beside2 = r3[:, None] ** 2 - along**2
-        closes = (beside2 > 1e-12 * r3[:, None] ** 2).all(axis=1)
-        # Not `coupler_of`: what is open, too, has numbers here, and last digits decide a list.
-        beside = assembly * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        coupler = (along + 1j * beside) * diagonal / s
-        output = r2[:, None] * e2 + coupler - 1
-        return coupler / r3[:, None], output / r4[:, None], r3[:, None], closes
 
     def placed(
         self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray

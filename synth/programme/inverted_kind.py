@@ -10,11 +10,11 @@ import numpy as np
 
 from grashof.problems import InvertedSliderCrank, Requirements, Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import InvertedSliderCrankClosure
+from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.instant import InvertedInstant
 from grashof.synth.programme import slider_formulas
-from grashof.synth.programme.formulas import View
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, as_vector, both_ways, by_two
-from grashof.synth.programme.slider_instants import InvertedInstant
-from grashof.synth.theory.closure import InvertedSliderCrankClosure
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
 from grashof.synth.theory.function_inverted import InvertedSliderCranks
 
 
@@ -30,21 +30,6 @@ class InvertedKind(Kind):
     instant = InvertedInstant
     generators = InvertedSliderCranks
 
-    def folded(self, d: View) -> Any:
-        return (d.r1 - d.r2) ** 2
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return self.folded(d) + 4 * d.r1 * d.r2 * np.sin(angle / 2) ** 2
-
-    def stretched(self, d: View) -> Any:
-        return (d.r1 + d.r2) ** 2
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return d.offset / np.sqrt(reach + 1e-300)
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        return both_ways((1 - 2 * d.double_crank) * (d.r1 - d.r2), d.r1 + d.r2, d.offset)
-
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
         if wanted.rotatability is Rotatability.ANY:
@@ -59,18 +44,6 @@ class InvertedKind(Kind):
         room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
         by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
-
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:  # closure: RPR
-        r2, _, offset = lengths
-        diagonal = 1 - r2[:, None] * e2
-        beside2 = np.abs(diagonal) ** 2 - offset[:, None] ** 2
-        closes: BoolArray = np.all(beside2 > 1e-12, axis=1)
-        rod = np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        e3 = diagonal / (rod - 1j * offset[:, None])
-        e3 = e3 / np.abs(e3)
-        return e3, 1j * e3, rod, closes
 
     def placed(
         self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray

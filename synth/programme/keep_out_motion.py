@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.loop.dyad import coupler_of
 from grashof.synth.programme.keep_out_depth import inside, points_kept_out
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened, coupler_along
-from grashof.synth.theory.closure import coupler_of
+from grashof.synth.programme.screening import Screened
 
 _SAMPLES = 13  # driver angles, the targets' ends among them
 _ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
@@ -74,15 +73,12 @@ def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 def _places(kind: Kind, linkages: Screened) -> dict[str, ComplexArray]:
     """Pivots and coupler point at sampled driver angles, each shape (n, samples)."""
-    o2, o4, a, b, p = (column[:, None] for column in linkages.points.T)
+    o2, o4 = linkages.points.T[:2, :, None]
+    ground, lengths, arm = kind.sides(linkages.points[:, None])
     theta2, assembly = linkages.theta2, linkages.assembly
     angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
-    at_a = o2 + np.abs(a - o2) * np.exp(1j * angle)
-    with np.errstate(all="ignore"):
-        if kind is FOUR_BAR:
-            coupler = coupler_of(o4 - at_a, np.abs(b - a), np.abs(b - o4), assembly[:, None])
-        else:
-            coupler = coupler_along(kind, linkages.points, angle)
-        arm = coupler / np.abs(coupler) * ((p - a) * np.abs(b - a) / (b - a))
-    fixed = np.ones_like(at_a)
-    return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm}
+    crank = lengths[1] * np.exp(1j * angle)
+    _, _, r3, r4 = lengths
+    coupler, along = coupler_of(kind.dyad, ground, crank, r3, r4, assembly[:, None])
+    at_a, fixed = o2 + crank, np.ones_like(crank)
+    return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm * along}

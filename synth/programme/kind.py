@@ -17,29 +17,22 @@ import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
-from grashof.synth.programme.formulas import Part, View
+from grashof.synth.loop.dimensions import Closure
+from grashof.synth.loop.dyad import ClosingDyad, as_complex, as_vector
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
+from grashof.synth.programme.formulas import Part
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.instant import Instant
-from grashof.synth.programme.vector import Vector
-from grashof.synth.theory.closure import Closure
 from grashof.synth.theory.function_output import Generators
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
-Closed: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 
 
 _LENGTHS = ("r1", "r2", "r3", "r4")
 _ONLY: dict[type, Any] = {}  # the one value of each kind
-
-
-class Lengths(View):
-    """Lengths alone; the offset of slider kinds in place of r4."""
-
-    def __init__(self, r1: Any, r2: Any, r3: Any, r4: Any) -> None:
-        self.r1, self.r2, self.r3, self.r4, self.offset = r1, r2, r3, r4, r4
-        self.double_crank = (r1 > 0) & (r2 > r1)
 
 
 class LoopOf(Protocol):
@@ -91,34 +84,8 @@ class Kind(ABC):
         return self.linkage.mechanism.word
 
     @abstractmethod
-    def folded(self, d: View) -> Any:
-        """What decides the transmission angle, with O2A folded over the ground line."""
-
-    @abstractmethod
-    def at_angle(self, d: View, angle: Any) -> Any:
-        """The same with O2A turned by an angle from the ground line."""
-
-    @abstractmethod
-    def stretched(self, d: View) -> Any:
-        """The same with O2A stretched along the ground line."""
-
-    @abstractmethod
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        """Cosine of the transmission angle from there; beyond 1 the loop does not close."""
-
-    @abstractmethod
-    def margins(self, d: View) -> tuple[Any, ...]:
-        """Shares of the lengths that are not negative where the driver turns fully."""
-
-    @abstractmethod
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
-
-    @abstractmethod
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:
-        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
 
     @abstractmethod
     def placed(
@@ -156,6 +123,21 @@ class Kind(ABC):
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
         """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+
+    @property
+    def dyad(self) -> ClosingDyad:
+        """Links 3 and 4."""
+        return self.instant.dyad
+
+    def closed(
+        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
+    ) -> LoopAt:
+        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
+        r2, r3, r4 = (each[:, None] for each in lengths)
+        loop = self.dyad.closed(Vector(1.0, 0.0), as_vector(r2 * e2), r3, r4, assembly, _root_of_any)
+        e3, e4 = (as_complex(each) for each in self.dyad.directions(loop, r3, r4))
+        closes: BoolArray = np.all(loop.square > 1e-12, axis=1)
+        return e3, np.broadcast_to(e4, e2.shape), loop.rod, closes
 
     def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
         """Other linkages of the kind, each (5,), that lead P along the same curve, or the body as this does.
@@ -199,23 +181,11 @@ class Kind(ABC):
         of_cranks = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
         return rng.normal(0.0, 0.7, (count, 3)) if anything else of_cranks
 
-    def turns_fully(self, d: View) -> Any:
-        """Whether the loop closes with O2A folded over the ground line and stretched along it."""
-        return np.logical_and.reduce([margin >= 0 for margin in self.margins(d)])
 
-
-def as_vector(points: ComplexArray) -> Vector:
-    """Complex numbers as plane vectors."""
-    return Vector(points.real, points.imag)
-
-
-def both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:
-    """Shares (longer -+ offset) / (total +- offset), the smaller (longer - |offset|) / (total + |offset|)."""
-    least = 1e-6 * total  # far from a full crank nothing turns round
-    return (
-        (longer - offset) / np.maximum(total + offset, least),
-        (longer + offset) / np.maximum(total - offset, least),
-    )
+def _root_of_any(square: FloatArray) -> FloatArray:
+    """Of what is not positive the root of 1: what is open has numbers, too."""
+    root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
+    return root
 
 
 def by_two(*rows: list[FloatArray]) -> FloatArray:

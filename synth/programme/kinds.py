@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from grashof.problems import Problem
 from grashof.synth.programme.four_bar_kind import FourBarKind
 from grashof.synth.programme.inverted_kind import InvertedKind
 from grashof.synth.programme.kind import Kind
@@ -12,3 +13,8 @@ from grashof.synth.programme.slider_crank_kind import SliderCrankKind
 FOUR_BAR: Kind = FourBarKind()
 # By the word for it in files.
 KINDS: Mapping[str, Kind] = {kind.mechanism: kind for kind in (FOUR_BAR, SliderCrankKind(), InvertedKind())}
+
+
+def kind_of(problem: Problem) -> Kind:
+    """The kind of linkage that a problem of one kind asks for."""
+    return KINDS[problem.mechanism[0]]

@@ -10,6 +10,7 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.along_motion import (
     AGREES,
     ALONG,
@@ -26,7 +27,6 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
-from grashof.synth.programme.vector import Vector
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
@@ -146,7 +146,7 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
 
     In units of its peak at the start.
     """
-    arm, lengths = vector(arm_of(form, x, places)), ca.vertsplit(x.r)
+    arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
     ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
@@ -155,7 +155,7 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
         driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
-        at = form.kind.instant.of(vector(x.o2), ground, lengths, arm, x.assembly, driver)
+        at = form.kind.instant(vector(x.o2), ground, lengths, arm, x.assembly, driver)
         for value in ALONG[key](at, form.burden):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / one).square)

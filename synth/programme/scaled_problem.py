@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR, KINDS
+from grashof.synth.programme.kinds import FOUR_BAR, kind_of
 from grashof.synth.theory.burmester import Displacements
 
 
@@ -83,9 +83,9 @@ class ScaledProblem:
         exact = problem.requirements.is_exact(task) and zones is None
         targets = np.where(task.has_position, frame.inward(task.positions), 0.0)
         turns = np.nan_to_num(task.angles)
-        kind = KINDS[problem.mechanism[0]]
+        kind = kind_of(problem)
         by_dyads = (
-            kind is FOUR_BAR
+            kind.dyad.bars > 1
             and exact
             and task.is_whole
             and not task.is_timed

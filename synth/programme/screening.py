@@ -11,10 +11,11 @@ import numpy as np
 from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
+from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
-from grashof.synth.programme.kind import Kind, as_vector
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.vector import Vector
 
 ROUNDING = 1e-10  # sizes, rad: by so much no limit is overstepped
 # The requirements that can stand in the way, named by their fields.
@@ -91,7 +92,7 @@ class Screened:
         o2, _, a, b, p = self.points.T[..., None]
         coupler = np.take_along_axis(self.coupler, self.visit, axis=1)
         at_a = o2 + np.abs(a - o2) * np.exp(1j * self.theta2)
-        turned = coupler if self.kind is FOUR_BAR else coupler * np.abs(b - a) / np.abs(coupler)
+        turned = coupler if self.kind.dyad.bars else coupler * np.abs(b - a) / np.abs(coupler)
         return np.stack([at_a, at_a + coupler, at_a + (p - a) / (b - a) * turned])
 
 
@@ -161,7 +162,7 @@ class Many(View):
             self.r2, self.theta2_start = np.abs(crank[:, :1]), np.angle(crank[:, :1])
         if o4 is not None and b is not None:
             self.b = as_vector(b)
-            if kind is FOUR_BAR:
+            if kind.dyad.bars > 1:
                 self.o4, self.bp, self.r4 = (
                     as_vector(o4[:, None]),
                     self.p_from(b),
@@ -170,7 +171,7 @@ class Many(View):
         if o2 is not None and o4 is not None and a is not None and b is not None:
             self.sine = kind.many(self, o2, o4, a, b)
             self.double_crank = self.r2 > getattr(self, "r1", np.inf)
-            self.turns = kind.turns_fully(self)
+            self.turns = kind.dyad.turns_fully(self)
         if theta2 is not None:
             gone = theta2[:, -1:] - theta2[:, :1]
             self.driver_turn, self.direction = np.abs(gone), np.sign(gone)
@@ -180,20 +181,6 @@ class Many(View):
     def p_from(self, pivot: ComplexArray) -> Vector:
         """From a pivot (n, N) to the coupler point, at the first target."""
         return as_vector((self._p - pivot[:, 0])[:, None])
-
-
-def coupler_along(kind: Kind, points: ComplexArray, theta2: FloatArray) -> ComplexArray:
-    """From A to B of linkages of slider kinds (n, 5) at driver angles (n, k); NaN where the loop is open."""
-    o2, o4, a, b, p = points.T
-    view = Many(p, o2, a[:, None], o4, b[:, None], kind=kind)
-    unit = view.r1 if kind.turns_with_coupler else view.r3
-    lengths = (view.r2 / unit, np.ones_like(view.r2), view.offset / unit)
-    relative = theta2 - view.theta1
-    r2, r3, offset = (each[:, 0] for each in lengths)
-    e3, _, rod, _ = kind.closed((r2, r3, offset), np.exp(1j * relative), np.ones_like(relative))
-    closed = np.abs(kind.cos_mu(view, kind.at_angle(view, relative))) <= 1
-    coupler: ComplexArray = np.where(closed, unit * rod * e3 * np.exp(1j * view.theta1), np.nan)
-    return coupler
 
 
 def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
@@ -367,8 +354,8 @@ def _ways(
     Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
     ranges, has no way around.
     """
-    kind = found.kind
-    fold, stretch = (np.abs(kind.cos_mu(view, reach(view)))[:, 0] for reach in (kind.folded, kind.stretched))
+    dyad = found.kind.dyad
+    fold, stretch = (np.abs(dyad.cos_mu(view, reach))[:, 0] for reach in dyad.along_ground(view))
     ends = found.theta2[:, [0, -1]] - view.theta1
     inside = found.theta2 - view.theta1
     inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
@@ -381,7 +368,7 @@ def _ways(
     even = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 0))
     odd = (count >= 2) | ((count == 1) & (crossed[:, 1] % 2 == 1))
     span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
-    at_ends = kind.cos_mu(view, kind.at_angle(view, ends))
+    at_ends = dyad.cos_mu(view, dyad.reach(view, ends))
     span = np.maximum(span, np.abs(at_ends).max(axis=1))
     return found, violations, span, np.maximum(fold, stretch)
 
@@ -409,6 +396,6 @@ def _rotatability_violation(view: Many, wanted: Requirements) -> FloatArray:
     asked = {Rotatability.CRANK_ROCKER: False, Rotatability.DOUBLE_CRANK: True}.get(wanted.rotatability)
     if asked is not None:
         view.double_crank = np.full_like(view.double_crank, asked)
-    least: FloatArray = np.minimum.reduce([margin[:, 0] for margin in view.kind.margins(view)])
+    least: FloatArray = np.minimum.reduce([margin[:, 0] for margin in view.kind.dyad.margins(view)])
     violation: FloatArray = wanted.rotatability_margin - least
     return violation

@@ -10,12 +10,11 @@ import numpy as np
 
 from grashof.problems import Linkage, Requirements, Rotatability, SliderCrank
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import SliderCrankClosure
+from grashof.synth.loop.instant import SliderCrankInstant
 from grashof.synth.programme import slider_formulas
-from grashof.synth.programme.formulas import View
 from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.kind import Closed, Kind, LoopOf, Shapes, both_ways, by_two
-from grashof.synth.programme.slider_instants import SliderCrankInstant
-from grashof.synth.theory.closure import SliderCrankClosure
+from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
 from grashof.synth.theory.cognates import slider_crank_cognate
 from grashof.synth.theory.function_slider_crank import SliderCranks
 
@@ -32,21 +31,6 @@ class SliderCrankKind(Kind):
     instant = SliderCrankInstant
     generators = SliderCranks
 
-    def folded(self, d: View) -> Any:
-        return d.offset - d.r2
-
-    def at_angle(self, d: View, angle: Any) -> Any:
-        return d.offset - d.r2 * np.cos(angle)
-
-    def stretched(self, d: View) -> Any:
-        return d.offset + d.r2
-
-    def cos_mu(self, d: View, reach: Any) -> Any:
-        return reach / d.r3
-
-    def margins(self, d: View) -> tuple[Any, ...]:
-        return both_ways(d.r3 - d.r2, d.r2 + d.r3, d.offset)
-
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
         if wanted.rotatability is Rotatability.ANY:
@@ -60,16 +44,6 @@ class SliderCrankKind(Kind):
         room = most - r2
         by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [-by_a * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
-
-    def closed(
-        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
-    ) -> Closed:  # closure: RRP
-        r2, r3, offset = lengths
-        reach = offset[:, None] - r2[:, None] * e2.real
-        beside2 = (1 - reach) * (1 + reach)
-        closes: BoolArray = np.all(beside2 > 1e-12, axis=1)
-        e3 = reach - 1j * np.sqrt(np.where(beside2 > 0, beside2, 1.0))
-        return e3 / np.abs(e3), np.ones_like(e2), r3[:, None], closes
 
     def placed(
         self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import TURN
+from grashof.synth.loop.dyad import stroke_of
 from grashof.synth.programme.formulas import FORMULAS, Part, View
 
 _R1, _R2, _R3 = (
@@ -39,14 +40,8 @@ def _apart(names: tuple[str, ...]) -> dict[str, tuple[Part, ...]]:
 
 
 def _stroke(d: View) -> Any:
-    """Between the limit positions, with crank and rod in line.
-
-    From the first target to the last where the driver does not turn fully.
-    """
-    far, near = (
-        np.sqrt(np.maximum((d.r3 + sign * d.r2) ** 2 - d.offset**2, 1e-12 * d.r3**2)) for sign in (1.0, -1.0)
-    )
-    return d.turns * (far - near) + (1 - d.turns) * np.abs(d.output_travel)
+    """Between the limit positions; from the first target to the last unless the driver turns fully."""
+    return d.turns * stroke_of(d) + (1 - d.turns) * np.abs(d.output_travel)
 
 
 def _within(cosine: Any) -> Any:

@@ -10,7 +10,8 @@ import numpy as np
 from grashof.analysis import Verdict, solve_position
 from grashof.problems import Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.kind import Kind, Lengths
+from grashof.synth.loop.dyad import Sizes
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -170,7 +171,7 @@ class Start:
     @property
     def turns_fully(self) -> bool:
         """Whether the loop closes all round the turn."""
-        return bool(self.kind.turns_fully(Lengths(*self.lengths)))
+        return bool(self.kind.dyad.turns_fully(Sizes(*self.lengths)))
 
     def gives(self, *parts: str) -> bool:
         """Whether a requirement, or a part of it, may be missed."""

@@ -19,7 +19,6 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.problem import NO_OBJECTIVE
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Many, Screened
@@ -109,7 +108,7 @@ def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """The numbers of linkages in the order of `_symbols`, shape (n, M)."""
     o2, o4, a, b, p = linkages.points.T
     view = Many(p, o2, a[:, None], o4, b[:, None], kind=linkages.kind)
-    fourth = view.r4 if linkages.kind is FOUR_BAR else view.offset
+    fourth = view.r4 if linkages.kind.dyad.bars > 1 else view.offset
     lengths = [getattr(view, "r1", 0 * view.r2), view.r2, getattr(view, "r3", 0 * view.r2), fourth]
     arm = (p - a) * np.abs(b - a) / (b - a)
     columns = [

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Problem, StrokeTask
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SLIDER_CRANK
+from grashof.synth.programme.kinds import kind_of
+from grashof.synth.starts.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
 
 GOOD = float(np.radians(40))  # transmission angle that textbooks ask for (Norton, sec. 3.3)
 LITTLE = float(np.radians(1))  # of which tenths of a degree say nothing
 _HALVINGS = 12
-# Linkages and what they do, by the kind; others transmit well.
-_WORDS = {FOUR_BAR: ("crank-rockers", "swing"), SLIDER_CRANK: ("slider-cranks", "stroke")}
 
 
 def advice(problem: Problem) -> str:
@@ -28,12 +27,12 @@ def advice(problem: Problem) -> str:
     crank-rockers with this swing and time ratio transmit at 31.8 deg at best, less than the usual 40 deg; \
 time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     """
-    task, words = problem.task, _WORDS.get(problem.mechanism[0])
-    if not isinstance(task, StrokeTask) or words is None:
+    task, places = problem.task, places_of(kind_of(problem))
+    if not isinstance(task, StrokeTask) or not places.advised:
         return ""
     if (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
         return ""
-    kinds, what = words
+    kinds, what = places.what, places.advised
     usual = f"{np.degrees(GOOD):.0f} deg"
     ratio = _ratio_that_allows(task)
     smaller = (

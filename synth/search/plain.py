@@ -13,9 +13,10 @@ import numpy as np
 from grashof.analysis import Verdict
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
-from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, Objective, Problem, SliderCrank
+from grashof.problems import Cylinder, Linkage, Objective, Problem
+from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme import kinds
+from grashof.synth.programme.kinds import kind_of
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.field_types import refuse_misfits
@@ -23,11 +24,11 @@ from grashof.synth.search.ledger import Chunk
 from grashof.synth.search.tally import Tally
 
 # What may be written and read: values alone, so that a file is data.
-KINDS: dict[str, Any] = {
-    kind.__name__: kind
-    for kind in (
-        Attempt, Candidate, Chunk, Cylinder, Defect, FourBar, InvertedSliderCrank, Objective, Round,
-        SliderCrank, Start, Tally, Verdict,
+TYPES: dict[str, Any] = {
+    each.__name__: each
+    for each in (
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, Objective, Round, Start, Tally,
+        Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
@@ -63,7 +64,7 @@ def plain(value: Any) -> Any:
         return {"counter": [[plain(key), number] for key, number in value.items()]}
     if isinstance(value, Mapping):
         return {"map": [[plain(key), plain(each)] for key, each in value.items()]}
-    if is_dataclass(value) and type(value).__name__ in KINDS:
+    if is_dataclass(value) and type(value).__name__ in TYPES:
         name = type(value).__name__
         left_out = _LEFT_OUT.get(name, set())
         named = {f.name: plain(getattr(value, f.name)) for f in fields(value) if f.name not in left_out}
@@ -112,10 +113,10 @@ def _restored(value: Any, problem: Problem) -> Any:
     if name == "word":
         kind, word = content
         return WORDS[kind](word)
-    kind = KINDS[name]
+    kind = TYPES[name]
     named = {key: _restored(each, problem) for key, each in content.items()}
     if kind is Start:
-        named["kind"] = kinds.KINDS[problem.mechanism[0]]
+        named["kind"] = kind_of(problem)
     refuse_misfits(kind, named)
     if issubclass(kind, Linkage) and kind(**named).shape:  # refuses what is no linkage
         raise ValueError("a batch of linkages")

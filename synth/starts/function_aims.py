@@ -18,7 +18,7 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
-from grashof.synth.programme.kinds import KINDS
+from grashof.synth.programme.kinds import kind_of
 from grashof.synth.theory.function_fit import Wanted
 from grashof.synth.theory.function_limits import ShapeLimits, offset_rows
 from grashof.synth.theory.function_output import Generators
@@ -68,7 +68,7 @@ class FunctionAims:
         if not isinstance(task, FunctionTask):
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
-        kind, unit = KINDS[problem.mechanism[0]].generators, task.output_unit
+        kind, unit = kind_of(problem).generators, task.output_unit
         names, sizes = kind.sizes(wanted, unit)
         rotatability = wanted.rotatability or Rotatability.ANY
         limits = ShapeLimits(

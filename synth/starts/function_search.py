@@ -199,7 +199,7 @@ class _Pairs:
         """Those within the limits that meet every pair on one branch."""
         made = made.finite
         made = made[made.worst_cosine(self.limits.span) < 1]
-        made = made[self.limits.of(made)[0].min(axis=1) >= -ROUNDING]
+        made = made[self.limits.of(made).value.min(axis=1) >= -ROUNDING]
         if not len(made):
             return made
         wanted = self.wanted
@@ -317,7 +317,7 @@ class _Optima:
             kinds = [function_starts(aims.kind, wanted, rng, self.first)]
             if full:
                 cranks = crank_starts(aims.kind, wanted, rng, CRANKS, self.first, limits.shortest)
-                kinds.append(cranks[limits.of(cranks)[0].min(axis=1) > -0.1])
+                kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
                 for pull in PULLS if full else PULLS[:1]:
                     made, square = fitted(wanted, starts, limits.of, pull=pull, held=self.first is not None)

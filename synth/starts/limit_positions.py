@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start
@@ -30,18 +30,19 @@ _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decid
 _DRAWS = 4000  # of them in each round
 _MANY = 20  # members to choose the closest from, where the families do not tell
 _MISSING = 4  # of these are kept though they miss something, to tell what it is
-# By the kind of linkage.
-_PLACES: Mapping[str, type[Places]] = {
-    FOUR_BAR: RockerPlaces,
-    SLIDER_CRANK: SlidePlaces,
-    INVERTED: ShaperPlaces,
-}
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
 _Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
 # Families, whether mirrored, and where their members keep limits.
 _Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
+
+
+def places_of(kind: Kind) -> type[Places]:
+    """Where members lie, of a kind of linkage."""
+    return next(
+        each for each in (RockerPlaces, SlidePlaces, ShaperPlaces) if isinstance(kind.dyad, each.dyad)
+    )
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class LimitPositions:
     @cached_property
     def places(self) -> Places:
         """What differs between kinds of linkage."""
-        return _PLACES[self.scaled.kind.mechanism](self.task, self.wanted)
+        return places_of(self.scaled.kind)(self.task, self.wanted)
 
     @property
     def rounds_a_pass(self) -> int:

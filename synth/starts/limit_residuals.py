@@ -10,10 +10,10 @@ import numpy as np
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.dual import Dual
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import Sizes
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import LOGARITHMIC, View
-from grashof.synth.programme.kind import Lengths
-from grashof.synth.programme.vector import Vector
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
@@ -76,7 +76,7 @@ class Placement(View):
         self.driver_turn, self.double_crank = np.abs(last - first), self.relative.double_crank
         required = target.wanted.rotatability is not Rotatability.ANY
         lengths = (each[:, None] for each in (np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4))
-        self.turns = required | target.kind.turns_fully(Lengths(*lengths))
+        self.turns = required | target.kind.dyad.turns_fully(Sizes(*lengths))
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
@@ -192,13 +192,13 @@ def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
     if least <= 0 and wanted.rotatability is not Rotatability.ANY:
         return  # a full crank has no dead position
     most = np.cos(max(least, LEAST_TRANSMISSION))
-    kind = target.kind
-    for reach, passes in zip((kind.folded, kind.stretched), passed(target, theta2.value), strict=True):
-        yield _where(passes[:, None], _outside(kind.cos_mu(loop, reach(loop)), (-most, most)))
+    dyad = target.kind.dyad
+    for reach, passes in zip(dyad.along_ground(loop), passed(target, theta2.value), strict=True):
+        yield _where(passes[:, None], _outside(dyad.cos_mu(loop, reach), (-most, most)))
     if wanted.transmission_over is TransmissionOver.TASK and not target.closed:
         ends = slice(None) if target.jumbled else [0, -1]
         angle = Dual(theta2.value[:, ends], lambda: theta2.slope[:, ends])
-        yield _outside(kind.cos_mu(loop, kind.at_angle(loop, angle)), (-most, most))
+        yield _outside(dyad.cos_mu(loop, dyad.reach(loop, angle)), (-most, most))
 
 
 def passed(target: SearchTargets, theta2: FloatArray) -> tuple[BoolArray, BoolArray]:

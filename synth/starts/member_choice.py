@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.theory.closure import coupler_of
+from grashof.synth.loop.dyad import Bars, coupler_of
 from grashof.synth.theory.distinct import DISTINCT, pick_apart
 from grashof.synth.theory.limit_positions import Members
 
@@ -16,7 +16,7 @@ def diagonals(members: Members) -> FloatArray:
     """Diagonals of the boxes around O2, O4 and all that A and B reach, O2O4 = 1; shape (n,)."""
     _, r2, r3, r4 = members.lengths.T[..., None]
     a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, _POSITIONS))
-    b = a + np.nan_to_num(coupler_of(1 - a, r3, r4, members.assembly[:, None]))
+    b = a + np.nan_to_num(coupler_of(Bars(), 1.0, a, r3, r4, members.assembly[:, None])[0])
     places = np.concatenate([a, b, np.ones_like(a[:, :1])], axis=1)
     sides = [np.ptp(part, axis=1) for part in (places.real, places.imag)]
     across: FloatArray = np.hypot(sides[0], sides[1])

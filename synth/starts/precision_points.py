@@ -12,8 +12,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import FourBar, SliderCrank
+from grashof.problems import SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.loop.dyad import Bars, ClosingDyad, Slider, coupler_of
 from grashof.synth.programme.driver_angles import shorter_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
@@ -59,7 +60,7 @@ class EveryLinkage(PrecisionPoints, ABC):
 
     patience: ClassVar[float] = np.inf
     points: ClassVar[int]
-    mechanism: ClassVar[str]
+    dyad: ClassVar[type[ClosingDyad]]
     solutions: ClassVar[int]  # that are known for general points
 
     @property
@@ -70,7 +71,7 @@ class EveryLinkage(PrecisionPoints, ABC):
     @classmethod
     def suits(cls, scaled: ScaledProblem) -> bool:
         """So many points, to be met exactly."""
-        if scaled.kind.mechanism != cls.mechanism or not scaled.exact or scaled.timed:
+        if not isinstance(scaled.kind.dyad, cls.dyad) or not scaled.exact or scaled.timed:
             return False
         if not scaled.problem.task.only_points:
             return False
@@ -109,7 +110,7 @@ class NinePoints(EveryLinkage):
     """Nine points, four-bars."""
 
     points: ClassVar[int] = 9
-    mechanism: ClassVar[str] = FourBar.mechanism.word
+    dyad: ClassVar[type[ClosingDyad]] = Bars
     solutions: ClassVar[int] = TRIPLETS
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
@@ -129,7 +130,7 @@ class EightPoints(EveryLinkage):
     """Eight points, slider-cranks."""
 
     points: ClassVar[int] = 8
-    mechanism: ClassVar[str] = SliderCrank.mechanism.word
+    dyad: ClassVar[type[ClosingDyad]] = Slider
     solutions: ClassVar[int] = SLIDER_CRANKS.count
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
@@ -165,17 +166,16 @@ def _at_points(points: ComplexArray, target: SearchTargets) -> tuple[Placed, Flo
     return Placed(none, points[:, 0], points[:, 1], a, b, p, theta2, body_angle=none), direction
 
 
-def _sliders_at_points(through: Through, target: SearchTargets) -> tuple[Placed, FloatArray]:  # closure: RRP
+def _sliders_at_points(through: Through[SliderCrank], target: SearchTargets) -> tuple[Placed, FloatArray]:
     """Slider-cranks that pass all points: where they stand there, and the shorter sense of the driver."""
     found = through.linkages
-    if not isinstance(found, SliderCrank):
-        raise TypeError(type(found).__name__)
     o2 = found.o2 @ np.array([1, 1j])
     theta2, direction = shorter_way(through.theta2)
-    a = o2[:, None] + found.r2[:, None] * np.exp(1j * theta2)
+    crank = found.r2[:, None] * np.exp(1j * theta2)
     along, r3 = np.exp(1j * found.slide_angle)[:, None], found.r3[:, None]
-    across = found.offset[:, None] - ((a - o2[:, None]) * along.conj()).imag
-    b = a + along * (through.assembly * np.sqrt((r3 - across) * (r3 + across)) + 1j * across)
+    coupler, _ = coupler_of(Slider(), 1j * along, crank, r3, found.offset[:, None], through.assembly)
+    a = o2[:, None] + crank
+    b = a + coupler
     o4, none = b[:, 0] + (r3 * along)[:, 0], np.zeros(len(o2))
     p = np.broadcast_to(target.points, a.shape)
     return Placed(none, o2, o4, a, b, p, theta2, body_angle=none), direction

@@ -9,11 +9,11 @@ import numpy as np
 
 from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.member_choice import diagonals
 from grashof.synth.starts.placing import Ground, scales
 from grashof.synth.starts.stroke_places import KEPT, Places
-from grashof.synth.theory.closure import coupler_of
 from grashof.synth.theory.limit_positions import Family, Members, families_of
 
 
@@ -22,6 +22,8 @@ class RockerPlaces(Places):
     """Of any scale; the ground line, from O2 to O4, counts as 1."""
 
     what: ClassVar[str] = "crank-rockers"
+    advised: ClassVar[str] = "swing"
+    dyad: ClassVar[type[ClosingDyad]] = Bars
     kept: ClassVar[frozenset[str]] = KEPT | {"r1", "r4", "o4", "ground_angle_deg", "output_swing_deg"}
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
@@ -83,9 +85,9 @@ class RockerPlaces(Places):
         o2, o4 = points.T[..., None]
         _, r2, r3, r4 = (members.lengths / members.lengths[:, :1]).T[..., None] * np.abs(o4 - o2)
         theta2 = np.stack(self.ends(members), axis=-1) + np.angle(o4 - o2)
-        a = o2 + r2 * np.exp(1j * theta2)
-        b = a + coupler_of(o4 - a, r3, r4, members.assembly[:, None])
-        return points[:, 1], a, b, theta2
+        crank = r2 * np.exp(1j * theta2)
+        coupler, _ = coupler_of(Bars(), o4 - o2, crank, r3, r4, members.assembly[:, None])
+        return points[:, 1], o2 + crank, o2 + crank + coupler, theta2
 
     def in_boxes(self, a: FloatArray, b: FloatArray) -> bool:
         for box, places in ((self.wanted.a, a), (self.wanted.b, b)):

@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.placing import Ground, scales
 from grashof.synth.starts.rocker_places import RockerPlaces
@@ -25,6 +26,7 @@ class ShaperPlaces(RockerPlaces):
     """Of any scale, as crank-rockers; their time ratio follows from the swing."""
 
     what: ClassVar[str] = "crank-shapers"
+    dyad: ClassVar[type[ClosingDyad]] = Block
     kept: ClassVar[frozenset[str]] = KEPT | {"r1", "o4", "offset", "ground_angle_deg", "output_swing_deg"}
     mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
 
@@ -59,7 +61,7 @@ class ShaperPlaces(RockerPlaces):
         _, r2, offset = members.lengths.T[..., None]
         a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
         places = np.concatenate(
-            [a, a + _along_rod(1 - a, offset), np.tile([0, 1], (len(members), 1))], axis=1
+            [a, a + _along_rod(1.0, a, offset), np.tile([0, 1], (len(members), 1))], axis=1
         )
         across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
         return across
@@ -70,8 +72,9 @@ class ShaperPlaces(RockerPlaces):
         o2, o4 = points.T[..., None]
         _, r2, offset = members.lengths.T[..., None] * np.abs(o4 - o2)
         theta2 = np.stack(self.ends(members), axis=-1) + np.angle(o4 - o2)
-        a = o2 + r2 * np.exp(1j * theta2)
-        return points[:, 1], a, a + _along_rod(o4 - a, offset), theta2
+        crank = r2 * np.exp(1j * theta2)
+        a = o2 + crank
+        return points[:, 1], a, a + _along_rod(o4 - o2, crank, offset), theta2
 
     def worst(self, start: Start) -> float:
         r1, r2, _, offset = start.lengths
@@ -93,8 +96,6 @@ class ShaperPlaces(RockerPlaces):
         return np.stack([low, high])
 
 
-def _along_rod(diagonal: ComplexArray, offset: FloatArray) -> ComplexArray:  # closure: RPR
-    """From A to B, the foot of the perpendicular from O4 on the rod; the diagonal is that from A to O4."""
-    rod = np.sqrt(np.maximum(np.abs(diagonal) ** 2 - offset**2, 0.0))
-    coupler: ComplexArray = rod * diagonal / (rod - 1j * offset)
-    return coupler
+def _along_rod(ground: ComplexArray | float, crank: ComplexArray, offset: FloatArray) -> ComplexArray:
+    """From A to B, the foot of the perpendicular from O4 on the rod."""
+    return coupler_of(Block(), ground, crank, offset, offset, 1.0, root_or_zero)[0]

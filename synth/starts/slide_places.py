@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.stroke_places import KEPT, Places
 from grashof.synth.theory.limit_positions import Family, Members, lag_of, slider_cranks
@@ -30,6 +31,8 @@ class SlidePlaces(Places):
     """
 
     what: ClassVar[str] = "slider-cranks"
+    advised: ClassVar[str] = "stroke"
+    dyad: ClassVar[type[ClosingDyad]] = Slider
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
     mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
 
@@ -202,11 +205,9 @@ class SlidePlaces(Places):
         return a, _on_slide(a, r3, offset)
 
 
-def _on_slide(a: ComplexArray, r3: FloatArray, offset: FloatArray) -> ComplexArray:  # closure: RRP
+def _on_slide(a: ComplexArray, r3: FloatArray, offset: FloatArray) -> ComplexArray:
     """B ahead of A on a slide along x; where the rod does not reach it, above or below A."""
-    beside = offset - a.imag
-    b: ComplexArray = a + np.sqrt(np.maximum((r3 - beside) * (r3 + beside), 0.0)) + 1j * beside
-    return b
+    return a + coupler_of(Slider(), 1j, a, r3, offset, 1.0, root_or_zero)[0]
 
 
 def _both(o2: ComplexArray, along: ComplexArray) -> ComplexArray:

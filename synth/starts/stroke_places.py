@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
 from grashof.synth.theory.limit_positions import Family, Members
 
@@ -38,6 +39,8 @@ class Places(ABC):
     wanted: Requirements
 
     what: ClassVar[str]  # the linkages, in words
+    advised: ClassVar[str] = ""  # a stroke whose best transmission the time ratio tells, in a word
+    dyad: ClassVar[type[ClosingDyad]]
     kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
     mirrored: ClassVar[tuple[bool, ...]] = (False, True)  # how members of a family are drawn at random
 

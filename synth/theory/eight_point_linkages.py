@@ -7,11 +7,13 @@ for. The real ones among them are linkages; each is closed at every point by its
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from grashof.problems import InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dyad import Block, Slider, coupler_of
 from grashof.synth.theory.eight_points import (
     INVERTED_SLIDER_CRANKS,
     SLIDER_CRANKS,
@@ -27,8 +29,11 @@ REAL = (
 CLOSES = 1e-9  # largest miss of a point, sizes
 
 
+AnyLinkage = TypeVar("AnyLinkage", SliderCrank, InvertedSliderCrank)
+
+
 @dataclass(frozen=True, slots=True)
-class Through:
+class Through(Generic[AnyLinkage]):
     """Linkages that pass eight points, in any order and branch.
 
     Parameters
@@ -43,13 +48,15 @@ class Through:
         Complex ones that were found, cognates as one.
     """
 
-    linkages: SliderCrank | InvertedSliderCrank
+    linkages: AnyLinkage
     theta2: FloatArray
     assembly: FloatArray
     solutions: int
 
 
-def slider_cranks_through(points: ComplexArray, rng: np.random.Generator, runs: int = RUNS) -> Through:
+def slider_cranks_through(
+    points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
+) -> Through[SliderCrank]:
     """All slider-cranks through eight points, each followed by its cognate.
 
     Parameters
@@ -94,7 +101,7 @@ def slider_cranks_through(points: ComplexArray, rng: np.random.Generator, runs: 
 
 def inverted_slider_cranks_through(
     points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
-) -> Through:
+) -> Through[InvertedSliderCrank]:
     """All inverted slider-cranks through eight points.
 
     Parameters
@@ -176,8 +183,9 @@ def _real_solutions(
     return both[:, :7], np.concatenate([np.ones((len(both), 1)), both[:, 7:]], axis=1), len(found)
 
 
-def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int) -> Through:
-    # closure: RRP
+def _slider_cranks(
+    places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
+) -> Through[SliderCrank]:
     """Those that close.
 
     Parameters
@@ -196,11 +204,10 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
     theta2 = np.angle(_cranks(o2, a, turns, points))
     assembly = np.where(((along.conj() * rod)[:, None] * turns).real < 0, -1.0, 1.0)
     moved = r2[:, None] * np.exp(1j * theta2)
-    across = offset[:, None] - (along.conj()[:, None] * moved).imag  # from A to the slide
     with np.errstate(divide="ignore", invalid="ignore"):
         arm = -a * rod.conj() / r3
-        ahead = assembly * np.sqrt((r3[:, None] - across) * (r3[:, None] + across))
-        e3 = along[:, None] * (ahead + 1j * across) / r3[:, None]
+        sizes = r3[:, None], offset[:, None], assembly
+        _, e3 = coupler_of(Slider(), 1j * along[:, None], moved, *sizes)
         sound = _closes(o2[:, None] + moved + arm[:, None] * e3, points) & (r2 > 0)
     size = _size(points)
     linkages = SliderCrank(
@@ -218,7 +225,7 @@ def _slider_cranks(places: ComplexArray, turns: ComplexArray, points: ComplexArr
 
 def _inverted_slider_cranks(
     places: ComplexArray, turns: ComplexArray, points: ComplexArray, found: int
-) -> Through:  # closure: RPR
+) -> Through[InvertedSliderCrank]:
     """Those that close.
 
     Parameters
@@ -238,8 +245,7 @@ def _inverted_slider_cranks(
     assembly = np.where(ahead < 0, -1.0, 1.0)
     moved = r2[:, None] * np.exp(1j * theta2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        travel = assembly * np.sqrt(np.abs(ground - moved) ** 2 - offset[:, None] ** 2)
-        e3 = (ground - moved) / (travel - 1j * offset[:, None])
+        _, e3 = coupler_of(Block(), ground, moved, offset[:, None], offset[:, None], assembly)
         sound = _closes(o2[:, None] + moved + arm[:, None] * e3, points) & (r2 > 0)
     size = _size(points)
     linkages = InvertedSliderCrank(

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.synth.loop.dual import Dual
 from grashof.synth.theory.function_output import Generators
 from grashof.synth.theory.stopping import leave_off
 
-Limits = Callable[[Generators], tuple[FloatArray, FloatArray]]
+Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
 
 HALVES = ((6, 400), (12, 120), (20, 48))  # after so many steps so many of the best go on
 STEPS = 60
@@ -170,7 +172,7 @@ class _Model:
         """Sums of squares with pulls; infinite where the loop is open."""
         total = self.wanted.square(self.wanted.errors(made))
         if self.limits is not None:
-            short = np.minimum(self.limits(made)[0], 0.0)
+            short = np.minimum(self.limits(made).value, 0.0)
             total = total + self.pull**2 * (short**2).sum(axis=1)
         return np.where(np.isfinite(total), total, np.inf)
 
@@ -192,14 +194,14 @@ class _Model:
         wanted = self.wanted
         output = made.outputs(wanted.turned)
         errors = wanted.centred(output - wanted.output)
-        slopes = wanted.centred(made.slopes(wanted.turned, output))
+        slopes = wanted.centred(made.slopes(wanted.turned))
         weighed = slopes * wanted.weights[:, None]
         normal = weighed.swapaxes(1, 2) @ slopes
         side = (weighed.swapaxes(1, 2) @ errors[..., None])[..., 0]
         if self.limits is not None:
-            values, by_shape = self.limits(made)
-            short = self.pull * np.minimum(values, 0.0)
-            pulled = self.pull * by_shape * (values < 0)[..., None]
+            rows = self.limits(made)
+            short = self.pull * np.minimum(rows.value, 0.0)
+            pulled = self.pull * rows.slope * (rows.value < 0)[..., None]
             normal = normal + pulled.swapaxes(1, 2) @ pulled
             side = side + (pulled.swapaxes(1, 2) @ short[..., None])[..., 0]
         if self.held:

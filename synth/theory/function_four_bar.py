@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from grashof.problems import FourBar, Requirements
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.requirements.function_ground import FunctionGround
+from grashof.synth.loop.dyad import Bars, Closed
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.function_limits import (
-    Rows,
-    ShapeLimits,
-    cosine_rows,
-    joined_rows,
-    passes,
-    places_met,
-    ratio_rows,
-)
 from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
@@ -49,11 +43,8 @@ class FourBars(Generators):
     UNKNOWNS = 4
     EXACT = 5
     LINEAR = 3
-
-    @property
-    def lengths(self) -> FloatArray:
-        """r1, r2, r3, r4 over r1."""
-        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :3])], axis=1)
+    LINKS = 3
+    dyad = Bars()
 
     @classmethod
     def of_pivots(cls, a: ComplexArray, b: ComplexArray) -> Self:
@@ -67,94 +58,13 @@ class FourBars(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RRR
-        """theta4, unwrapped along the rotation, from the triangle A-B-O4."""
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
-            seen = r2 * np.exp(1j * (self.shape[:, 3:] + turned)) - 1.0
-            apart = np.abs(seen)
-            cosine = (apart**2 + r4**2 - r3**2) / (2 * apart * r4)
-            angle = np.angle(seen) - self.assembly[:, None] * np.arccos(cosine)
-        unwrapped: FloatArray = np.unwrap(angle, axis=1)
-        return unwrapped
+    @staticmethod
+    def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+        r2, r3, r4, _ = shape
+        return 1.0, np.exp(r2), np.exp(r3), np.exp(r4)
 
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """The loop r2 e2 + r3 e3 = 1 + r4 e4, differentiated and projected on e3: linear in theta4's rate."""
-        r2, r3, r4 = np.exp(self.shape[:, :3, None]).swapaxes(0, 1)
-        theta2 = self.shape[:, 3:] + turned
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            coupler = 1.0 + r4 * np.exp(1j * output) - r2 * np.exp(1j * theta2)
-            along = (coupler / np.abs(coupler)).conj()
-            driver, out = along * np.exp(1j * theta2), along * np.exp(1j * output)
-            lever = -r4 * out.imag  # r4 sin(theta3 - theta4)
-            slopes = [r2 * driver.real, np.broadcast_to(r3, theta2.shape), -r4 * out.real, -r2 * driver.imag]
-            by_shape: FloatArray = np.stack(slopes, axis=-1) / lever[..., None]
-        return by_shape
-
-    def closes(self, span: float) -> BoolArray:
-        """Whether the loop stays closed, off dead positions, all over a rotation; shape (M,)."""
-        _, r3, r4 = np.exp(self.shape[:, :3]).T
-        least, most = self._diagonals(span)
-        closed: BoolArray = (least > np.abs(r3 - r4)) & (most < r3 + r4)
-        return closed
-
-    def _diagonals(self, span: float) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest distance A-O4 over a rotation from the first angle, each of shape (M,)."""
-        r2, first = np.exp(self.shape[:, 0]), self.shape[:, 3]
-        ends = np.abs(r2 * np.exp(1j * np.stack([first, first + span])) - 1.0)
-        near, far = passes(first, span, 0.0), passes(first, span, np.pi)
-        least = np.where(near, np.abs(1 - r2), ends.min(axis=0))
-        return least, np.where(far, 1 + r2, ends.max(axis=0))
-
-    def worst_cosine(self, span: float) -> FloatArray:
-        """Where the diagonal is least or greatest."""
-        _, r3, r4 = np.exp(self.shape[:, :3]).T
-        cosines = [(r3**2 + r4**2 - diagonal**2) / (2 * r3 * r4) for diagonal in self._diagonals(span)]
-        worst: FloatArray = np.abs(cosines).max(axis=0)
-        return worst
-
-    def limited(self, limits: ShapeLimits) -> Rows:
-        logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, :3]], axis=1)
-        unit = np.concatenate([np.zeros((1, 4)), np.eye(4)[:3]])
-        return joined_rows(
-            [ratio_rows(logs, unit, limits.caps), self._transmission(limits), *self._turning(limits)]
-        )
-
-    def _transmission(self, limits: ShapeLimits) -> Rows:
-        """At both ends, and where O2A is along the ground line if the motion passes there."""
-        r2, r3, r4 = np.exp(self.shape[:, :3]).T[..., None]
-        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), over_cycle=limits.over_cycle)
-        square = 1 + r2**2 - 2 * r2 * np.cos(places)
-        cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
-        by_square = -1 / (2 * r3 * r4)
-        slope = np.stack([
-            by_square * (2 * r2**2 - 2 * r2 * np.cos(places)),
-            r3 / r4 - cosine,
-            r4 / r3 - cosine,
-            by_square * 2 * r2 * np.sin(places) * moving,
-        ], axis=-1)  # fmt: skip
-        return cosine_rows(cosine, slope, met, limits.most_cosine)
-
-    def _turning(self, limits: ShapeLimits) -> list[Rows]:
-        """r3 + r4 - r1 - r2 and abs(r1 - r2) - abs(r3 - r4), in shares of the sum of the lengths."""
-        lengths = self.lengths
-        total = lengths.sum(axis=1, keepdims=True)
-        rows = []
-        if limits.margin is not None:
-            side = np.where(lengths[:, 1] < 1, 1.0, -1.0)
-            side = np.full(len(self), float(limits.shortest)) if limits.shortest else side
-            one = np.ones(len(self))
-            rows = [[-one, -one, one, one], [side, -side, -one, one], [side, -side, one, -one]]
-        elif limits.shortest:
-            side = np.full(len(self), float(limits.shortest))
-            rows = [[side, -side, 0 * side, 0 * side]]
-        if not rows:
-            return []
-        signs = np.array(rows).transpose(2, 0, 1)  # (M, rows, 4)
-        share = (signs * lengths[:, None]).sum(axis=-1) / total
-        slopes = (signs - share[..., None])[..., 1:] * (lengths[:, None, 1:] / total[..., None])
-        slopes = np.concatenate([slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
-        return [(share - (limits.margin or 0.0), slopes)]
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        return [crank, loop.along, -loop.across, crank.left]
 
     @classmethod
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
@@ -252,12 +162,12 @@ class FourBars(Generators):
         Examples
         --------
         >>> made = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool(made.closes(1.0).all() and (made.first == 0.5).all())
+        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
         True
         """
         shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first)])
         made = cls(shape, rng.choice([-1.0, 1.0], count))
-        return made[made.closes(span)]
+        return made[made.worst_cosine(span) < 1]
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from grashof.problems import InvertedSliderCrank, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.requirements.function_ground import FunctionGround
-from grashof.synth.theory.function_limits import (
-    Rows,
-    ShapeLimits,
-    cosine_rows,
-    joined_rows,
-    linear_rows,
-    places_met,
-    ratio_rows,
-)
+from grashof.synth.loop.dyad import Block, Closed
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import weighed
 
@@ -44,88 +38,19 @@ class InvertedSliderCranks(Generators):
     UNKNOWNS = 3
     EXACT = 4
     LINEAR = 2
-
-    @property
-    def lengths(self) -> FloatArray:
-        """r1 and r2 over r1."""
-        return np.column_stack([np.ones(len(self)), np.exp(self.shape[:, 0])])
+    LINKS = 1
+    dyad = Block()
 
     @property
     def other_assembly(self) -> Self:
         return self.changed(self.shape * [1.0, -1.0, 1.0])
 
-    def _seen(self, theta2: FloatArray) -> FloatArray:
-        """Distance A-O4."""
-        r2 = np.exp(self.shape[:, :1])
-        distance: FloatArray = np.sqrt((1 - r2) ** 2 + 4 * r2 * np.sin(theta2 / 2) ** 2)
-        return distance
+    @staticmethod
+    def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+        return 1.0, np.exp(shape[0]), 0.0, shape[1]
 
-    def outputs(self, turned: FloatArray) -> FloatArray:  # closure: RPR
-        """Direction of the rod, unwrapped: that of A-O4, and the offset beside it."""
-        r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            seen = 1.0 - r2 * np.exp(1j * (self.shape[:, 2:] + turned))
-            angle = np.angle(seen) + np.arcsin(offset / np.abs(seen))
-        unwrapped: FloatArray = np.unwrap(angle, axis=1)
-        return unwrapped
-
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """Of offset = sin(theta3) + r2 sin(theta2 - theta3): how far O4 is beside the rod's line."""
-        r2 = np.exp(self.shape[:, :1])
-        turn = self.shape[:, 2:] + turned - output
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            rod = np.cos(output) - r2 * np.cos(turn)
-            rod = np.where(rod == 0, np.nan, rod)  # a dead position
-            slopes = [-r2 * np.sin(turn), np.ones_like(turn), -r2 * np.cos(turn)]
-            by_shape: FloatArray = np.stack(slopes, axis=-1) / rod[..., None]
-        return by_shape
-
-    def worst_cosine(self, span: float) -> FloatArray:
-        """Abs(offset) over the distance A-O4, where that is least."""
-        places, met, _ = places_met(self.first, span, (0.0, np.pi))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            cosine = np.abs(self.shape[:, 1:2]) / self._seen(places)
-        worst: FloatArray = np.where(met, cosine, 0.0).max(axis=1)
-        return worst
-
-    def limited(self, limits: ShapeLimits) -> Rows:
-        logs = np.column_stack([np.zeros(len(self)), self.shape[:, 0]])
-        unit = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-        parts = [ratio_rows(logs, unit, limits.caps), self._transmission(limits)]
-        if limits.offset is not None:
-            zero, r2 = np.zeros(len(self)), self.lengths[:, 1]
-            dimensions = np.column_stack([self.lengths, self.shape[:, 1]])
-            rows = [[zero, zero, zero], [r2, zero, zero], [zero, zero + 1, zero]]
-            slopes = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
-            parts.append(linear_rows(limits.offset, dimensions, slopes))
-        if limits.margin is not None:
-            parts.append(self._turning(limits.margin))
-        return joined_rows(parts)
-
-    def _transmission(self, limits: ShapeLimits) -> Rows:
-        places, met, moving = places_met(self.first, limits.span, (0.0, np.pi), over_cycle=limits.over_cycle)
-        r2, offset = np.exp(self.shape[:, :1]), self.shape[:, 1:2]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            seen = self._seen(places)
-            by_square = -offset / (2 * seen**3)
-            slope = np.stack([
-                by_square * (2 * r2**2 - 2 * r2 * np.cos(places)),
-                1 / seen,
-                by_square * 2 * r2 * np.sin(places) * moving,
-            ], axis=-1)  # fmt: skip
-            return cosine_rows(offset / seen, slope, met, limits.most_cosine)
-
-    def _turning(self, margin: float) -> Rows:
-        """Abs(r1 - r2) -+ offset, in shares of r1 + r2 + abs(offset)."""
-        r2, offset = self.lengths[:, 1], self.shape[:, 1]
-        side, away, total = np.where(r2 < 1, 1.0, -1.0), np.sign(offset), 1 + r2 + np.abs(offset)
-        rows = []
-        for sign in (1.0, -1.0):
-            part = (side * (1 - r2) + sign * offset) / total
-            by = [(-side - part) * r2 / total, (sign - part * away) / total, np.zeros_like(r2)]
-            rows.append((part - margin, np.stack(by, axis=-1)))
-        values, slopes = zip(*rows, strict=True)
-        return np.stack(values, axis=1), np.stack(slopes, axis=1)
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        return [crank, -loop.across, crank.left]
 
     @classmethod
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
+from grashof.synth.loop.dual import Dual
 
 LEAST_ANGLE = float(np.radians(0.3))  # so near to a dead position no generator may come
 
@@ -39,8 +41,8 @@ class ShapeLimits:
     --------
     >>> from grashof.synth.theory.function_four_bar import FourBars
     >>> limits = ShapeLimits(1.0, transmission=0.5)
-    >>> values, slopes = limits.of(FourBars(np.array([[0.1, 0.2, 0.3, 0.4]]), np.array([1.0])))
-    >>> values.shape, slopes.shape
+    >>> rows = limits.of(FourBars(np.array([[0.1, 0.2, 0.3, 0.4]]), np.array([1.0])))
+    >>> rows.value.shape, rows.slope.shape
     ((1, 20), (1, 20, 4))
     """
 
@@ -53,8 +55,8 @@ class ShapeLimits:
     offset: FloatArray | None = None
     stroke: Limits = (-np.inf, np.inf)
 
-    def of(self, made: Limited) -> tuple[FloatArray, FloatArray]:
-        """Values (M, L) and their derivatives by the shape (M, L, K)."""
+    def of(self, made: Limited) -> Dual:
+        """Limits (M, L) with derivatives by the shape (M, L, K)."""
         return made.limited(self)
 
     @property
@@ -66,36 +68,40 @@ class ShapeLimits:
 class Limited(Protocol):
     """What knows its limits: `Generators`."""
 
-    def limited(self, limits: ShapeLimits) -> tuple[FloatArray, FloatArray]:
-        """Values and derivatives."""
+    def limited(self, limits: ShapeLimits) -> Dual:
+        """Limits (M, L) with derivatives by the shape (M, L, K)."""
 
 
-Rows = tuple[FloatArray, FloatArray]  # values (M, L), derivatives (M, L, K)
+def joined_rows(parts: Sequence[Dual]) -> Dual:
+    """All of several limits, (M, L) with derivatives (M, L, K)."""
+    return Dual(
+        np.concatenate([each.value for each in parts], axis=1),
+        lambda: np.concatenate([each.slope for each in parts], axis=1),
+    )
 
 
-def joined_rows(parts: list[Rows]) -> Rows:
-    """All of several limits."""
-    values, slopes = zip(*parts, strict=True)
-    return np.concatenate(values, axis=1), np.concatenate(slopes, axis=1)
-
-
-def ratio_rows(logs: FloatArray, unit: FloatArray, caps: FloatArray) -> Rows:
-    """Limits of the ratios of lengths, from their logarithms (M, n) and derivatives of these (n, K)."""
+def ratio_rows(logs: FloatArray, caps: FloatArray, unknowns: int) -> Dual:
+    """Limits of the ratios of lengths, from their logarithms (M, n): the unit, and the first unknowns."""
     upper, lower = np.nonzero(~np.eye(len(caps), dtype=bool) & np.isfinite(caps))
-    slopes = np.broadcast_to(unit[lower] - unit[upper], (len(logs), len(upper), unit.shape[1]))
-    return caps[upper, lower] - logs[:, upper] + logs[:, lower], slopes
+    by_shape = np.eye(len(caps), unknowns + 1)[:, 1:]
+    slope = np.broadcast_to(by_shape[lower] - by_shape[upper], (len(logs), len(upper), unknowns))
+    return Dual(caps[upper, lower] - logs[:, upper] + logs[:, lower], slope)
 
 
-def cosine_rows(cosine: FloatArray, slope: FloatArray, met: BoolArray, most: float) -> Rows:
+def cosine_rows(cosine: Dual, met: BoolArray, most: float) -> Dual:
     """Limits of a cosine (M, n) on both sides, where it is met."""
-    values = np.concatenate([np.where(met, most - cosine, 1.0), np.where(met, most + cosine, 1.0)], axis=1)
-    slope = np.where(met[..., None], slope, 0.0)
-    return values, np.concatenate([-slope, slope], axis=1)
+
+    def slope() -> FloatArray:
+        by_shape = np.where(met[..., None], cosine.slope, 0.0)
+        return np.concatenate([-by_shape, by_shape], axis=1)
+
+    sides = [np.where(met, most + sign * cosine.value, 1.0) for sign in (-1.0, 1.0)]
+    return Dual(np.concatenate(sides, axis=1), slope)
 
 
-def linear_rows(rows: FloatArray, dimensions: FloatArray, slopes: FloatArray) -> Rows:
-    """Sums of dimensions (M, n) that have to be zero or positive, with their derivatives (M, n, K)."""
-    return dimensions @ rows.T, np.einsum("ln,mnk->mlk", rows, slopes)
+def linear_rows(rows: FloatArray, dimensions: Dual) -> Dual:
+    """Sums of dimensions (M, n) that have to be zero or positive."""
+    return Dual(dimensions.value @ rows.T, lambda: np.einsum("ln,mnk->mlk", rows, dimensions.slope))
 
 
 def places_met(

@@ -82,7 +82,7 @@ class Aim:
 
     def missed(self, made: Generators) -> float:
         """By how much the worst limit is missed."""
-        short = float(-self.limits(made)[0].min(initial=0.0))
+        short = float(-self.limits(made).value.min(initial=0.0))
         if np.isfinite(self.band):
             short = max(short, float(np.abs(self.errors(made)).max()) - self.band)
         return short
@@ -151,10 +151,10 @@ class _Linear:
 
     @classmethod
     def of(cls, aim: Aim, made: Generators) -> _Linear:
-        slopes = made.slopes(aim.wanted.turned, made.outputs(aim.wanted.turned))[0]
-        limits, by_shape = aim.limits(made)
+        slopes = made.slopes(aim.wanted.turned)[0]
+        limits = aim.limits(made)
         free = np.append(np.ones(made.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
-        return cls(aim, aim.errors(made), slopes, limits[0], by_shape[0], free)
+        return cls(aim, aim.errors(made), slopes, limits.value[0], limits.slope[0], free)
 
     @property
     def finite(self) -> bool:

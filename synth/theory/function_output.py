@@ -7,14 +7,25 @@ The driver turns counter-clockwise. A kind is a class, a file each: `grashof.syn
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limits
-from grashof.synth.theory.function_limits import ShapeLimits
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import Closed, ClosingDyad, Sizes
+from grashof.synth.loop.vector import Vector
+from grashof.synth.theory.function_limits import (
+    ShapeLimits,
+    cosine_rows,
+    joined_rows,
+    linear_rows,
+    places_met,
+    ratio_rows,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +45,11 @@ class Generators(ABC):
     FIRST_IS_LINK: ClassVar[bool] = True  # of `lengths`; otherwise it is the unit
     ONE_SENSE: ClassVar[bool] = False  # the opposite output is the same linkage, turned by half a turn
 
+    dyad: ClassVar[ClosingDyad]
+    LINKS: ClassVar[int]  # numbers of the shape that are logarithms of lengths
+    ground: ClassVar[Vector] = Vector(1.0, 0.0)  # as `ClosingDyad.closed` takes it
+    theta1: ClassVar[float] = 0.0  # its direction, rad
+
     shape: FloatArray
     assembly: FloatArray
 
@@ -47,6 +63,11 @@ class Generators(ABC):
     def finite(self) -> Self:
         """Those whose numbers are finite."""
         return self[np.isfinite(self.shape.sum(axis=1))]
+
+    @property
+    def columns(self) -> list[FloatArray]:
+        """The numbers of the shape, each (M, 1)."""
+        return list(self.shape.T[..., None])
 
     @property
     def first(self) -> FloatArray:
@@ -72,9 +93,9 @@ class Generators(ABC):
         return cls(np.concatenate(shapes), np.concatenate(signs))
 
     @property
-    @abstractmethod
     def lengths(self) -> FloatArray:
-        """What limits of lengths are about, shape (M, n); the first has a size of its own or is the unit."""
+        """The unit, and the lengths over it, shape (M, n); limits of lengths are about these."""
+        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, : self.LINKS])], axis=1)
 
     @property
     def link_ratio(self) -> FloatArray:
@@ -82,7 +103,21 @@ class Generators(ABC):
         ratio: FloatArray = self.lengths.max(axis=1) / self.lengths.min(axis=1)
         return ratio
 
+    @staticmethod
     @abstractmethod
+    def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+        """r1, r2, r3, and r4 or the offset, by the numbers of the shape; 0 for what the kind lacks."""
+
+    @abstractmethod
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        """By each number of the shape, how it moves B out of its place."""
+
+    def _closed(self, turned: FloatArray) -> tuple[Vector, Closed]:
+        """O2A, and the loop at driver rotations from the first angle."""
+        theta2, (_, r2, r3, r4) = self.shape[:, -1:] + turned, self.sizes_of(self.columns)
+        crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
+        return crank, self.dyad.closed(self.ground, crank, r3, r4, self.assembly[:, None])
+
     def outputs(self, turned: FloatArray) -> FloatArray:
         """Angle of link 4 or place of the slide, shape (M, N); NaN where the loop is open.
 
@@ -91,18 +126,63 @@ class Generators(ABC):
         turned : ndarray, shape (N,), rad
             Driver rotations from the first angle, growing.
         """
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            crank, loop = self._closed(turned)
+            output: FloatArray = self.dyad.output(loop, crank)
+        return output if self.ONE_SENSE else np.unwrap(output, axis=1)
 
-    @abstractmethod
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
+    def slopes(self, turned: FloatArray) -> FloatArray:
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            crank, loop = self._closed(turned)
+            lever = self.dyad.lever(loop)
+            lever = np.where(lever == 0, np.nan, lever)
+            slopes = [self.dyad.driven_by(loop, move) / lever for move in self.moves(crank, loop)]
+        return np.stack(np.broadcast_arrays(*slopes), axis=-1)
 
-    @abstractmethod
     def worst_cosine(self, span: float) -> FloatArray:
         """Greatest absolute cosine of the transmission angle over a rotation, shape (M,); above 1: open."""
+        sizes = Sizes(*self.sizes_of(self.columns))
+        places, met, _ = places_met(self.first, span, self._on_ground)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cosine = self.dyad.cos_mu(sizes, self.dyad.reach(sizes, places - self.theta1))
+        worst: FloatArray = np.where(met, np.abs(cosine), 0.0).max(axis=1)
+        return worst
 
-    @abstractmethod
-    def limited(self, limits: ShapeLimits) -> tuple[FloatArray, FloatArray]:
-        """Limits (M, L), zero or positive where they are kept, and their derivatives (M, L, K)."""
+    @property
+    def _on_ground(self) -> Limits:
+        """Driver angles with O2A folded over the ground line, and stretched along it."""
+        return self.theta1, self.theta1 + np.pi
+
+    def limited(self, limits: ShapeLimits) -> Dual:
+        """Limits (M, L), zero or positive where they are kept, with derivatives by the shape (M, L, K)."""
+        every = np.broadcast_to(np.eye(self.UNKNOWNS), (len(self), self.UNKNOWNS, self.UNKNOWNS))
+        shape = [Dual(column, every[:, [k]]) for k, column in enumerate(self.columns)]
+        r1, r2, r3, r4 = self.sizes_of(shape)
+        sizes = Sizes(r1, r2, r3, r4, limits.shortest < 0 if limits.shortest else r2.value > r1)
+        logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, : self.LINKS]], axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            parts = [ratio_rows(logs, limits.caps, self.UNKNOWNS), self._transmission(limits, sizes)]
+            if limits.offset is not None:
+                dimensions = joined_rows([0.0 * r4 + 1.0, *map(np.exp, shape[: self.LINKS]), r4])
+                parts.append(linear_rows(limits.offset, dimensions))
+            if limits.margin is not None:
+                parts += [share - limits.margin for share in self.dyad.margins(sizes)]
+                parts += self.limited_stroke(sizes, limits.stroke)
+        return joined_rows(parts)
+
+    def _transmission(self, limits: ShapeLimits, sizes: Sizes) -> Dual:
+        along = self._on_ground
+        places, met, moving = places_met(self.first, limits.span, along, over_cycle=limits.over_cycle)
+        slope = np.zeros((*places.shape, self.UNKNOWNS))
+        slope[..., -1] = moving
+        cosine = self.dyad.cos_mu(sizes, self.dyad.reach(sizes, Dual(places - self.theta1, slope)))
+        return cosine_rows(cosine, met, limits.most_cosine)
+
+    @staticmethod
+    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Dual]:  # noqa: ARG004
+        """The travel of a full crank within its limits; nothing where the output turns."""
+        return []
 
     @property
     @abstractmethod

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from grashof.problems import Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
+from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.function_limits import (
-    Rows,
-    ShapeLimits,
-    cosine_rows,
-    joined_rows,
-    linear_rows,
-    places_met,
-    ratio_rows,
-)
 from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
@@ -46,11 +41,9 @@ class SliderCranks(Generators):
     LINEAR = 3
     FIRST_IS_LINK = False
     ONE_SENSE = True
-
-    @property
-    def lengths(self) -> FloatArray:
-        """The unit, r2, r3."""
-        return np.concatenate([np.ones((len(self), 1)), np.exp(self.shape[:, :2])], axis=1)
+    LINKS = 2
+    dyad = Slider()
+    ground, theta1 = Vector(0.0, 1.0), np.pi / 2
 
     @property
     def link_ratio(self) -> FloatArray:
@@ -69,113 +62,20 @@ class SliderCranks(Generators):
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)
 
-    def _closed(self, turned: FloatArray) -> tuple[FloatArray, ...]:  # closure: RRP
-        """r2 cos(theta2), r2 sin(theta2), h from A to the slide, and B less A along it, each (M, N)."""
-        r2, r3, share = np.exp(self.shape[:, :1]), np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
-        theta2 = self.shape[:, 3:] + turned
-        x, y = r2 * np.cos(theta2), r2 * np.sin(theta2)
-        h = share * r3 - y
-        return x, y, h, self.assembly[:, None] * np.sqrt((r3 - h) * (r3 + h))
+    @staticmethod
+    def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+        r3 = np.exp(shape[1])
+        return 0.0, np.exp(shape[0]), r3, shape[2] * r3
 
-    def outputs(self, turned: FloatArray) -> FloatArray:
-        """Place of B along the slide."""
-        with np.errstate(invalid="ignore", over="ignore"):
-            x, _, _, ahead = self._closed(turned)
-            place: FloatArray = x + ahead
-        return place
+    def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
+        _, _, r3, offset = self.sizes_of(self.columns)
+        return [crank, loop.along - offset * self.ground, -r3 * self.ground, crank.left]
 
-    def slopes(self, turned: FloatArray, output: FloatArray) -> FloatArray:
-        """From x_B = x + sqrt(r3^2 - h^2) with h = offset - y, A in (x, y)."""
-        r3, share = np.exp(self.shape[:, 1:2]), self.shape[:, 2:3]
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            x, y, h, ahead = self._closed(turned)
-            ahead = np.where(ahead == 0, np.nan, ahead)  # a dead position
-            lean = h / ahead
-            slopes = [x + lean * y, (r3**2 - h * share * r3) / ahead, -lean * r3, lean * x - y]
-        return np.stack(slopes, axis=-1)
-
-    def worst_cosine(self, span: float) -> FloatArray:
-        """Abs(h) / r3 at both ends, and where the crank stands square to the slide."""
-        places, met, _ = places_met(self.first, span, (np.pi / 2, -np.pi / 2))
-        worst: FloatArray = np.where(met, np.abs(self._cosines(places)), 0.0).max(axis=1)
-        return worst
-
-    def _cosines(self, theta2: FloatArray) -> FloatArray:
-        share: FloatArray = self.shape[:, 2:3] - self._crank * np.sin(theta2)
-        return share
-
-    @property
-    def _crank(self) -> FloatArray:
-        """r2 / r3, shape (M, 1)."""
-        ratio: FloatArray = np.exp(self.shape[:, :1] - self.shape[:, 1:2])
-        return ratio
-
-    def limited(self, limits: ShapeLimits) -> Rows:
-        logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, :2]], axis=1)
-        unit = np.concatenate([np.zeros((1, 4)), np.eye(4)[:2]])
-        parts = [ratio_rows(logs, unit, limits.caps), self._transmission(limits)]
-        if limits.offset is not None:
-            parts.append(linear_rows(limits.offset, *self._dimensions()))
-        if limits.margin is not None:
-            parts.append(self._turning(limits.margin))
-            if np.isfinite(limits.stroke).any():
-                parts.append(self._stroke(limits.stroke))
-        return joined_rows(parts)
-
-    def _dimensions(self) -> tuple[FloatArray, FloatArray]:
-        """The unit, r2, r3 and the offset, shape (M, 4), and their derivatives (M, 4, 4)."""
-        (_, r2, r3), share = self.lengths.T, self.shape[:, 2]
-        zero = np.zeros_like(r2)
-        rows = [
-            [zero, zero, zero, zero],
-            [r2, zero, zero, zero],
-            [zero, r3, zero, zero],
-            [zero, share * r3, r3, zero],
-        ]
-        slopes = np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
-        return np.column_stack([np.ones_like(r2), r2, r3, share * r3]), slopes
-
-    def _transmission(self, limits: ShapeLimits) -> Rows:
-        along = (np.pi / 2, -np.pi / 2)
-        places, met, moving = places_met(self.first, limits.span, along, over_cycle=limits.over_cycle)
-        rise = self._crank * np.sin(places)
-        turn = -self._crank * np.cos(places) * moving
-        slope = np.stack([-rise, rise, np.ones_like(rise), turn], axis=-1)
-        return cosine_rows(self._cosines(places), slope, met, limits.most_cosine)
-
-    def _turning(self, margin: float) -> Rows:
-        """r3 - r2 -+ offset, in shares of r2 + r3 + abs(offset)."""
-        crank, share = self._crank[:, 0], self.shape[:, 2]
-        total, side = 1 + crank + np.abs(share), np.sign(share)
-        rows = []
-        for sign in (1.0, -1.0):
-            part = (1 - crank + sign * share) / total
-            by_crank, by_share = (-1 - part) / total, (sign - part * side) / total
-            by = [by_crank * crank, -by_crank * crank, by_share, np.zeros_like(share)]
-            rows.append((part - margin, np.stack(by, axis=-1)))
-        values, slopes = zip(*rows, strict=True)
-        return np.stack(values, axis=1), np.stack(slopes, axis=1)
-
-    def _stroke(self, stroke: Limits) -> Rows:
-        """Of a full crank: sqrt((r3 + r2)^2 - offset^2) - sqrt((r3 - r2)^2 - offset^2)."""
-        dimensions, slopes = self._dimensions()
-        _, r2, r3, offset = dimensions.T
-        squares = [(side - offset) * (side + offset) for side in (r3 + r2, r3 - r2)]
-        reaches = [np.sqrt(np.maximum(square, 1e-24 * r3**2)) for square in squares]
-        found = reaches[0] - reaches[1]
-        # Where it is no full crank, other limits count.
-        reaches = [
-            np.where(square > 0, reach, np.inf) for square, reach in zip(squares, reaches, strict=True)
-        ]
-        by = [
-            (r3 + r2) / reaches[0] + (r3 - r2) / reaches[1],
-            (r3 + r2) / reaches[0] - (r3 - r2) / reaches[1],
-            offset / reaches[1] - offset / reaches[0],
-        ]
-        slope = np.einsum("dm,mdk->mk", np.array(by), slopes[:, 1:])
+    @staticmethod
+    def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Dual]:
+        travel = stroke_of(sizes)
         sides = [(sign, edge) for sign, edge in zip((1.0, -1.0), stroke, strict=True) if np.isfinite(edge)]
-        values = np.stack([sign * (found - edge) / max(edge, 1e-3) for sign, edge in sides], axis=1)
-        return values, np.stack([sign * slope / max(edge, 1e-3) for sign, edge in sides], axis=1)
+        return [sign * (travel - edge) / max(edge, 1e-3) for sign, edge in sides]
 
     @classmethod
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:

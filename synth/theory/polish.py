@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.theory.closure import FOUR_BAR_CLOSURE, Closure
+from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE, Closure
 
 STEPS = 4
 MORE, DONE = 8, 1e-10  # steps at most beyond these where, as on short arcs, much is left

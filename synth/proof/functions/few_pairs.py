@@ -150,7 +150,7 @@ class Sense:
                 )
             )
             kept = np.flatnonzero(
-                (transmitted > least) & (self.aims.limits_of(self.driver).of(made)[0].min(axis=1) >= 0)
+                (transmitted > least) & (self.aims.limits_of(self.driver).of(made).value.min(axis=1) >= 0)
             )
         problem, key = self.aims.problem, quantity_of(self.aims.problem).key
         for k in kept[np.argsort(-transmitted[kept], kind="stable")[:JUDGED]]:

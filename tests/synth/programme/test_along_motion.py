@@ -40,6 +40,7 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
+from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.along_motion import ALONG
 from grashof.synth.programme.burden import Burden
 from grashof.synth.programme.driver_way import drive_of, driver_at
@@ -49,7 +50,6 @@ from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.vector import Vector
 from grashof.synth.search.attempt import attempt, polished_and_judged
 from grashof.synth.starts.dyad_pairs import screen
 from grashof.synth.starts.finder import finder_for
@@ -151,7 +151,7 @@ def placed(problem: Problem, linkage: Linkage) -> tuple[Vector, Vector, FloatArr
 def found(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> FloatArray:
     """The formula of the search on arrays, in the units of the judge."""
     instant = KINDS[linkage.mechanism.word].instant
-    at = instant.of(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
+    at = instant(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
     values: FloatArray = magnitude(ALONG[key](at, Burden.of(problem))) * problem.scale(QUANTITIES[key])
     return values
 
@@ -162,7 +162,7 @@ def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) 
     o2, ground, arm = (Vector(ca.SX(v.x), ca.SX(v.y)) for v in (o2, ground, arm))
     with numpy_on_symbols():
         driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
-        at = KINDS[linkage.mechanism.word].instant.of(o2, ground, lengths, arm, assembly, driver)
+        at = KINDS[linkage.mechanism.word].instant(o2, ground, lengths, arm, assembly, driver)
         every = ALONG[key](at, Burden.of(problem))
         values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
     curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])

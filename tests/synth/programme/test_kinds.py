@@ -13,7 +13,7 @@ from grashof.problems import FourBar, InvertedSliderCrank, Linkage, PathTask, Pr
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Many, coupler_along
+from grashof.synth.programme.screening import Many
 from grashof.synth.programme.start import Start
 
 EVERY = tuple(KINDS)
@@ -72,14 +72,14 @@ def test_transmission_and_rotatability(mechanism: str) -> None:
         linkage, theta2 = as_found(RANDOM[mechanism](rng)), float(rng.uniform(-3, 3))
         o2, o4, a, b, p = points_of(scaled, linkage, theta2)[:, None]
         view = Many(p, o2, a[:, None], o4, b[:, None], np.array([[theta2]]), kind=kind)
-        cosine = kind.cos_mu(view, kind.at_angle(view, theta2 - view.theta1))
+        cosine = kind.dyad.cos_mu(view, kind.dyad.reach(view, theta2 - view.theta1))
         mu = float(transmission_angle(linkage, theta2))
         assert abs(float(cosine[0, 0])) == pytest.approx(abs(np.cos(mu)), abs=1e-9)
         assert abs(float(view.sine[0, 0])) == pytest.approx(np.sin(mu), abs=1e-9)
-        for reach, turned in ((kind.folded, 0.0), (kind.stretched, np.pi)):
-            there = float(kind.at_angle(view, np.array([[turned]]))[0, 0])
-            assert float(reach(view)[0, 0]) == pytest.approx(there, abs=1e-9)
-        assert bool(kind.turns_fully(view)[0, 0]) == bool(full_rotation(linkage))
+        for reach, turned in zip(kind.dyad.along_ground(view), (0.0, np.pi), strict=True):
+            there = float(kind.dyad.reach(view, np.array([[turned]]))[0, 0])
+            assert float(reach[0, 0]) == pytest.approx(there, abs=1e-9)
+        assert bool(kind.dyad.turns_fully(view)[0, 0]) == bool(full_rotation(linkage))
 
 
 @pytest.mark.parametrize("mechanism", SLIDERS)
@@ -101,19 +101,6 @@ def test_strokes_swings_and_time_ratios(mechanism: str) -> None:
         else:
             (part,) = kind.formulas["output_swing"]
             assert float(part.of(view)[0, 0]) == pytest.approx(float(stroke.swing), rel=1e-9)
-
-
-@pytest.mark.parametrize("mechanism", SLIDERS)
-def test_couplers_along_the_motion(mechanism: str) -> None:
-    scaled, rng = scaled_of(mechanism), np.random.default_rng(6)
-    linkages = [as_found(RANDOM[mechanism](rng)) for _ in range(12)]
-    points = np.array([points_of(scaled, linkage, 0.4) for linkage in linkages])
-    theta2 = np.broadcast_to(np.linspace(-3, 3, 50), (12, 50))
-    coupler = coupler_along(scaled.kind, points, theta2)
-    for row, linkage in enumerate(linkages):
-        state = solve_position(linkage, theta2[row])
-        exact = (state.b - state.a) @ np.array([1, 1j]) / scaled.frame.scale
-        np.testing.assert_allclose(coupler[row], exact, atol=1e-9)
 
 
 @pytest.mark.parametrize("mechanism", EVERY)

@@ -21,7 +21,7 @@ def solved(rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool) 
     starts = [function_starts(kind, wanted, rng)] + ([crank_starts(kind, wanted, rng, 4000)] if full else [])
     for each in starts:
         made, square = fitted(wanted, each, limits.of)
-        if ((square < 1e-14) & (limits.of(made)[0].min(axis=1) > -1e-6)).any():
+        if ((square < 1e-14) & (limits.of(made).value.min(axis=1) > -1e-6)).any():
             return True
     return False
 
@@ -58,11 +58,11 @@ def test_99_of_100_planted_functions_are_found(mechanism: str, pairs: int, full:
 )
 def test_slopes_of_limits_are_those_of_differences(limits: ShapeLimits) -> None:
     shape, step = np.random.default_rng(0).normal(size=(100, 4)), 1e-6
-    slopes = limits.of(FourBars(shape, np.ones(100)))[1]
+    slopes = limits.of(FourBars(shape, np.ones(100))).slope
     for k in range(4):
         moved = np.zeros(4)
         moved[k] = step
-        ahead, behind = (limits.of(FourBars(shape + sign * moved, np.ones(100)))[0] for sign in (1, -1))
+        ahead, behind = (limits.of(FourBars(shape + sign * moved, np.ones(100))).value for sign in (1, -1))
         assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-6
 
 

@@ -52,7 +52,7 @@ def test_a_start_in_a_dead_position_ends_well(start: Generators, lengths: int, g
     wanted = Wanted(turned, 0.9 * start.outputs(turned)[0], np.ones(8))
     limits = ShapeLimits(1.0, caps=np.full((lengths, lengths), 5.0))
     aim = Aim(wanted, limits.of, greatest=greatest)
-    slopes = start.slopes(turned, start.outputs(turned))[0, 0]
+    slopes = start.slopes(turned)[0, 0]
     assert not np.abs(slopes).max() < 1e12
     found = refined(aim, start)
     assert np.isfinite(found.error)

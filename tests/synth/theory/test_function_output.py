@@ -68,7 +68,7 @@ def test_output_is_that_of_the_judge(mechanism: str) -> None:
 @EVERY
 def test_slopes_are_those_of_differences(mechanism: str) -> None:
     made, turned, _ = planted(np.random.default_rng(2), 8, mechanism)
-    slopes, step = made.slopes(turned, made.outputs(turned)), 1e-6
+    slopes, step = made.slopes(turned), 1e-6
     for k in range(made.UNKNOWNS):
         moved = np.zeros(made.UNKNOWNS)
         moved[k] = step
@@ -85,11 +85,11 @@ def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -
         2.5 if full else 1.0, caps=np.full((count, count), 3.0), transmission=0.5, over_cycle=full,
         margin=0.01 if full else None, offset=offset_rows([(0.5, 2.0)] * count, (-0.3, 0.7)),
     )  # fmt: skip
-    slopes = limits.of(made)[1]
+    slopes = limits.of(made).slope
     for k in range(made.UNKNOWNS):
         moved = np.zeros(made.UNKNOWNS)
         moved[k] = step
-        ahead, behind = (limits.of(made.changed(made.shape + sign * moved))[0] for sign in (1, -1))
+        ahead, behind = (limits.of(made.changed(made.shape + sign * moved)).value for sign in (1, -1))
         off = np.abs((ahead - behind) / (2 * step) - slopes[..., k]) / (1 + np.abs(slopes[..., k]))
         assert off.max() < 1e-6
 
@@ -99,11 +99,12 @@ def test_slopes_of_the_stroke_are_those_of_differences() -> None:
     made = kind.cranks(np.random.default_rng(0), 100, None, 0)
     made = made[made.worst_cosine(2 * np.pi) < 0.95]
     limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
-    values, slopes = limits.of(made)
+    rows = limits.of(made)
+    values, slopes = rows.value, rows.slope
     for k in range(4):
         moved = np.zeros(4)
         moved[k] = step
-        ahead, behind = (limits.of(made.changed(made.shape + sign * moved))[0] for sign in (1, -1))
+        ahead, behind = (limits.of(made.changed(made.shape + sign * moved)).value for sign in (1, -1))
         assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-5
     dense = made.outputs(np.linspace(0, 2 * np.pi, 20001))
     assert np.abs(values[:, -2] - (np.ptp(dense, axis=1) - 0.5) / 0.5).max() < 1e-5
