@@ -28,21 +28,10 @@ class _Way(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FirstMotion:
-    """Driver angle as a function of a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
+    """Driver angle over a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
 
-    See `EvenMotion`. Made by `first_motion`.
-
-    Parameters
-    ----------
-    start, end : float, rad
-        Driver angles of the motion, in either order.
-    way : _Way
-    centre : float, rad
-        Driver angle from which tan(half the angle) is counted.
-    scale, modulus : float
-        c or X, and the complementary modulus k', of the notes to `first_motion`.
-    first, last : float
-        The elliptic integral at both ends, as a share of half its period.
+    Tangents of half angles are counted from `centre` (rad); `scale` is c or X and `modulus` the k' of
+    `first_motion`; `first` and `last` are the elliptic integral at both ends, as shares of half its period.
     """
 
     start: float
@@ -57,7 +46,7 @@ class FirstMotion:
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
         """Driver angle at a share of the motion, shape (...), rad.
 
-        Where the driver turns fully the share may lie beyond 0 and 1.
+        Beyond 0 and 1, too, where the driver turns fully.
         """
         t = np.asarray(share, dtype=np.float64)
         if self.way is _Way.PLAIN:

@@ -61,11 +61,8 @@ def width(linkage: Linkage) -> Curve:
 def cut(linkage: Linkage, transmission: float = 0.0) -> Cut:
     """What the second loop of a single linkage leaves of the ranges of the first.
 
-    Notes
-    -----
-    The width is sampled over a variable with which the first loop moves evenly, and has no branch points
-    there; each extreme is refined, so that between two of these places it meets a limit once or not at all.
-    The driver angle where it does is halved down to rounding.
+    Its gap is sampled over an even motion of the first loop and each extreme refined, so that between two
+    such places it meets a limit at most once; where it does is halved down to rounding.
     """
     limits = dyad_of(linkage, 2).limits(float(np.cos(transmission)))
     least, most = map(float, limits)
