@@ -40,17 +40,10 @@ def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | No
 def cylinder_defects(
     spec: CylinderSpec, cylinder: Cylinder | None, moved: Travel | None, size: float
 ) -> Iterator[Defect]:
-    """What a cylinder misses of its limits.
+    """What a cylinder misses of its limits; None where none was found.
 
-    Parameters
-    ----------
-    spec : CylinderSpec
-    cylinder : Cylinder, optional
-        None where none was found.
-    moved : Travel, optional
-        None where no motion joins the targets, which another defect reports.
-    size : float, length
-        Of the task.
+    `moved` is None where no motion joins the targets, which another defect reports; `size` is the length of
+    the task.
     """
     if cylinder is None:
         yield Defect(_KEY, "the number of cylinders that drive the linkage within these limits", 0, "1", 1.0)
@@ -90,10 +83,10 @@ def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigure
 
 
 def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
-    """Greatest magnitude of the cylinder's force over the task motion, N.
+    """Greatest magnitude of the cylinder's force over the task motion, N; infinite where the length stands.
 
-    NaN without dynamics, where the motion leads through a dead position of link 2, whose speed the problem
-    states, or beyond the rows of a load; infinite where the length stands.
+    NaN without dynamics, through a dead position of link 2 (whose speed the problem states), or beyond the
+    rows of a load.
     """
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
         return np.nan

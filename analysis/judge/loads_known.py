@@ -16,22 +16,7 @@ from grashof.problems.values.arrays import FloatArray
 
 
 def load_defects(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
-    """A defect for every load over the travel of a slide that does not say what it is all the way.
-
-    Examples
-    --------
-    >>> from grashof.analysis.judge.planted import planted_path
-    >>> from grashof.analysis.judge.verify import verify
-    >>> from grashof.problems import DynamicsSpec
-    >>> from grashof.problems.values.dynamics.acting import LoadSpec
-    >>> task, slider = planted_path(np.random.default_rng(0), points=5, mechanism="slider-crank")
-    >>> short = LoadSpec(4, values=[(0, -9, 0), (0.1, -9, 0)], over="travel")
-    >>> problem = Problem(
-    ...     task=task, mechanism="slider-crank", length_unit="m", dynamics=DynamicsSpec(loads=[short])
-    ... )
-    >>> [one.what for one in verify(slider, task, problem.requirements, problem=problem).defects]
-    ['the travel of the slide under loads[0]']
-    """
+    """A defect for every load over the travel of a slide that does not say what it is all the way."""
     loads = () if problem.dynamics is None else problem.dynamics.loads
     over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
     if not over or not linkage.mechanism.slides:

@@ -27,17 +27,7 @@ def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray)
 def squares(
     linkage: Linkage, task: Task, assembly: IntArray, order: slice = slice(None)
 ) -> Callable[[FloatArray], Model]:
-    """The misses, weighted, as functions of the driver angles, shape (..., N).
-
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : Task
-    assembly : ndarray of int, shape (..., N)
-    order : slice
-        Of the targets.
-    """
+    """The weighted misses as functions of driver angles (..., N), on given assemblies (..., N)."""
     point = np.nan_to_num(task.positions[order] @ np.array([1, 1j]))
     angle = np.nan_to_num(task.angles[order] - linkage.body_angle)
     by_point = (task.weights * task.has_position)[order]

@@ -15,11 +15,9 @@ _VALLEYS = 3
 
 
 def met_singly(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """Each point by itself as near as possible, on the motion on which the sum of squares is least.
+    """Each point by itself as near as possible, on the motion of the least squares.
 
-    Returns
-    -------
-    Met, or None when the linkage cannot be assembled.
+    None when it cannot be assembled.
     """
     points = task.positions @ np.array([1, 1j])
     target = np.arange(len(task))

@@ -17,26 +17,10 @@ _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 
 
 def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
-    """Driver angle, assembly and error at each pose, from the linkage alone.
+    """The linkage nearest to each pose, by itself, on its own assembly unless the other is nearer.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : Task
-        Whose targets may leave position or angle free.
-
-    Returns
-    -------
-    Targets
-        On the linkage's own assembly unless the other one is nearer.
-
-    Notes
-    -----
-    The first guess turns the driver towards where A would be if the body stood in the pose;
-    Gauss-Newton steps in the driver angle then reduce |dp|^2 + (angle_length * dangle)^2, on both
-    assemblies. Where that does not meet every pose, a scan over all driver angles finds the lowest
-    valleys, and closer scans their bottoms.
+    Gauss-Newton steps begin where A would be if the body stood in the pose; where a pose is not met, a scan
+    over all driver angles finds the lowest valleys.
     """
     turned = np.exp(1j * (task.angles - linkage.body_angle))
     a = task.positions @ np.array([1, 1j]) - complex(*linkage.coupler_point) * turned - complex(*linkage.o2)

@@ -27,16 +27,8 @@ _LEAST_MARGIN = 0.002  # of full rotation, of planted functions
 def random_full_crank(rng: np.random.Generator) -> FourBar:
     """A random four-bar whose driver turns fully.
 
-    Lengths are log-uniform in 0.15 to 1 times a scale that is itself log-uniform in 1/e to e^2;
-    the coupler point is normal about A with 0.7 of the scale; position and direction are random.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    FourBar
+    Lengths are log-uniform in 0.15 to 1 of a scale log-uniform in 1/e to e^2, the coupler point normal about
+    A with 0.7 of it.
     """
     scale = np.exp(rng.uniform(-1, 2))
     while True:
@@ -105,9 +97,9 @@ RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
 
 
 def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
-    """`count` driver angles in order, shape (count,), rad: 70 to 340 deg of a turn, in either sense.
+    """Driver angles in order, shape (count,), rad.
 
-    The gaps between them differ by up to 4 : 1.
+    70 to 340 deg in either sense, with gaps that differ by up to 4 : 1.
     """
     gaps = rng.uniform(1, 4, count - 1)
     spread = rng.choice([-1, 1]) * np.radians(rng.uniform(70, 340))
@@ -119,27 +111,7 @@ def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
 def planted_motion(
     rng: np.random.Generator, poses: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[MotionTask, Any]:
-    """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-    poses : int
-    timed : bool
-        The driver rotations are prescribed.
-    mechanism : str
-        The kind of linkage.
-
-    Returns
-    -------
-    MotionTask, Linkage
-
-    Examples
-    --------
-    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
-    >>> len(task), linkage.shape
-    (4, ())
-    """
+    """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly."""
     linkage = RANDOM[mechanism](rng)
     theta2 = uneven_driver_angles(rng, poses)
     state, timing = solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
@@ -149,21 +121,7 @@ def planted_motion(
 def planted_path(
     rng: np.random.Generator, points: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[PathTask, Any]:
-    """A path task, and a full-crank linkage that does it exactly, in order, on one assembly.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-    points : int
-    timed : bool
-        The driver rotations are prescribed.
-    mechanism : str
-        The kind of linkage.
-
-    Returns
-    -------
-    PathTask, Linkage
-    """
+    """A path task, and a full-crank linkage that does it exactly, in order, on one assembly."""
     linkage = RANDOM[mechanism](rng)
     theta2 = uneven_driver_angles(rng, points)
     timing = np.abs(theta2 - theta2[0]) if timed else None
@@ -173,30 +131,10 @@ def planted_path(
 def planted_function(
     rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[FunctionTask, Any, float]:
-    """Pairs that some linkage generates, its driver counter-clockwise.
+    """Pairs that a linkage generates, the linkage, and its driver angle (rad) at the first pair.
 
-    Parameters
-    ----------
-    rng : Generator
-    pairs : int
-    full : bool
-        Its driver turns fully.
-    mechanism : str
-        The kind of linkage.
-
-    Returns
-    -------
-    FunctionTask, Linkage, float
-        The last is the driver angle at the first pair, rad. O2 = (0, 0), and O4 = (1, 0) or the slide runs
-        along x; lengths are 0.2 to 5, the range is 30 to 300 deg, the transmission angle at least 10 deg
-        over it.
-
-    Examples
-    --------
-    >>> task, linkage, start = planted_function(np.random.default_rng(0), pairs=6)
-    >>> theta4 = solve_position(linkage, start + task.inputs).theta4
-    >>> bool(np.abs(np.exp(1j * (theta4 - theta4[0])) - np.exp(1j * task.outputs)).max() < 1e-12)
-    True
+    The driver turns counter-clockwise, fully if `full`. O2 = (0, 0), and O4 = (1, 0) or the slide runs along
+    x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
     """
     while True:
         made = _LOOSE[mechanism](rng)

@@ -33,15 +33,10 @@ Met: TypeAlias = tuple[FloatArray, IntArray, int]
 
 
 def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """The least weighted squares of distances over driver angles that do not go back, within one turn.
+    """The least weighted squares over driver angles that do not go back, within one turn.
 
-    Returns
-    -------
-    Met, or None when the linkage cannot be assembled.
-
-    Notes
-    -----
-    Where points have to stand together far from the curve, the least found may be a local one.
+    None when it cannot be assembled. Where points have to stand together far from the curve, the least found
+    may be a local one.
     """
     passages = _passages(linkage, task, same_branch, theta2_start)
     guesses = [(guess, passage) for passage in passages for guess in passage.guesses(middles=False)]
@@ -100,18 +95,9 @@ def _beside(
 class _Passage:
     """One sense of the driver on one of its motions.
 
-    Parameters
-    ----------
-    track : Track
-    points : ndarray of complex, shape (N,)
-        In the order in which growing driver angles meet them.
-    weights : ndarray, shape (N,)
-    direction : int
-        -1 when that is the task's order reversed.
-    first : float, rad, optional
-        Driver angle that is given at the task's first point.
-    start : ndarray of complex, shape (S,)
-        P there, on each assembly of the track.
+    Points and weights (N,) as growing driver angles meet them. `direction` is -1 when that reverses the
+    task's order; `first` the driver angle (rad) given at the task's first point, and `start` P there on each
+    assembly.
     """
 
     track: Track

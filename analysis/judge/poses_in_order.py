@@ -25,41 +25,9 @@ def poses_in_order(
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
-    A pose with a part left free, above all an angle alone, is met at more than one driver angle; the
-    nearest place of each pose by itself may then be out of order where others are not.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : Task
-    nearest : Targets
-        Where it comes nearest to each pose by itself.
-    motion : TaskMotion
-        Through those places, out of order.
-
-    Returns
-    -------
-    Targets, TaskMotion
-        On the linkage's own assembly and in one range of its driver; those given where there are none.
-
-    Notes
-    -----
-    Dynamic programming over driver angles, among them the bottoms of the valleys of the misses; then
-    Newton's method in all angles.
-
-    Examples
-    --------
-    >>> from grashof.analysis.judge.nearest_poses import nearest_to_poses
-    >>> from grashof.analysis.judge.planted import planted_motion
-    >>> from grashof.problems import MotionTask
-    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=5)
-    >>> swapped = MotionTask(task.positions[[0, 2, 1, 3, 4]], task.angles[[0, 2, 1, 3, 4]])
-    >>> nearest = nearest_to_poses(linkage, swapped)
-    >>> straight_on = task_motion(linkage, nearest.theta2, True)
-    >>> targets, motion = poses_in_order(linkage, swapped, nearest, straight_on)
-    >>> motion.in_order, bool(targets.position_error.max() > 0)
-    (True, True)
+    On the own assembly and in one range; what is given where there are none. Poses free in part are met at
+    several angles, so nearest places may be out of order: dynamic programming over samples and valleys of the
+    misses, then Newton's method in all angles.
     """
     own = np.full(len(task), int(linkage.assembly))
     found = list[tuple[FloatArray, float]]()

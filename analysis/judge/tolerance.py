@@ -109,15 +109,9 @@ def measured_sensitivity(linkage: Linkage, task: Task, verdict: Verdict) -> Floa
 
 
 def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
-    """Share of made linkages whose worst target moves by at most `band`, linearised.
+    """Share of made linkages whose worst target moves by at most `band` (length), linearised.
 
-    Parameters
-    ----------
-    slope : ndarray, shape (N, 3, D)
-        Of `measured_sensitivity`.
-    band : float, length
-    errors : ndarray, shape (S, D), length
-        Deviations of the dimensions of each made linkage.
+    `slope` (N, 3, D) is of `measured_sensitivity`, `errors` (S, D) are lengths.
     """
     return float(np.mean(_linear_moves(slope, errors).max(axis=0) <= band))
 
@@ -125,19 +119,10 @@ def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
 def yield_monte_carlo(
     linkage: Linkage, task: Task, verdict: Verdict, band: float, errors: FloatArray
 ) -> float:
-    """Share of made linkages whose worst target moves by at most `band`, by exact positions.
+    """Share of made linkages whose worst target moves by at most `band` (length), by exact positions.
 
-    Those that cannot be assembled at a target count as outside, and, when the nominal linkage passes
-    from the first target to the last, those that cannot be assembled in between.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        The nominal one, single.
-    task : Task
-    verdict : Verdict
-    band, errors
-        As for `yield_linear`.
+    Outside count those that cannot be assembled at a target or, when the nominal one passes from first to
+    last, in between.
     """
     theta2, assembly = verdict.theta2[:, None], verdict.assembly[:, None]
     nominal = solve_position(linkage, theta2, assembly)
@@ -158,18 +143,9 @@ def yield_monte_carlo(
 
 
 def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolArray]:
-    """Linkages of deviating dimensions, and which of them there can be: all lengths above zero.
+    """Linkages that deviate by errors (S, D) in length, and which of them there can be.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        The nominal one, single.
-    errors : ndarray, shape (S, D), length
-
-    Returns
-    -------
-    Linkage, ndarray of bool
-        Shape (S,); an impossible one is the nominal one.
+    All lengths must be above zero; an impossible one is the nominal one.
     """
     count = len(linkage.mechanism.lengths)  # which come first among the dimensions
     possible: BoolArray = np.all(linkage.lengths + errors[:, :count] > 0, axis=1)
@@ -197,9 +173,9 @@ def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
 
 
 def _nearest_to_dead(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
-    """Driver angles of the task motion where O2A lies along theta1, shape (0 to 2,), rad.
+    """Driver angles (rad) of the task motion where O2A lies along theta1.
 
-    There, or at the ends of the motion, a linkage comes nearest to a dead position, whatever the lengths.
+    There, or at its ends, a linkage of any lengths is nearest to a dead position.
     """
     start, end = verdict.theta2.min(), verdict.theta2.max()
     if task.closed:
