@@ -51,23 +51,9 @@ def coupler_motion(
 def coupler_curve(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """P = x + i y and its first two derivatives by the driver angle.
+    """P = x + i y and its first two derivatives by the driver angle, each (...), by `mechanism.dyad`.
 
-    Parameters
-    ----------
-    linkage : Linkage
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        The linkage's own by default.
-
-    Returns
-    -------
-    p, rate, bend : ndarray of complex, shape (...)
-        NaN where the linkage cannot close; the derivatives are not finite in a dead position.
-
-    Notes
-    -----
-    The equations of the loop, differentiated once and twice; see `grashof.analysis.mechanism.dyad`.
+    NaN where the linkage cannot close; the derivatives are not finite in a dead position.
     """
     return coupler_motion(linkage, theta2, assembly)[:3]
 
@@ -91,20 +77,11 @@ def squared_distance(
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A motion that the driver can make, cut into pieces on which the curve is nearly straight.
+    """A motion that the driver can make, in M pieces on which the curve is nearly straight.
 
-    Parameters
-    ----------
-    low, high : ndarray, shape (M,), rad
-        Driver angles at the ends of each piece, increasing.
-    start, end : ndarray of complex, shape (S, M)
-        P there, on each assembly.
-    signs : ndarray of int, shape (S,)
-        The assemblies.
-    floor, ceiling : ndarray, shape (M,), rad
-        Ends of the driver's range that each piece lies in; infinite when the driver turns fully.
-    cyclic : bool
-        After the last piece comes the first.
+    Driver angles (M,) in rad and P (S, M) at the ends of each, on the assemblies `signs`. Floor and ceiling
+    are the ends of the range that a piece lies in, infinite where the driver turns fully; if `cyclic`, the
+    first piece follows the last.
     """
 
     low: FloatArray
@@ -118,22 +95,10 @@ class Track:
 
 
 def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
-    """Every motion that the driver can make.
+    """Every motion that the driver of a single linkage can make, in `pieces` a range; empty without any.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    pieces : int
-        Of each range of the driver.
-    same_branch : bool
-        Motions on the linkage's own assembly without a dead position. Otherwise a single one, over
-        all ranges and both assemblies.
-
-    Returns
-    -------
-    list of Track
-        Empty when the linkage cannot be assembled.
+    On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
+    both assemblies.
     """
     own = int(linkage.assembly)
     signs = np.array([own] if same_branch else [own, -own])
@@ -155,9 +120,9 @@ def between(
 
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
-    """Ends of the driver's range that holds an angle, counted from it; NaN when none does.
+    """Ends of the driver's range around an angle, counted from it (rad).
 
-    Infinite for a driver that turns fully.
+    NaN without one, infinite for full turns.
     """
     if whole_turn(linkage):
         return -np.inf, np.inf
