@@ -15,23 +15,9 @@ _BLOCK = 8192
 def in_blocks(
     formula: Callable[..., Sequence[FloatArray]], operands: Sequence[FloatArray], results: int
 ) -> FloatArray:
-    """Results of a formula that works element by element.
+    """Results (results, ...) of a formula that works element by element on operands that broadcast.
 
-    Parameters
-    ----------
-    formula : callable
-        Takes the operands, or corresponding parts of them, and returns `results` arrays.
-    operands : sequence of ndarray
-        Of shapes that broadcast against each other.
-    results : int
-
-    Returns
-    -------
-    ndarray, shape (results, ...)
-
-    Notes
-    -----
-    A formula of fifty operations on arrays of 1e5 numbers runs three times faster this way.
+    On 1e5 numbers three times faster in blocks.
     """
     shape = np.broadcast_shapes(*(operand.shape for operand in operands))
     out = np.empty((results, *shape))

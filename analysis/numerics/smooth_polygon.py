@@ -19,27 +19,10 @@ _ROUNDS = 24
 def smooth_polygon(
     curve: Callable[[FloatArray], FloatArray], places: npt.ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Points of a curve, close enough together for lines between them to look like it.
+    """Places (M,) and points (M, 2) of a curve, so close together that lines between look like it.
 
-    Parameters
-    ----------
-    curve : callable
-        From places, shape (N,), to its points, shape (N, 2); NaN where there is none.
-    places : array_like, shape (N,)
-        Where it is sampled at the least, in order; for example driver angles.
-
-    Returns
-    -------
-    places : ndarray, shape (M,)
-        Those given and others halfway between them, while a chord is longer than a hundredth of the
-        curve's extent or turns by more than 4 deg, and up to about 2000 in all.
-    points : ndarray, shape (M, 2)
-
-    Examples
-    --------
-    >>> places, points = smooth_polygon(lambda t: np.column_stack([t, np.sqrt(t)]), np.linspace(0, 1, 5))
-    >>> bool(np.hypot(*np.diff(points, axis=0).T).max() < 0.01)
-    True
+    Places, in order, are halved while a chord exceeds a hundredth of the extent or turns by more than 4 deg,
+    up to about 2000 in all; points are NaN where there are none.
     """
     places = np.asarray(places, dtype=np.float64)
     points = curve(places)
