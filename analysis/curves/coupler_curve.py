@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,14 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
+from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, whole_turn
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 PIECES = 180  # of each range of the driver, when points are sought on the curve
-ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
 _FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
 
 
@@ -56,23 +54,6 @@ def coupler_curve(
     NaN where the linkage cannot close; the derivatives are not finite in a dead position.
     """
     return coupler_motion(linkage, theta2, assembly)[:3]
-
-
-def squared_distance(
-    linkage: Linkage, points: ComplexArray, assembly: IntArray, weights: FloatArray | float = 1.0
-) -> Callable[[FloatArray], Model]:
-    """Squared distance from each point, weighted, as a function of its driver angle."""
-
-    def model(theta2: FloatArray) -> Model:
-        p, rate, bend = coupler_curve(linkage, theta2, assembly)
-        gap = p - points
-        with np.errstate(invalid="ignore", over="ignore"):
-            value = weights * np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
-            positive = 2 * weights * (rate.real**2 + rate.imag**2)
-            slope = 2 * weights * (rate.conj() * gap).real
-            return value, slope, positive + 2 * weights * (bend.conj() * gap).real, positive
-
-    return model
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +96,7 @@ def between(
     """The part from `start` to `end` > `start` of the driver's range with these ends."""
     own = int(linkage.assembly)
     signs = np.array([own] if same_branch else [own, -own])
-    nodes = _nodes(linkage, _closer_at_ends(start, end), pieces, signs)
+    nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, *ends, cyclic=False)
 
 
@@ -135,7 +116,7 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
 
 def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
     # Closer about the ground line: there a linkage near a change point runs away from its driver.
-    half = _closer_at_ends(0.0, np.pi)
+    half = closer_at_ends(0.0, np.pi, _FINE + 1)
     fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
     nodes = _nodes(linkage, fine, pieces, signs)
     nodes[-1] = nodes[0] + TURN
@@ -143,13 +124,8 @@ def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
 
 
 def _swing(linkage: Linkage, low: float, high: float, pieces: int, signs: IntArray) -> Track:
-    nodes = _nodes(linkage, _closer_at_ends(low, high), pieces, signs)
+    nodes = _nodes(linkage, closer_at_ends(low, high, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, low, high, cyclic=False)
-
-
-def _closer_at_ends(low: float, high: float) -> FloatArray:
-    share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, _FINE + 1))) / 2
-    return low + (high - low) * share
 
 
 def _nodes(linkage: Linkage, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,8 +66,7 @@ def nearest_guess(
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
     """Driver angles in the nearest valleys of each target, bounds and assemblies, each (valleys, N)."""
     by_sign = [_distances(_on(track, sign), targets)[:2] for sign in range(len(track.signs))]
-    squared = np.stack([squared for squared, _ in by_sign])
-    share = np.stack([share for _, share in by_sign])
+    squared, share = (np.stack(each) for each in zip(*by_sign, strict=True))
     if track.cyclic:
         before, after = np.roll(squared, 1, axis=2), np.roll(squared, -1, axis=2)
     else:
@@ -85,10 +84,7 @@ def nearest_guess(
 
 def _on(track: Track, sign: int) -> Track:
     one = slice(sign, sign + 1)
-    return Track(
-        track.low, track.high, track.start[one], track.end[one], track.signs[one],
-        track.floor, track.ceiling, track.cyclic,
-    )  # fmt: skip
+    return replace(track, start=track.start[one], end=track.end[one], signs=track.signs[one])
 
 
 def _distances(
@@ -105,12 +101,8 @@ def _distances(
     if len(track.signs) == 1:
         return squared[:, 0], share[:, 0], np.zeros(squared[:, 0].shape, dtype=np.int64)
     side = np.argmin(squared, axis=1)
-    taken = side[:, None]
-    return (
-        np.take_along_axis(squared, taken, axis=1)[:, 0],
-        np.take_along_axis(share, taken, axis=1)[:, 0],
-        side,
-    )
+    squared, share = (np.take_along_axis(each, side[:, None], axis=1)[:, 0] for each in (squared, share))
+    return squared, share, side
 
 
 def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:

@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
@@ -181,8 +182,7 @@ def _body_depth(
 
 def _deepest_over(at: Callable[[FloatArray, int], FloatArray], start: float, end: float) -> float:
     """Greatest depth between two driver angles."""
-    towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    angle = start + (end - start) * towards_end
+    angle = closer_at_ends(start, end, _SAMPLES)
     found = at(angle, _ROUGH)
     around = np.pad(found, 1, constant_values=-np.inf)
     step = np.abs(np.diff(found[np.isfinite(found)])).max(initial=0.0)
