@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis.mechanism.mobility import rotatability
-from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
@@ -35,17 +35,17 @@ def random_full_crank(rng: np.random.Generator) -> FourBar:
         r1, r2, r3, r4 = scale * np.exp(rng.uniform(np.log(0.15), 0, 4))
         if r1 + r2 < r3 + r4 and abs(r1 - r2) > abs(r3 - r4):
             break
-    o2, theta1 = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
-    return FourBar(
-        o2=o2,
-        o4=o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)]),
-        r2=r2,
-        r3=r3,
-        r4=r4,
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, theta1, others = _placed(rng, scale)
+    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
+    return FourBar(o2, o4, r2, r3, r4, **others)
+
+
+def _placed(rng: np.random.Generator, scale: float) -> tuple[FloatArray, float, dict[str, Any]]:
+    """O2, the direction of the ground line or slide, and what all kinds have besides."""
+    o2, direction = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
+    coupler_point, assembly = rng.normal(0, 0.7 * scale, 2), rng.choice([-1, 1])
+    body_angle = rng.uniform(-np.pi, np.pi)
+    return o2, direction, {"coupler_point": coupler_point, "assembly": assembly, "body_angle": body_angle}
 
 
 def random_slider_crank(rng: np.random.Generator) -> SliderCrank:
@@ -56,16 +56,8 @@ def random_slider_crank(rng: np.random.Generator) -> SliderCrank:
         offset = rng.uniform(-1, 1) * scale
         if r2 + abs(offset) < r3:
             break
-    return SliderCrank(
-        o2=rng.normal(0, scale, 2),
-        r2=r2,
-        r3=r3,
-        offset=offset,
-        slide_angle=rng.uniform(-np.pi, np.pi),
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, slide_angle, others = _placed(rng, scale)
+    return SliderCrank(o2, r2, r3, offset=offset, slide_angle=slide_angle, **others)
 
 
 def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCrank:
@@ -76,16 +68,9 @@ def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCran
         offset = rng.uniform(-1, 1) * scale
         if abs(offset) < abs(r1 - r2):
             break
-    o2, theta1 = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
-    return InvertedSliderCrank(
-        o2=o2,
-        o4=o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)]),
-        r2=r2,
-        offset=offset,
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, theta1, others = _placed(rng, scale)
+    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
+    return InvertedSliderCrank(o2, o4, r2, offset=offset, **others)
 
 
 # By the word for the kind of linkage.
@@ -112,9 +97,7 @@ def planted_motion(
     rng: np.random.Generator, poses: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[MotionTask, Any]:
     """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly."""
-    linkage = RANDOM[mechanism](rng)
-    theta2 = uneven_driver_angles(rng, poses)
-    state, timing = solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
+    linkage, state, timing = _planted(rng, poses, timed, mechanism)
     return MotionTask(state.p, state.theta3 + linkage.body_angle, timing=timing), linkage
 
 
@@ -122,10 +105,15 @@ def planted_path(
     rng: np.random.Generator, points: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[PathTask, Any]:
     """A path task, and a full-crank linkage that does it exactly, in order, on one assembly."""
-    linkage = RANDOM[mechanism](rng)
-    theta2 = uneven_driver_angles(rng, points)
-    timing = np.abs(theta2 - theta2[0]) if timed else None
-    return PathTask(solve_position(linkage, theta2).p, timing=timing), linkage
+    linkage, state, timing = _planted(rng, points, timed, mechanism)
+    return PathTask(state.p, timing=timing), linkage
+
+
+def _planted(
+    rng: np.random.Generator, count: int, timed: bool, mechanism: str
+) -> tuple[Linkage, Position, FloatArray | None]:
+    linkage, theta2 = RANDOM[mechanism](rng), uneven_driver_angles(rng, count)
+    return linkage, solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
 
 
 def planted_function(
