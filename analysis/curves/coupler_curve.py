@@ -49,10 +49,7 @@ def coupler_motion(
 def coupler_curve(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """P = x + i y and its first two derivatives by the driver angle, each (...), by `mechanism.dyad`.
-
-    NaN where the linkage cannot close; the derivatives are not finite in a dead position.
-    """
+    """P = x + i y (...) and two derivatives by theta2; NaN where open, not finite in dead positions."""
     return coupler_motion(linkage, theta2, assembly)[:3]
 
 
@@ -81,12 +78,10 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
     On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
     both assemblies.
     """
-    own = int(linkage.assembly)
-    signs = np.array([own] if same_branch else [own, -own])
     if whole_turn(linkage):
-        return [_turn(linkage, pieces, signs)]
-    ends = driver_ranges(linkage)
-    single = [_swing(linkage, low, high, pieces, signs) for low, high in ends if high > low]
+        return [_turn(linkage, pieces, _signs(linkage, same_branch))]
+    ends = [(low, high) for low, high in driver_ranges(linkage).tolist() if high > low]
+    single = [between(linkage, *each, each, pieces, same_branch) for each in ends]
     return single if same_branch or len(single) < 2 else [_joined(single)]
 
 
@@ -94,17 +89,13 @@ def between(
     linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
 ) -> Track:
     """The part from `start` to `end` > `start` of the driver's range with these ends."""
-    own = int(linkage.assembly)
-    signs = np.array([own] if same_branch else [own, -own])
+    signs = _signs(linkage, same_branch)
     nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, *ends, cyclic=False)
 
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
-    """Ends of the driver's range around an angle, counted from it (rad).
-
-    NaN without one, infinite for full turns.
-    """
+    """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for turns."""
     if whole_turn(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)
@@ -123,9 +114,9 @@ def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
     return _track(linkage, nodes, signs, -np.inf, np.inf, cyclic=True)
 
 
-def _swing(linkage: Linkage, low: float, high: float, pieces: int, signs: IntArray) -> Track:
-    nodes = _nodes(linkage, closer_at_ends(low, high, _FINE + 1), pieces, signs)
-    return _track(linkage, nodes, signs, low, high, cyclic=False)
+def _signs(linkage: Linkage, same_branch: bool) -> IntArray:
+    own = int(linkage.assembly)
+    return np.array([own] if same_branch else [own, -own])
 
 
 def _nodes(linkage: Linkage, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:

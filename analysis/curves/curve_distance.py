@@ -154,10 +154,7 @@ def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
 
 
 def _leash(to_edge: FloatArray, from_edge: FloatArray, begin: IntArray) -> float:
-    """Least leash of walks from corner 0 of the first and given edges of the second.
-
-    Dynamic programming over pairs of edges, those of equal i + j at once.
-    """
+    """Least leash of walks from corner 0 and given edges: dynamic programming over pairs of edges."""
     n, m = to_edge.shape
     row = np.arange(n + 1)
     column = (np.arange(n + 2 * m + 1)[:, None] - row) % m

@@ -144,10 +144,7 @@ def _least_costs_of_many(around: FloatArray, cuts: IntArray, length: int) -> Flo
 
 
 def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Pieces (N, C), and sums (C,), of the least sums that never go back.
-
-    Windows (N, L, C) are what N targets cost on L pieces, C times.
-    """
+    """Pieces (N, C), never going back, and least sums (C,) of costs (N, L, C) of N targets on L pieces."""
     totals = np.empty(windows.shape)
     totals[0] = windows[0]
     for index, squared in enumerate(windows[1:], start=1):

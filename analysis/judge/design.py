@@ -92,10 +92,7 @@ OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 @one_at_a_time
 def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:
-    """The greatest value of a constraint, or objective, on a design; NaN when one is.
-
-    ProblemError for what is not numbers.
-    """
+    """Greatest value of a constraint or objective; NaN when one is, ProblemError where not numbers."""
     with np.errstate(all="ignore"):  # where it has no value it is missed; no news to be warned of
         values = constraint(design)
     try:

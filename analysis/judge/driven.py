@@ -26,10 +26,7 @@ _KEY = "driver.cylinder"
 
 
 def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
-    """The task motion as the cylinder of a verdict drives it; None where it cannot.
-
-    On links 3 and 4 it goes through dead positions of link 2.
-    """
+    """The task motion as a cylinder drives it, on links 3 and 4 through dead positions; else None."""
     if verdict.branch_ok:
         return travel(linkage, verdict.theta2, verdict.assembly, motion_ends(task, verdict))
     if verdict.cylinder is None or verdict.cylinder.link == 2:

@@ -12,7 +12,7 @@ from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import FunctionTask, Linkage, ProblemError
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
 _VALLEYS = 5
@@ -98,10 +98,7 @@ class _Search:
         return (1, -1) if self.task.sense == "either" else (1,)
 
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
-        """RMS, or greatest error, for driver angles at the first pair (S,).
-
-        Infinite below the least transmission angle.
-        """
+        """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
         task = self.task
         turned = task.inputs if self.squares else np.linspace(*task.span, samples)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
@@ -216,4 +213,4 @@ def _crest(samples: FloatArray) -> FloatArray:
 def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
     """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
     off: FloatArray = outputs - outputs[..., :1]
-    return off if task.travels else (off + np.pi) % TURN - np.pi
+    return off if task.travels else turned_from(off, 0.0)

@@ -53,10 +53,7 @@ class Area:
 
 
 def depth(area: Area, points: FloatArray) -> FloatArray:
-    """How deep points (..., 2) lie inside an area: the distance (...) to its boundary.
-
-    Less than zero outside, by the distance from the area.
-    """
+    """Depth (...) of points (..., 2): their distance from the boundary, less than zero outside."""
     x, y = points[..., 0], points[..., 1]
     away = area.from_boundary(x + 1j * y)
     return np.where(shapely.contains_xy(area.solid, x, y), away, 0.0 - away)

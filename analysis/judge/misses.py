@@ -10,7 +10,7 @@ from grashof.analysis.curves.coupler_curve import coupler_motion
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, turned_from
 
 _ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
 
@@ -21,7 +21,7 @@ def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray)
     gap = state.p - task.positions
     miss: FloatArray = np.where(task.has_position, gap[..., 0] ** 2 + gap[..., 1] ** 2, 0.0)
     if task.has_angle.any():
-        off = wrapped(state.theta3 - (task.angles - linkage.body_angle))
+        off = turned_from(state.theta3, task.angles - linkage.body_angle)
         miss = miss + np.where(task.has_angle, task.angle_length * off, 0.0) ** 2
     return np.nan_to_num(miss, nan=np.inf, posinf=np.inf)
 
@@ -50,7 +50,7 @@ def squares(
             positive = by_point * (rate.real**2 + rate.imag**2)
             curved = by_point * (bend.conj() * gap).real
             if by_angle.any():
-                off = wrapped(theta - angle)
+                off = turned_from(theta, angle)
                 value, slope = value + by_angle * off**2, slope + by_angle * omega * off
                 positive, curved = positive + by_angle * omega**2, curved + by_angle * alpha * off
             return np.nan_to_num(value, nan=np.inf), 2 * slope, 2 * positive + 2 * curved, 2 * positive
@@ -62,8 +62,3 @@ def as_good(task: Task, totals: FloatArray) -> BoolArray:
     """Which sums of weighted misses are the least but for rounding."""
     good: BoolArray = totals <= totals.min() * (1 + 1e-9) + len(task) * (_ROUNDING * task.size) ** 2
     return good
-
-
-def wrapped(angle: FloatArray) -> FloatArray:
-    """Angles moved by whole turns into [-pi, pi)."""
-    return (angle + np.pi) % TURN - np.pi

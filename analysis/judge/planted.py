@@ -82,10 +82,7 @@ RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
 
 
 def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
-    """Driver angles in order, shape (count,), rad.
-
-    70 to 340 deg in either sense, with gaps that differ by up to 4 : 1.
-    """
+    """Driver angles (count,) in order, over 70 to 340 deg in either sense, with gaps up to 4 : 1."""
     gaps = rng.uniform(1, 4, count - 1)
     spread = rng.choice([-1, 1]) * np.radians(rng.uniform(70, 340))
     steps = np.concatenate([[0.0], np.cumsum(gaps) / gaps.sum()])

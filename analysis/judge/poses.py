@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.judge.assignment import assigned, assigned_around
-from grashof.analysis.judge.misses import as_good, misses, squares, wrapped
+from grashof.analysis.judge.misses import as_good, misses, squares
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
 
 _EXACT = 1e-13  # errors below this share of the size are rounding
 _SAMPLES = 361
@@ -110,7 +110,7 @@ def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:
     if inside.all():
         return theta2
     ends = np.concatenate([low, high])
-    nearest = ends[np.argmin(np.abs(wrapped(theta2[..., None] - ends)), axis=-1)]
+    nearest = ends[np.argmin(np.abs(turned_from(theta2[..., None], ends)), axis=-1)]
     return np.where(inside, theta2, nearest)
 
 

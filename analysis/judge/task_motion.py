@@ -6,11 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from grashof.analysis.judge.misses import wrapped
 from grashof.analysis.mechanism.mobility import range_index, rotatability
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
 
 STEADY = 1e-9  # rad: a driver step so small counts as none
 
@@ -35,7 +34,7 @@ class Targets:
         state = solve_position(linkage, theta2, assembly)
         gap = state.p - task.positions
         distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
-        turned = np.abs(wrapped(state.theta3 + linkage.body_angle - task.angles))
+        turned = np.abs(turned_from(state.theta3 + linkage.body_angle, task.angles))
         return cls(
             theta2,
             assembly,

@@ -18,10 +18,7 @@ _BASINS = 4
 
 
 def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """The least weighted squares over the driver angle at the first target, in either sense.
-
-    None where the linkage cannot be assembled at all targets.
-    """
+    """Least weighted squares over the first driver angle, in either sense; None without an assembly."""
     turns = np.multiply.outer([1.0, -1.0], task.driver_turns)
     own = int(linkage.assembly)
     signs = np.array([own] if same_branch else [own, -own])

@@ -14,11 +14,12 @@ from typing import TypeVar
 import numpy as np
 
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.driver_samples import ground_line
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Manufacturing, Task
-from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, turned_from
 
 AnyKind = TypeVar("AnyKind", bound=Linkage)
 
@@ -136,7 +137,7 @@ def yield_monte_carlo(
         shift = state.p - nominal.p
         moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
         if task.has_angle.any():
-            turned = (state.theta3 - nominal.theta3 + np.pi) % (2 * np.pi) - np.pi
+            turned = turned_from(state.theta3, nominal.theta3)
             moves2 += (task.angle_length * turned) ** 2
         within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
     return within / len(errors)
@@ -177,8 +178,6 @@ def _nearest_to_dead(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArr
 
     There, or at its ends, a linkage of any lengths is nearest to a dead position.
     """
-    start, end = verdict.theta2.min(), verdict.theta2.max()
-    if task.closed:
-        end = start + 2 * np.pi
-    first, last = np.ceil((start - linkage.theta1) / np.pi), np.floor((end - linkage.theta1) / np.pi)
-    return linkage.theta1 + np.pi * np.arange(first, last + 1)[:2]
+    start = float(verdict.theta2.min())
+    end = start + TURN if task.closed else float(verdict.theta2.max())
+    return ground_line(linkage, start, end)[:2]

@@ -191,10 +191,7 @@ class DriverLaw:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyDrivers:
-    """Drivers of a batch, shape (...), each at a steady speed in rad/s from an angle in rad.
-
-    Their places are driver angles.
-    """
+    """Drivers of a batch (...), each steady, from an angle in rad at rad/s; places are driver angles."""
 
     start: FloatArray
     omega2: FloatArray

@@ -170,10 +170,7 @@ def extremes_of(
 def refined(
     curve: Curve, at: FloatArray, values: FloatArray, closed: bool = False, period: float | None = None
 ) -> Extremes:
-    """Least and largest value of a function of one variable, from its samples, shape (N,), unwrapped.
-
-    Otherwise as `extremes_of`.
-    """
+    """Extremes, as of `extremes_of`, from samples (N,) of a curve and its values there, unwrapped."""
     low, at_low = _outermost(curve, at, -values, closed, period, -1.0)
     high, at_high = _outermost(curve, at, values, closed, period, 1.0)
     return Extremes(-low, high, at_low, at_high)

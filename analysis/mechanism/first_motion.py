@@ -44,10 +44,7 @@ class FirstMotion:
     last: float = 1.0
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
-        """Driver angle at a share of the motion, shape (...), rad.
-
-        Beyond 0 and 1, too, where the driver turns fully.
-        """
+        """Driver angle (...) in rad at shares, beyond 0 and 1 where the driver turns fully."""
         t = np.asarray(share, dtype=np.float64)
         if self.way is _Way.PLAIN:
             angle = self.start + (self.end - self.start) * np.sin(np.pi / 2 * t) ** 2

@@ -190,9 +190,9 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
 
 
 def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
-    """The driver range that each angle (rad) lies in, 0 or 1, and the angle moved by whole turns into it.
+    """The driver range that each angle lies in, and the angle (rad) inside it; -1 and NaN outside all.
 
-    -1 and NaN outside all. An angle within `slack` (rad) of an end is inside.
+    Moved by whole turns into it; an angle within `slack` (rad) of an end is inside.
     """
     return _within(driver_ranges(linkage), np.asarray(theta2, dtype=np.float64), slack)
 

@@ -13,7 +13,7 @@ from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
 from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _PANELS = 480
 _TOGETHER = 1e-7  # share of the lengths: what rounding of a first loop's dead position leaves of the width
@@ -168,7 +168,7 @@ def branches(linkage: Linkage) -> Branches:
         if in_second:
             join(*circuits[number])
         if in_first:
-            away = np.abs((ranges[:, end] - ranges[number, end] + np.pi) % TURN - np.pi)
+            away = np.abs(turned_from(ranges[:, end], ranges[number, end]))
             for other in np.flatnonzero(dead[:, end, 0] & (away <= SAME)):
                 for side in (0, 1):
                     join(circuits[number, side], circuits[other, side])

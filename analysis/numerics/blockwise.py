@@ -15,10 +15,7 @@ _BLOCK = 8192
 def in_blocks(
     formula: Callable[..., Sequence[FloatArray]], operands: Sequence[FloatArray], results: int
 ) -> FloatArray:
-    """Results (results, ...) of a formula that works element by element on operands that broadcast.
-
-    On 1e5 numbers three times faster in blocks.
-    """
+    """Results (results, ...) of an elementwise formula, in blocks: three times faster on 1e5 numbers."""
     shape = np.broadcast_shapes(*(operand.shape for operand in operands))
     out = np.empty((results, *shape))
     _fill(formula, operands, out)

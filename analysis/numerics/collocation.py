@@ -27,10 +27,7 @@ _MOST = 10_000  # panels: some five hundred turns
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """A part of a motion: its acceleration as Legendre coefficients (N,) of the time, from -1 to 1.
-
-    `place` and `speed` are those at its start; `start` and `length` are in s.
-    """
+    """From `start` (s) and a place and speed there: Legendre coefficients (N,) of the acceleration."""
 
     start: float
     length: float

@@ -28,11 +28,7 @@ _MOST = 1 << 18  # values of the curve, beyond which it is left as it is
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panels:
-    """Integral over each panel (..., M) between edges (M + 1,) in order.
-
-    `error` is what the sum may be wrong by, from the last change that splitting made; infinite where there is
-    no integral.
-    """
+    """Integrals (..., M) between edges (M + 1,); `error` of their sum, infinite where there is none."""
 
     edges: FloatArray
     parts: FloatArray
@@ -114,10 +110,7 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """M panels, with integrals of the curve and of its magnitude, each (..., M).
-
-    `ends` (..., M, 2) are values at both ends of the polynomial through the nodes.
-    """
+    """M panels: integrals of the curve and its size (..., M), polynomials at both ends (..., M, 2)."""
 
     low: FloatArray
     high: FloatArray

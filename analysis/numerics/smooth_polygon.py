@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, turned_from
 
 _CHORD = 0.01  # share of the curve's extent: no chord is longer
 _TURN = np.radians(4)  # nor turns more against the next
@@ -46,7 +46,7 @@ def _coarse(points: FloatArray) -> npt.NDArray[np.bool_]:
     lengths = np.hypot(*chords.T)
     coarse: npt.NDArray[np.bool_] = lengths > _CHORD * extent
     ways = np.arctan2(chords[:, 1], chords[:, 0])
-    turns = np.abs((np.diff(ways) + np.pi) % (2 * np.pi) - np.pi)
+    turns = np.abs(turned_from(ways[1:], ways[:-1]))
     longer = np.maximum(lengths[1:], lengths[:-1])
     bent = (turns > _TURN) & (longer > _SEEN * extent)
     coarse[1:] |= bent & (lengths[1:] > longer / 2)

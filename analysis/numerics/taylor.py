@@ -49,10 +49,7 @@ def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[Fl
 
 
 class Taylor(NDArrayOperatorsMixin):
-    """A quantity as Taylor coefficients in time, which arithmetic and NumPy's functions take.
-
-    From order 0; those left out are zero.
-    """
+    """Taylor coefficients in time from order 0 (else zero), for arithmetic and NumPy's functions."""
 
     __slots__ = ("terms",)
 
