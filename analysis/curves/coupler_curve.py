@@ -95,7 +95,7 @@ def between(
 
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
-    """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for turns."""
+    """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for a full turn."""
     if whole_turn(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)

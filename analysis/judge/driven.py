@@ -37,7 +37,7 @@ def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | No
 def cylinder_defects(
     spec: CylinderSpec, cylinder: Cylinder | None, moved: Travel | None, size: float
 ) -> Iterator[Defect]:
-    """What a cylinder misses of its limits; None where none was found.
+    """What a cylinder misses of its limits; `cylinder` is None where none was found.
 
     `moved` is None where no motion joins the targets, which another defect reports; `size` is the length of
     the task.

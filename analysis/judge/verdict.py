@@ -130,9 +130,10 @@ class Verdict:
 class Enclosure:
     """What intervals of the driver angle show of a design that the judge accepted.
 
-    `holds` if closure on one branch without a dead position, transmission, order, targets and places there
-    are proven, every rounding enclosed. `transmission` (rad) holds the least min(mu, pi - mu); `intervals` is
-    how many it took, `why` what is not shown; `contradicts` shows the judge wrong, a defect of this program.
+    `holds` if closure over the required motion on one branch without a dead position, transmission, order,
+    targets and places there are proven, every rounding enclosed. `transmission` (rad) holds the least min(mu,
+    pi - mu) over the motion asked for; `intervals` is how many it took, `why` what is not shown, empty where
+    all is; `contradicts` shows the judge wrong, a defect of this program.
     """
 
     holds: bool

@@ -31,7 +31,7 @@ class HostedDyad(NamedTuple):
 
 
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage (its first loop on `assembly`) for `close`: C, D and sizes of each dyad."""
+    """What closes a linkage, its first loop on `assembly`, for `close`: C, D and sizes of each dyad."""
     kind, o2 = linkage.mechanism, linkage.o2
     pinned = "o4" in kind.ground
     rounding = np.abs(o2).sum(axis=-1) + np.abs(linkage.o4).sum(axis=-1) if pinned else _ZERO

@@ -191,7 +191,10 @@ class DriverLaw:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyDrivers:
-    """Drivers of a batch (...), each steady, from an angle in rad at rad/s; places are driver angles."""
+    """Drivers of a batch (...), each steady: `start` in rad, `omega2` in rad/s.
+
+    Their places are driver angles.
+    """
 
     start: FloatArray
     omega2: FloatArray

@@ -110,7 +110,7 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """M panels: integrals of the curve and its size (..., M), polynomials at both ends (..., M, 2)."""
+    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., M, 2)."""
 
     low: FloatArray
     high: FloatArray
