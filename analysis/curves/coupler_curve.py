@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,14 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
+from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, whole_turn
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 PIECES = 180  # of each range of the driver, when points are sought on the curve
-ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
 _FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
 
 
@@ -51,60 +49,17 @@ def coupler_motion(
 def coupler_curve(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """P = x + i y and its first two derivatives by the driver angle.
-
-    Parameters
-    ----------
-    linkage : Linkage
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        The linkage's own by default.
-
-    Returns
-    -------
-    p, rate, bend : ndarray of complex, shape (...)
-        NaN where the linkage cannot close; the derivatives are not finite in a dead position.
-
-    Notes
-    -----
-    The equations of the loop, differentiated once and twice; see `grashof.analysis.mechanism.dyad`.
-    """
+    """P = x + i y (...) and two derivatives by theta2; NaN where open, not finite in dead positions."""
     return coupler_motion(linkage, theta2, assembly)[:3]
-
-
-def squared_distance(
-    linkage: Linkage, points: ComplexArray, assembly: IntArray, weights: FloatArray | float = 1.0
-) -> Callable[[FloatArray], Model]:
-    """Squared distance from each point, weighted, as a function of its driver angle."""
-
-    def model(theta2: FloatArray) -> Model:
-        p, rate, bend = coupler_curve(linkage, theta2, assembly)
-        gap = p - points
-        with np.errstate(invalid="ignore", over="ignore"):
-            value = weights * np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
-            positive = 2 * weights * (rate.real**2 + rate.imag**2)
-            slope = 2 * weights * (rate.conj() * gap).real
-            return value, slope, positive + 2 * weights * (bend.conj() * gap).real, positive
-
-    return model
 
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A motion that the driver can make, cut into pieces on which the curve is nearly straight.
+    """A motion that the driver can make, in M pieces on which the curve is nearly straight.
 
-    Parameters
-    ----------
-    low, high : ndarray, shape (M,), rad
-        Driver angles at the ends of each piece, increasing.
-    start, end : ndarray of complex, shape (S, M)
-        P there, on each assembly.
-    signs : ndarray of int, shape (S,)
-        The assemblies.
-    floor, ceiling : ndarray, shape (M,), rad
-        Ends of the driver's range that each piece lies in; infinite when the driver turns fully.
-    cyclic : bool
-        After the last piece comes the first.
+    Driver angles (M,) in rad and P (S, M) at the ends of each, on the assemblies `signs`. Floor and ceiling
+    are the ends of the range that a piece lies in, infinite where the driver turns fully; if `cyclic`, the
+    first piece follows the last.
     """
 
     low: FloatArray
@@ -118,29 +73,15 @@ class Track:
 
 
 def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
-    """Every motion that the driver can make.
+    """Every motion that the driver of a single linkage can make, in `pieces` a range; empty without any.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    pieces : int
-        Of each range of the driver.
-    same_branch : bool
-        Motions on the linkage's own assembly without a dead position. Otherwise a single one, over
-        all ranges and both assemblies.
-
-    Returns
-    -------
-    list of Track
-        Empty when the linkage cannot be assembled.
+    On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
+    both assemblies.
     """
-    own = int(linkage.assembly)
-    signs = np.array([own] if same_branch else [own, -own])
     if whole_turn(linkage):
-        return [_turn(linkage, pieces, signs)]
-    ends = driver_ranges(linkage)
-    single = [_swing(linkage, low, high, pieces, signs) for low, high in ends if high > low]
+        return [_turn(linkage, pieces, _signs(linkage, same_branch))]
+    ends = [(low, high) for low, high in driver_ranges(linkage).tolist() if high > low]
+    single = [between(linkage, *each, each, pieces, same_branch) for each in ends]
     return single if same_branch or len(single) < 2 else [_joined(single)]
 
 
@@ -148,17 +89,13 @@ def between(
     linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
 ) -> Track:
     """The part from `start` to `end` > `start` of the driver's range with these ends."""
-    own = int(linkage.assembly)
-    signs = np.array([own] if same_branch else [own, -own])
-    nodes = _nodes(linkage, _closer_at_ends(start, end), pieces, signs)
+    signs = _signs(linkage, same_branch)
+    nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, *ends, cyclic=False)
 
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
-    """Ends of the driver's range that holds an angle, counted from it; NaN when none does.
-
-    Infinite for a driver that turns fully.
-    """
+    """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for a full turn."""
     if whole_turn(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)
@@ -170,21 +107,16 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
 
 def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
     # Closer about the ground line: there a linkage near a change point runs away from its driver.
-    half = _closer_at_ends(0.0, np.pi)
+    half = closer_at_ends(0.0, np.pi, _FINE + 1)
     fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
     nodes = _nodes(linkage, fine, pieces, signs)
     nodes[-1] = nodes[0] + TURN
     return _track(linkage, nodes, signs, -np.inf, np.inf, cyclic=True)
 
 
-def _swing(linkage: Linkage, low: float, high: float, pieces: int, signs: IntArray) -> Track:
-    nodes = _nodes(linkage, _closer_at_ends(low, high), pieces, signs)
-    return _track(linkage, nodes, signs, low, high, cyclic=False)
-
-
-def _closer_at_ends(low: float, high: float) -> FloatArray:
-    share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, _FINE + 1))) / 2
-    return low + (high - low) * share
+def _signs(linkage: Linkage, same_branch: bool) -> IntArray:
+    own = int(linkage.assembly)
+    return np.array([own] if same_branch else [own, -own])
 
 
 def _nodes(linkage: Linkage, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:

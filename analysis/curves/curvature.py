@@ -9,7 +9,7 @@ from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.mobility import driver_ranges, full_rotation
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import ProblemError
 
@@ -102,7 +102,7 @@ def cusps(
         angle = angle[(angle >= low - SLACK) & (angle <= high + SLACK)]
         for value in angle[np.abs(coupler_curve(linkage, angle)[1]) <= tolerance * linkage.r2]:
             # The end of a whole turn is its start once more.
-            if not any(abs((value - other + np.pi) % TURN - np.pi) < 2 * SLACK for other in still):
+            if not any(abs(turned_from(value, other)) < 2 * SLACK for other in still):
                 still.append(float(np.clip(value, low, high)))
     return np.sort(still)
 

@@ -140,18 +140,10 @@ def _distances(points: ComplexArray, polygon: ComplexArray) -> FloatArray:
 def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
     """Frechet distance of two closed polygons, over all pairs of points to begin with.
 
-    Parameters
-    ----------
-    to_edge : ndarray, shape (n, m), length
-        Distance of corner i of the first from edge j of the second.
-    from_edge : ndarray, shape (n, m), length
-        Distance of corner j of the second from edge i of the first.
-
-    Notes
-    -----
-    Alt & Godau (1995): where the first walker passes a corner, the second is somewhere on an edge,
-    and the other way round; between two such moments the leash is longest at either. What is left
-    out is that a walker may not go back inside an edge, which is of the order of their sagitta.
+    `to_edge` (n, m) is from corner i of the first to edge j of the second, `from_edge` from corner j of the
+    second to edge i of the first. Alt & Godau (1995): where one walker passes a corner, the other is on an
+    edge, and there the leash is longest. That a walker may not go back inside an edge is left out: of the
+    order of their sagitta.
     """
     # All walks pass every corner of the first: begin at the one that is near the fewest edges.
     limit = _leash(to_edge, from_edge, np.array([np.argmin(to_edge[0])]))
@@ -162,11 +154,7 @@ def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
 
 
 def _leash(to_edge: FloatArray, from_edge: FloatArray, begin: IntArray) -> float:
-    """Least leash for the walks that begin at corner 0 of the first and the given edges of the second.
-
-    Dynamic programming over pairs of edges (i, s + j), all those with the same i + j at once, for
-    all beginnings s.
-    """
+    """Least leash of walks from corner 0 and given edges: dynamic programming over pairs of edges."""
     n, m = to_edge.shape
     row = np.arange(n + 1)
     column = (np.arange(n + 2 * m + 1)[:, None] - row) % m

@@ -98,18 +98,9 @@ def dwell(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Samples:
-    """A quantity at driver angles between any two of which it rises or falls all the way.
+    """A quantity (N,), unwrapped, at driver angles between which it rises or falls all the way.
 
-    Parameters
-    ----------
-    curve : callable
-        From driver angles to the quantity.
-    period : float, optional
-        By which it may jump.
-    at, values : ndarray, shape (N,)
-        Driver angles, twice round where the driver turns fully, and the quantity, unwrapped.
-    starts : int
-        So many of them in the first turn; all where there is no other.
+    They go twice round where the driver turns fully; `starts` of them are in the first turn.
     """
 
     curve: Curve

@@ -111,19 +111,9 @@ def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
 class _Fits:
     """Lines fitted to K parts of a path, each from one share of the motion to another.
 
-    Parameters
-    ----------
-    first, last : ndarray, shape (K,)
-        Shares of the motion at the ends of each part.
-    length : ndarray, shape (K,)
-        Of the path.
-    centre, along : ndarray of complex, shape (K,)
-        A point of each line, and its direction.
-    spread : ndarray, shape (3, K)
-        Mean of x^2, x y and y^2 about the centre.
-    reach, where : ndarray, shape (4, K)
-        Furthest that the path goes along the line, back, to its left and to its right, and at which share
-        of the part.
+    `centre` and `along` are a point of each line and its direction, `spread` (3, K) the mean of x^2, x y and
+    y^2 about it. `reach` (4, K) is how far the path goes along the line, back, to its left and to its right,
+    `where` at which share of the part.
     """
 
     first: FloatArray
@@ -231,8 +221,7 @@ class _Path:
     def slope(self, fits: _Fits) -> FloatArray:
         """Derivative of the ratio of half turns by the driver angle at which they begin, shape (K,).
 
-        The furthest points change what they measure with the line alone; at an end of the part with
-        the end, too.
+        Furthest points change what they measure with the line alone; at an end of the part with the end, too.
         """
         ends = self.motion.theta2(np.stack([fits.first, fits.last]))
         p, rate, _ = coupler_curve(self.linkage, ends)

@@ -113,13 +113,7 @@ _CLOSURES = {
 
 
 def closure_of(linkage: Linkage) -> Closure:
-    """How the dyad of a linkage closes.
-
-    Raises
-    ------
-    ProblemError
-        A linkage of two loops: intervals are known of one.
-    """
+    """How the dyad of a linkage closes; ProblemError for two loops: intervals are known of one."""
     kind = linkage.mechanism
     if len(kind.dyads) > 1:
         raise ProblemError(f"a {kind.word} has two loops; it cannot be proven by intervals")

@@ -21,14 +21,7 @@ TRIGONOMETRY = 8 * EPS  # absolute error of a computed sine or cosine, and a mar
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """Numbers from `lo` to `hi`, arrays of the same shape; what is undefined is the whole line.
-
-    Examples
-    --------
-    >>> third = Interval.of(np.array(1.0)) / Interval.of(np.array(3.0))
-    >>> bool(third.lo < 1 / 3 < third.hi), bool(third.hi - third.lo < 1e-15)
-    (True, True)
-    """
+    """Numbers from `lo` to `hi`, arrays of the same shape; what is undefined is the whole line."""
 
     lo: FloatArray
     hi: FloatArray
@@ -104,17 +97,10 @@ Number: TypeAlias = "Centred | Interval | FloatArray | float"
 
 @dataclass(frozen=True, slots=True)
 class Centred:
-    """A function over driver angles as far as `half` from a middle: mean-value form, of second order.
+    """A function over driver angles as far as `half` (rad) from a middle: mean-value form, of second order.
 
-    Parameters
-    ----------
-    mid : Interval
-        Its value in the middle.
-    over : Interval
-        All its values: those of interval arithmetic that lie in mid + slope [-half, half], too.
-    slope : Interval
-        All values of its derivative by the driver angle.
-    half : ndarray, rad
+    `over` are all its values (those in mid + slope [-half, half], too) and `slope` all those of its
+    derivative.
     """
 
     mid: Interval

@@ -71,25 +71,11 @@ class Least:
 def least_transmission(
     linkages: Linkage, start: FloatArray, end: FloatArray, required: FloatArray | None = None
 ) -> Least:
-    """Enclose the least transmission angle over ranges of the driver.
+    """Enclose the least transmission angle of linkages (R,) over driver ranges in rad, in either order.
 
-    Parameters
-    ----------
-    linkages : Linkage
-        A batch, shape (R,).
-    start, end : ndarray, shape (R,), rad
-        Driver angles in either order.
-    required : ndarray, shape (R,), rad, optional
-        What it is compared with, so that it is known nearer about there. NaN where closure alone is asked
-        for: then `lo` is any positive bound.
+    It is known nearer about `required` (rad); where that is NaN closure alone counts and `lo` is any positive
+    bound. Where `lo` is positive the loop closes all over the range, without a dead position.
 
-    Returns
-    -------
-    Least
-        Where `lo` is positive the loop closes all over the range, without a dead position.
-
-    Examples
-    --------
     >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=[(0, 0)], o4=(100, 0), r2=40, r3=120, r4=80)
     >>> least = least_transmission(norton, np.array([0.0]), np.array([6.3]))

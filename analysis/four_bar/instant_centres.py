@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.loads import cross
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -88,11 +89,6 @@ def instant_centres(
 def _meeting(first: FloatArray, along: FloatArray, second: FloatArray, beside: FloatArray) -> FloatArray:
     """Where two lines meet, each given by a point and a direction."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = _cross(second - first, beside) / _cross(along, beside)
+        share = cross(second - first, beside) / cross(along, beside)
         meeting: FloatArray = first + share[..., None] * along
     return meeting
-
-
-def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
-    cross: FloatArray = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    return cross

@@ -14,7 +14,7 @@ from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import FourBar, ProblemError
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 from grashof.problems.values.dynamics.pumping_unit import CRANK, PumpingUnitSpec
 
 _ROCKS = 1e-9  # rad: a beam that rocks by less stands still
@@ -141,7 +141,7 @@ def rod_motion(
     limits = beam_limits(linkage) if limits is None else limits
     theta2 = driver_angle(crank, unit)
     theta4, middle = solve_position(linkage, theta2).theta4, limits.mean()
-    beyond = (theta4 - middle + np.pi) % TURN - np.pi
+    beyond = turned_from(theta4, middle)
     ratio = advantage(linkage, theta2).velocity_ratio
     return RodMotion(
         position=np.asarray(0.5 + unit.side * beyond / np.ptp(limits))[()],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,19 +19,10 @@ _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same 
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """Driver angles near the best, not going back.
+    """Driver angles near the best, not going back, with their bounds, (N,) in rad, and assemblies.
 
-    Parameters
-    ----------
-    theta2, floor, ceiling : ndarray, shape (N,), rad
-        Driver angles and their bounds.
-    assembly : ndarray of int, shape (N,)
-    distance : float, length
-        Root of the weighted sum of squared distances there, from straight pieces.
-    slack : float, length
-        By how much that may be wrong.
-    crowded : bool
-        Targets on one piece stand in the wrong order there: `distance` is too small.
+    `distance` is the root of the weighted squares from straight pieces, wrong by at most `slack`, and too
+    small where targets are `crowded`: in the wrong order on a piece.
     """
 
     theta2: FloatArray
@@ -46,27 +37,10 @@ class Guess:
 def ordered_guesses(
     track: Track, targets: ComplexArray, weights: FloatArray, *, middles: bool = False
 ) -> list[Guess]:
-    """The best assignments of targets to pieces of a track that never go back, within one turn.
+    """Assignments of targets (N,) to pieces that do not go back within one turn, the best first.
 
-    Parameters
-    ----------
-    track : Track
-    targets : ndarray of complex, shape (N,)
-        In the order in which growing driver angles meet them.
-    weights : ndarray, shape (N,)
-        Of the squared distances.
-    middles : bool
-        Measure the distance of a target from the middle of a piece. Otherwise from the piece taken
-        as straight, which is closer, but allows targets on one piece to stand in any order.
-
-    Returns
-    -------
-    list of Guess
-        The best first.
-
-    Notes
-    -----
-    Dynamic programming over target and piece.
+    By dynamic programming; with `middles` distances are from the middle of a piece, otherwise from its chord,
+    which is closer but allows targets on one piece to stand in any order.
     """
     squared, share, side = _distances(track, targets, middles)
     squared = weights[:, None] * squared
@@ -90,15 +64,9 @@ def _alike(one: Guess, other: Guess) -> bool:
 def nearest_guess(
     track: Track, targets: ComplexArray, valleys: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
-    """Driver angles in the nearest valleys of each target by itself.
-
-    Returns
-    -------
-    theta2, floor, ceiling, assembly : ndarray, shape (valleys, N)
-    """
+    """Driver angles in the nearest valleys of each target, bounds and assemblies, each (valleys, N)."""
     by_sign = [_distances(_on(track, sign), targets)[:2] for sign in range(len(track.signs))]
-    squared = np.stack([squared for squared, _ in by_sign])
-    share = np.stack([share for _, share in by_sign])
+    squared, share = (np.stack(each) for each in zip(*by_sign, strict=True))
     if track.cyclic:
         before, after = np.roll(squared, 1, axis=2), np.roll(squared, -1, axis=2)
     else:
@@ -116,10 +84,7 @@ def nearest_guess(
 
 def _on(track: Track, sign: int) -> Track:
     one = slice(sign, sign + 1)
-    return Track(
-        track.low, track.high, track.start[one], track.end[one], track.signs[one],
-        track.floor, track.ceiling, track.cyclic,
-    )  # fmt: skip
+    return replace(track, start=track.start[one], end=track.end[one], signs=track.signs[one])
 
 
 def _distances(
@@ -136,12 +101,8 @@ def _distances(
     if len(track.signs) == 1:
         return squared[:, 0], share[:, 0], np.zeros(squared[:, 0].shape, dtype=np.int64)
     side = np.argmin(squared, axis=1)
-    taken = side[:, None]
-    return (
-        np.take_along_axis(squared, taken, axis=1)[:, 0],
-        np.take_along_axis(share, taken, axis=1)[:, 0],
-        side,
-    )
+    squared, share = (np.take_along_axis(each, side[:, None], axis=1)[:, 0] for each in (squared, share))
+    return squared, share, side
 
 
 def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
@@ -183,19 +144,7 @@ def _least_costs_of_many(around: FloatArray, cuts: IntArray, length: int) -> Flo
 
 
 def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
-    """The pieces of the least sums over pieces that never go back.
-
-    Parameters
-    ----------
-    windows : ndarray, shape (N, L, C)
-        What N targets cost on L pieces, C times.
-
-    Returns
-    -------
-    ndarray of int, shape (N, C)
-    ndarray, shape (C,)
-        The sums.
-    """
+    """Pieces (N, C), never going back, and least sums (C,) of costs (N, L, C) of N targets on L pieces."""
     totals = np.empty(windows.shape)
     totals[0] = windows[0]
     for index, squared in enumerate(windows[1:], start=1):
@@ -210,26 +159,11 @@ def assigned(windows: FloatArray) -> tuple[IntArray, FloatArray]:
 
 
 def assigned_around(squared: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
-    """The best assignments of targets to pieces of a turn, counted from where it is cut open.
+    """The best assignments of N targets to the M pieces of a turn, which is cut open somewhere.
 
-    Parameters
-    ----------
-    squared : ndarray, shape (N, M)
-        What N targets cost on M pieces of a turn.
-
-    Returns
-    -------
-    ndarray of int, shape (N, C)
-        Pieces, counted from the cut on: up to M, which is the first one again.
-    ndarray, shape (C,)
-        The sums, the least first.
-    ndarray of int, shape (C,)
-        The pieces that begin at the cuts.
-
-    Notes
-    -----
-    A turn is cut open first at every few pieces, all cuts at once, and then at every piece about the
-    best of them.
+    Pieces (N, C), counted from the cut on up to M, which is the first one again; their sums (C,), the least
+    first; and the cuts (C,). A turn is cut first at every few pieces, all at once, then at every piece about
+    the best.
     """
     count = squared.shape[1]
     # One piece more than the turn has: the last target may repeat the first.

@@ -92,21 +92,7 @@ OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 @one_at_a_time
 def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:
-    """The greatest of the values of a constraint, or objective, on the numbers of a design; NaN when one is.
-
-    Raises
-    ------
-    ProblemError
-        The values are not numbers.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3, coupler_point=(2, 1))
-    >>> design = Design.of(linkage, np.array([0.3]), np.array([1]))
-    >>> greatest(lambda design: (design.o2[1] - design.o4[1]) ** 2 - 0.01, design)
-    0.99
-    """
+    """Greatest value of a constraint or objective; NaN when one is, ProblemError where not numbers."""
     with np.errstate(all="ignore"):  # where it has no value it is missed; no news to be warned of
         values = constraint(design)
     try:

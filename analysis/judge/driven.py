@@ -26,10 +26,7 @@ _KEY = "driver.cylinder"
 
 
 def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
-    """The task motion as the cylinder of a verdict drives it; None where it cannot.
-
-    On links 3 and 4 it goes through dead positions of link 2.
-    """
+    """The task motion as a cylinder drives it, on links 3 and 4 through dead positions; else None."""
     if verdict.branch_ok:
         return travel(linkage, verdict.theta2, verdict.assembly, motion_ends(task, verdict))
     if verdict.cylinder is None or verdict.cylinder.link == 2:
@@ -40,17 +37,10 @@ def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | No
 def cylinder_defects(
     spec: CylinderSpec, cylinder: Cylinder | None, moved: Travel | None, size: float
 ) -> Iterator[Defect]:
-    """What a cylinder misses of its limits.
+    """What a cylinder misses of its limits; `cylinder` is None where none was found.
 
-    Parameters
-    ----------
-    spec : CylinderSpec
-    cylinder : Cylinder, optional
-        None where none was found.
-    moved : Travel, optional
-        None where no motion joins the targets, which another defect reports.
-    size : float, length
-        Of the task.
+    `moved` is None where no motion joins the targets, which another defect reports; `size` is the length of
+    the task.
     """
     if cylinder is None:
         yield Defect(_KEY, "the number of cylinders that drive the linkage within these limits", 0, "1", 1.0)
@@ -90,10 +80,10 @@ def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigure
 
 
 def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
-    """Greatest magnitude of the cylinder's force over the task motion, N.
+    """Greatest magnitude of the cylinder's force over the task motion, N; infinite where the length stands.
 
-    NaN without dynamics, where the motion leads through a dead position of link 2, whose speed the problem
-    states, or beyond the rows of a load; infinite where the length stands.
+    NaN without dynamics, through a dead position of link 2 (whose speed the problem states), or beyond the
+    rows of a load.
     """
     if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
         return np.nan

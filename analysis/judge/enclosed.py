@@ -57,37 +57,12 @@ def find_enclosures(designs: Sequence[Values]) -> tuple[Enclosure, ...]:
 def enclose(
     linkages: Sequence[Linkage], task: Task, requirements: Requirements, verdicts: Sequence[Verdict]
 ) -> tuple[Enclosure, ...]:
-    """Verify designs by intervals, those of a kind in one batch.
+    """Verify designs without defects by intervals about the verdicts' driver angles, a kind in one batch.
 
-    Parameters
-    ----------
-    linkages : sequence of Linkage
-        Single linkages, of any kinds.
-    task : Task
-    requirements : Requirements
-    verdicts : sequence of Verdict
-        Of `verify` on each, without defects: its driver angles at the targets are what is proven to do.
-
-    Returns
-    -------
-    tuple of Enclosure
-
-    Notes
-    -----
-    Each quantity is a function of the driver angle in mean-value form: its value in the middle of an interval
-    and an enclosure of its derivative over it (Moore, Kearfott & Cloud, *Introduction to Interval Analysis*,
-    ch. 6). Bounds are moved outward as `grashof.analysis.enclosure.interval` states; limits have the slack
-    that the judge grants. The driver angles and dimensions are the doubles listed. Left to the judge:
-    outputs of functions, strokes, areas kept out, and all that does not depend on the driver angle.
-
-    Examples
-    --------
-    >>> from grashof.analysis import verify
-    >>> from grashof.analysis.judge.planted import planted_motion
-    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
-    >>> shown = enclose([linkage], task, Requirements(), [verify(linkage, task, Requirements())])
-    >>> shown[0].holds, shown[0].why
-    (True, '')
+    Quantities are mean-value forms over an interval of the driver angle (Moore, Kearfott & Cloud,
+    *Introduction to Interval Analysis*, ch. 6), rounded outward; limits have the slack that the judge grants,
+    and driver angles and dimensions are the doubles listed. Left to the judge: outputs of functions, strokes,
+    areas kept out, and all that does not depend on the driver angle.
     """
     task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)

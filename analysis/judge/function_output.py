@@ -20,20 +20,11 @@ _GAUSS = 12  # points between two samples of the quadrature
 
 @dataclass(frozen=True, slots=True)
 class StructuralError:
-    """Output less what is wanted, over the whole range.
+    """Output less what is wanted, in rad or length.
 
-    Parameters
-    ----------
-    at_pairs : ndarray, shape (N,), rad or length
-        With its sign.
-    max, rms : float, rad or length
-        Greatest magnitude, and root mean square over the driver angle.
-    at : float, rad
-        Driver rotation from the first pair to the greatest.
-    zero : float, rad or length
-        Direction theta4, or travel of the slide, that the wanted output zero stands for.
-    sense : int
-        +1 where the output moves as wanted, -1 where it is the opposite.
+    With its sign at each pair (N,), its greatest magnitude and root mean square over the range, and at which
+    driver rotation (rad) it is greatest. `zero` is theta4 or the travel for which the wanted output 0 stands,
+    `sense` -1 where the output is the opposite of what is wanted.
     """
 
     at_pairs: FloatArray
@@ -49,8 +40,7 @@ def output_error(
 ) -> FloatArray:
     """Output less what is wanted but for a constant, at growing driver rotations (K,), rad or length.
 
-    NaN where the linkage cannot be assembled. A rotation is positive where the output is ahead in the sense
-    of the driver.
+    Positive where the output is ahead in the sense of the driver; NaN where the linkage cannot be assembled.
     """
     state = solve_position(linkage, begun.theta2 + begun.direction * turned)
     found: FloatArray = moved_output(task, state, begun.direction) - sense * task.output(turned)
@@ -60,37 +50,11 @@ def output_error(
 def structural_error(
     linkage: Linkage, task: FunctionTask, begun: Beginning, exact: bool
 ) -> StructuralError | None:
-    """The structural error of a linkage over the whole range, its extremes refined.
+    """The structural error over the whole range; None where the linkage cannot be assembled all over it.
 
-    Parameters
-    ----------
-    linkage : Linkage
-    task : FunctionTask
-    begun : Beginning
-        Of `begins`.
-    exact : bool
-        Pairs are to be met: the output's zero is that of the pairs, whatever the norm.
-
-    Returns
-    -------
-    StructuralError, or None where the linkage cannot be assembled all over the range.
-
-    Notes
-    -----
-    The output's zero is the mean of the errors at the pairs, or, where the greatest error is what
-    counts, the middle of the extreme errors. The mean square is a Gauss-Legendre sum between the
-    samples and pairs.
-
-    Examples
-    --------
-    Half of the output of a parallelogram, wanted as a rotation by 1 rad with 1 rad:
-
-    >>> from grashof.problems import FourBar
-    >>> parallelogram = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1, assembly=1)
-    >>> task = FunctionTask([0, 0.5, 1], [0, 0.25, 0.5])
-    >>> found = structural_error(parallelogram, task, Beginning(0.5, 1), exact=False)
-    >>> round(found.max, 9), round(found.rms * 12**0.5 * 2, 9)
-    (0.25, 1.0)
+    Extremes are refined, the mean square is a Gauss-Legendre sum between samples and pairs. The output's zero
+    is the mean of the errors at the pairs, or the middle of the extremes where the greatest counts and pairs
+    need not be met.
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
@@ -136,10 +100,7 @@ def _near(errors: FloatArray, turned: FloatArray, dense: FloatArray, off: FloatA
 def met_as_function(
     linkage: Linkage, task: FunctionTask, wanted: Requirements
 ) -> tuple[Targets, TaskMotion, StructuralError | None]:
-    """Driver angle and error at each pair, the motion over the range, and the structural error.
-
-    None where the linkage cannot be assembled all over the range.
-    """
+    """Driver angle and error at each pair, the motion, and the structural error, or None without one."""
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))

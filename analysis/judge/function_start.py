@@ -12,7 +12,7 @@ from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import FunctionTask, Linkage, ProblemError
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
 _VALLEYS = 5
@@ -26,15 +26,7 @@ _ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """Where the driver of a function generator begins.
-
-    Parameters
-    ----------
-    theta2 : float, rad
-        Driver angle at the first pair.
-    direction : int
-        Sense of the driver.
-    """
+    """Driver angle at the first pair of a function, in rad, and the sense of the driver."""
 
     theta2: float
     direction: int
@@ -63,39 +55,11 @@ def begins(
     directions: tuple[int, ...] = (1, -1),
     transmission: float = 0.0,
 ) -> Beginning | None:
-    """Where the driver of a single linkage begins so that it errs least.
+    """Where the driver begins so that a single linkage errs least; None where it covers no such range.
 
-    Parameters
-    ----------
-    linkage : Linkage
-    task : FunctionTask
-    exact : bool
-        Every pair is to be met: the errors at the pairs decide, whatever the norm.
-    theta2_start : float, rad, optional
-        Driver angle at the first pair, where it is given.
-    directions : tuple of int
-        Senses in which the driver may turn.
-    transmission : float, rad
-        Least min(mu, pi - mu) from the start on, unless the driver angle at the first pair is given.
-
-    Returns
-    -------
-    Beginning, or None where the linkage covers the range from no angle.
-
-    Raises
-    ------
-    ProblemError
-        A linkage whose output does not move as the task's does.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    >>> theta4 = solve_position(linkage, 0.7 + np.array([0, 0.4, 0.9, 1.5, 2.0])).theta4
-    >>> task = FunctionTask([0, 0.4, 0.9, 1.5, 2.0], theta4 - theta4[0])
-    >>> begun = begins(linkage, task, True, None)
-    >>> round(begun.theta2, 9), begun.direction
-    (0.7, 1)
+    The errors at the pairs count if `exact`; from there on the transmission angle is at least `transmission`
+    (rad), unless the start is given. ProblemError for a linkage whose output does not move as the task's
+    does.
     """
     if task.travels == hasattr(linkage, "o4"):
         way = "slides" if task.travels else "turns"
@@ -134,10 +98,7 @@ class _Search:
         return (1, -1) if self.task.sense == "either" else (1,)
 
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
-        """Root mean square, or greatest error, for driver angles at the first pair, shape (S,).
-
-        Infinite where the motion misses the least transmission angle.
-        """
+        """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
         task = self.task
         turned = task.inputs if self.squares else np.linspace(*task.span, samples)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
@@ -252,4 +213,4 @@ def _crest(samples: FloatArray) -> FloatArray:
 def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
     """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
     off: FloatArray = outputs - outputs[..., :1]
-    return off if task.travels else (off + np.pi) % TURN - np.pi
+    return off if task.travels else turned_from(off, 0.0)

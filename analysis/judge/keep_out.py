@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid
@@ -52,55 +53,17 @@ class Area:
 
 
 def depth(area: Area, points: FloatArray) -> FloatArray:
-    """How deep points lie inside an area: the distance to its boundary.
-
-    Parameters
-    ----------
-    area : Area
-    points : ndarray, shape (..., 2), length
-
-    Returns
-    -------
-    ndarray, shape (...), length
-        Less than zero outside, by the distance from the area.
-
-    Examples
-    --------
-    >>> square = Area.of([np.array([[0, 0], [4, 0], [4, 4], [0, 4]])])
-    >>> depth(square, np.array([[1.0, 2.0], [4.0, 1.0], [7.0, 8.0]])).tolist()
-    [1.0, 0.0, -5.0]
-    """
+    """Depth (...) of points (..., 2): their distance from the boundary, less than zero outside."""
     x, y = points[..., 0], points[..., 1]
     away = area.from_boundary(x + 1j * y)
     return np.where(shapely.contains_xy(area.solid, x, y), away, 0.0 - away)
 
 
 def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 18) -> FloatArray:
-    """How deep the deepest point of each segment lies inside an area, as `depth` gives it.
+    """How deep the deepest point of each segment (n, 2) lies inside an area, as `depth` gives it.
 
-    Parameters
-    ----------
-    area : Area
-    begin, end : ndarray, shape (n, 2), length
-    rounds : int
-        Of refinement along the part inside, each three times as close.
-
-    Returns
-    -------
-    ndarray, shape (n,), length
-        Less than zero where the whole segment lies outside, by its distance from the area.
-
-    Notes
-    -----
-    The part inside is cut out exactly, so that no shallow corner is overlooked; how deep it lies is
-    sampled along it and refined about the deepest sample.
-
-    Examples
-    --------
-    >>> square = Area.of([np.array([[0, 0], [4, 0], [4, 4], [0, 4]])])
-    >>> ends = np.array([[-1.0, 3.0], [0.0, 4.0]]), np.array([[5.0, 3.0], [9.0, 4.0]])
-    >>> segment_depth(square, *ends).round(9).tolist()
-    [1.0, 0.0]
+    The part inside is cut out exactly, so that no shallow corner is overlooked, and sampled, in each of
+    `rounds` three times as close about the deepest.
     """
     deepest: FloatArray = np.maximum(depth(area, begin), depth(area, end))
     long = np.flatnonzero((begin != end).any(axis=1))
@@ -124,29 +87,11 @@ def intrusions(
     *,
     joined: bool,
 ) -> dict[str, float]:
-    """How deep the parts of a linkage that shall keep out reach into the areas kept out.
+    """The greatest depth (length) of each part that reaches into an area kept out, as "O2" or "link AB".
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : MotionTask or PathTask
-    wanted : Requirements
-    targets : Targets
-    motion : TaskMotion
-    joined : bool
-        A motion joins the targets: it is judged as a whole, otherwise the targets alone.
-
-    Returns
-    -------
-    dict of str to float, length
-        The greatest depth of each part that lies inside, such as "O2" or "link AB".
-
-    Notes
-    -----
-    The motion is sampled, closer towards its ends, where near a dead position the linkage runs away
-    from the driver; ever closer samples follow the deepest ones, also where none of the first lies
-    inside.
+    Over the whole motion, or at the targets alone where none joins them. Samples are closer towards its ends,
+    where near a dead position the linkage runs away from the driver, and ever closer about the deepest, also
+    where none of the first lies inside.
     """
     area, deepest = Area.of(wanted.keep_out), dict[str, float]()
     parts: dict[str, tuple[str, ...]] = {}
@@ -234,8 +179,7 @@ def _body_depth(
 
 def _deepest_over(at: Callable[[FloatArray, int], FloatArray], start: float, end: float) -> float:
     """Greatest depth between two driver angles."""
-    towards_end = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    angle = start + (end - start) * towards_end
+    angle = closer_at_ends(start, end, _SAMPLES)
     found = at(angle, _ROUGH)
     around = np.pad(found, 1, constant_values=-np.inf)
     step = np.abs(np.diff(found[np.isfinite(found)])).max(initial=0.0)

@@ -17,29 +17,10 @@ _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
 def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple[Targets, TaskMotion]:
-    """The limit positions of a linkage on its own assembly, and the slow stroke from one to the other.
+    """The limit positions of a linkage on its own assembly, and the slow stroke between them.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : StrokeTask
-    wanted : Requirements
-        The driver turns clockwise where its sense has to be; otherwise counter-clockwise, as
-        either sense has the same swing and time ratio.
-
-    Returns
-    -------
-    Targets, TaskMotion
-        A whole turn apart where there are no limit positions.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
-    >>> task = StrokeTask.from_degrees(swing_deg=73.7818, time_ratio=1.355573)
-    >>> np.degrees(at_limits(norton, task, Requirements())[1].theta2).round(2).tolist()
-    [24.15, 231.32]
+    A whole turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
+    swing and time ratio.
     """
     sense = -1 if wanted.driver_sense == "cw" else 1
     stretched, folded = np.nan_to_num(output_stroke(linkage).theta2, nan=0.0).tolist()
@@ -52,10 +33,7 @@ def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple
 
 
 def stroke_defects(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
-    """What swing, or stroke, and time ratio miss, by the linkage's own motion.
-
-    The swing may differ by `tolerance` in rad, stroke and time ratio by that share of them.
-    """
+    """What swing (by `tolerance` in rad), stroke and time ratio (by that share of them) miss."""
     found = output_stroke(linkage)
     ratio = float(found.time_ratio)
     if task.stroke is None:

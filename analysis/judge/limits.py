@@ -19,20 +19,9 @@ _OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 
 
 def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
-    """A defect for every limit that a design misses, in the order of the fields.
+    """A defect for every limit of resolved requirements missed, in order of fields.
 
-    Of a place at several targets, the worst on either side.
-
-    Parameters
-    ----------
-    values : Values
-    wanted : Requirements
-        Resolved.
-
-    Raises
-    ------
-    ProblemError
-        A quantity is limited that needs more than the problem states.
+    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
     """
     limited = wanted.limited
     verdict = values.verdict  # another defect reports that no motion joins the targets

@@ -27,19 +27,10 @@ from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL
 
 
 class Values(Mapping[str, float]):
-    """The values of a design by the keys of their quantities, each measured when it is asked for.
+    """The values of a design by the keys of their quantities, each measured when asked for.
 
-    In rad, N, N m and the problem's unit of length; NaN where the problem does not state what a quantity
-    needs, or the linkage has no such value.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    verdict : Verdict
-        Of `verify`.
-    problem : Problem
-        Its task, and what else it states: dynamics, manufacturing.
+    In rad, N, N m and the problem's unit of length. NaN where the problem does not state what one needs, or
+    the linkage has no such value.
     """
 
     def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:

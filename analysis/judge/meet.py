@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.judge.limit_positions import at_limits
-from grashof.analysis.judge.nearest_points import met_singly
-from grashof.analysis.judge.nearest_poses import nearest_to_poses
-from grashof.analysis.judge.points_in_order import met_in_order
-from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.analysis.judge.points import met_in_order, met_singly
+from grashof.analysis.judge.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.timed_targets import met_in_time
 from grashof.analysis.mechanism.mobility import branch_index
@@ -17,34 +15,11 @@ from grashof.problems.values.arrays import TURN
 
 
 def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
-    """Driver angle, assembly and error at each target, and the motion between them, from the linkage alone.
+    """Driver angle, assembly and error at each target, and the motion, of the least weighted squares.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    task : Task
-    wanted : Requirements
-        With `order` free targets are met in sequence, in either sense of the driver, within one turn;
-        otherwise each by itself as near as possible. With `same_branch` points stay on the linkage's
-        own assembly, within one range of the driver. Points and timed targets are met from the
-        driver angle `theta2_start_deg` on, where it is given.
-
-    Returns
-    -------
-    Targets, TaskMotion
-        Of the least weighted squares of distances and angles; of equal ones the shortest motion.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> from grashof.analysis import solve_position
-    >>> from grashof.problems import PathTask
-    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
-    >>> task = PathTask(solve_position(crank_rocker, [0.3, 0.2, 6.0]).p)
-    >>> targets, motion = meet(crank_rocker, task, Requirements())
-    >>> motion.theta2.round(6).tolist(), motion.direction, bool(targets.position_error.max() < 1e-13)
-    ([0.3, 0.2, -0.283185], -1, True)
+    With `order` in sequence in either sense within one turn, otherwise each by itself; with `same_branch`
+    points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
+    begin at `theta2_start_deg`, where it is given.
     """
     if isinstance(task, StrokeTask):
         targets, motion = at_limits(linkage, task, wanted)

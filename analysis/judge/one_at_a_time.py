@@ -16,11 +16,10 @@ _LOCK = RLock()
 
 
 def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
-    """A function that uses CasADi, or may as users' own do, entered by one thread at a time.
+    """A function that may use CasADi, entered by one thread at a time: two in one solver crash.
 
-    CasADi lets other threads run while it works: two of them in one solver crash the interpreter.
-    Processes are what makes a search faster. What the function gives must not hold anything of CasADi;
-    an error that leaves it does not keep its symbols, whose end would be out of the lock.
+    What it gives must not hold anything of CasADi; an error that leaves it does not keep its symbols, whose
+    end would be out of the lock.
     """
 
     @wraps(function)
@@ -29,18 +28,16 @@ def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
             handled = sys.exception()
             try:
                 return function(*args, **kwargs)
-            except BaseException as error:
-                _let_go(error, handled)
-                raise
+            finally:
+                _let_go(sys.exception(), handled)
 
     return alone
 
 
-def _let_go(error: BaseException, handled: BaseException | None) -> None:
+def _let_go(error: BaseException | None, handled: BaseException | None) -> None:
     """Clear the variables of what an error came through, and those it arose from since one was handled."""
-    arose: BaseException | None = error
     seen = {id(handled)}
-    while arose is not None and id(arose) not in seen:
-        seen.add(id(arose))
-        clear_frames(arose.__traceback__)
-        arose = arose.__cause__ or arose.__context__
+    while error is not None and id(error) not in seen:
+        seen.add(id(error))
+        clear_frames(error.__traceback__)
+        error = error.__cause__ or error.__context__

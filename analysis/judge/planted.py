@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis.mechanism.mobility import rotatability
-from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import (
     FourBar,
@@ -27,33 +27,25 @@ _LEAST_MARGIN = 0.002  # of full rotation, of planted functions
 def random_full_crank(rng: np.random.Generator) -> FourBar:
     """A random four-bar whose driver turns fully.
 
-    Lengths are log-uniform in 0.15 to 1 times a scale that is itself log-uniform in 1/e to e^2;
-    the coupler point is normal about A with 0.7 of the scale; position and direction are random.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    FourBar
+    Lengths are log-uniform in 0.15 to 1 of a scale log-uniform in 1/e to e^2, the coupler point normal about
+    A with 0.7 of it.
     """
     scale = np.exp(rng.uniform(-1, 2))
     while True:
         r1, r2, r3, r4 = scale * np.exp(rng.uniform(np.log(0.15), 0, 4))
         if r1 + r2 < r3 + r4 and abs(r1 - r2) > abs(r3 - r4):
             break
-    o2, theta1 = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
-    return FourBar(
-        o2=o2,
-        o4=o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)]),
-        r2=r2,
-        r3=r3,
-        r4=r4,
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, theta1, others = _placed(rng, scale)
+    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
+    return FourBar(o2, o4, r2, r3, r4, **others)
+
+
+def _placed(rng: np.random.Generator, scale: float) -> tuple[FloatArray, float, dict[str, Any]]:
+    """O2, the direction of the ground line or slide, and what all kinds have besides."""
+    o2, direction = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
+    coupler_point, assembly = rng.normal(0, 0.7 * scale, 2), rng.choice([-1, 1])
+    body_angle = rng.uniform(-np.pi, np.pi)
+    return o2, direction, {"coupler_point": coupler_point, "assembly": assembly, "body_angle": body_angle}
 
 
 def random_slider_crank(rng: np.random.Generator) -> SliderCrank:
@@ -64,16 +56,8 @@ def random_slider_crank(rng: np.random.Generator) -> SliderCrank:
         offset = rng.uniform(-1, 1) * scale
         if r2 + abs(offset) < r3:
             break
-    return SliderCrank(
-        o2=rng.normal(0, scale, 2),
-        r2=r2,
-        r3=r3,
-        offset=offset,
-        slide_angle=rng.uniform(-np.pi, np.pi),
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, slide_angle, others = _placed(rng, scale)
+    return SliderCrank(o2, r2, r3, offset=offset, slide_angle=slide_angle, **others)
 
 
 def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCrank:
@@ -84,16 +68,9 @@ def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCran
         offset = rng.uniform(-1, 1) * scale
         if abs(offset) < abs(r1 - r2):
             break
-    o2, theta1 = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
-    return InvertedSliderCrank(
-        o2=o2,
-        o4=o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)]),
-        r2=r2,
-        offset=offset,
-        coupler_point=rng.normal(0, 0.7 * scale, 2),
-        assembly=rng.choice([-1, 1]),
-        body_angle=rng.uniform(-np.pi, np.pi),
-    )
+    o2, theta1, others = _placed(rng, scale)
+    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
+    return InvertedSliderCrank(o2, o4, r2, offset=offset, **others)
 
 
 # By the word for the kind of linkage.
@@ -105,10 +82,7 @@ RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
 
 
 def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
-    """`count` driver angles in order, shape (count,), rad: 70 to 340 deg of a turn, in either sense.
-
-    The gaps between them differ by up to 4 : 1.
-    """
+    """Driver angles (count,) in order, over 70 to 340 deg in either sense, with gaps up to 4 : 1."""
     gaps = rng.uniform(1, 4, count - 1)
     spread = rng.choice([-1, 1]) * np.radians(rng.uniform(70, 340))
     steps = np.concatenate([[0.0], np.cumsum(gaps) / gaps.sum()])
@@ -119,84 +93,33 @@ def uneven_driver_angles(rng: np.random.Generator, count: int) -> FloatArray:
 def planted_motion(
     rng: np.random.Generator, poses: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[MotionTask, Any]:
-    """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-    poses : int
-    timed : bool
-        The driver rotations are prescribed.
-    mechanism : str
-        The kind of linkage.
-
-    Returns
-    -------
-    MotionTask, Linkage
-
-    Examples
-    --------
-    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
-    >>> len(task), linkage.shape
-    (4, ())
-    """
-    linkage = RANDOM[mechanism](rng)
-    theta2 = uneven_driver_angles(rng, poses)
-    state, timing = solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
+    """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly."""
+    linkage, state, timing = _planted(rng, poses, timed, mechanism)
     return MotionTask(state.p, state.theta3 + linkage.body_angle, timing=timing), linkage
 
 
 def planted_path(
     rng: np.random.Generator, points: int, *, timed: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[PathTask, Any]:
-    """A path task, and a full-crank linkage that does it exactly, in order, on one assembly.
+    """A path task, and a full-crank linkage that does it exactly, in order, on one assembly."""
+    linkage, state, timing = _planted(rng, points, timed, mechanism)
+    return PathTask(state.p, timing=timing), linkage
 
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-    points : int
-    timed : bool
-        The driver rotations are prescribed.
-    mechanism : str
-        The kind of linkage.
 
-    Returns
-    -------
-    PathTask, Linkage
-    """
-    linkage = RANDOM[mechanism](rng)
-    theta2 = uneven_driver_angles(rng, points)
-    timing = np.abs(theta2 - theta2[0]) if timed else None
-    return PathTask(solve_position(linkage, theta2).p, timing=timing), linkage
+def _planted(
+    rng: np.random.Generator, count: int, timed: bool, mechanism: str
+) -> tuple[Linkage, Position, FloatArray | None]:
+    linkage, theta2 = RANDOM[mechanism](rng), uneven_driver_angles(rng, count)
+    return linkage, solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
 
 
 def planted_function(
     rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.mechanism.word
 ) -> tuple[FunctionTask, Any, float]:
-    """Pairs that some linkage generates, its driver counter-clockwise.
+    """Pairs that a linkage generates, the linkage, and its driver angle (rad) at the first pair.
 
-    Parameters
-    ----------
-    rng : Generator
-    pairs : int
-    full : bool
-        Its driver turns fully.
-    mechanism : str
-        The kind of linkage.
-
-    Returns
-    -------
-    FunctionTask, Linkage, float
-        The last is the driver angle at the first pair, rad. O2 = (0, 0), and O4 = (1, 0) or the slide runs
-        along x; lengths are 0.2 to 5, the range is 30 to 300 deg, the transmission angle at least 10 deg
-        over it.
-
-    Examples
-    --------
-    >>> task, linkage, start = planted_function(np.random.default_rng(0), pairs=6)
-    >>> theta4 = solve_position(linkage, start + task.inputs).theta4
-    >>> bool(np.abs(np.exp(1j * (theta4 - theta4[0])) - np.exp(1j * task.outputs)).max() < 1e-12)
-    True
+    The driver turns counter-clockwise, fully if `full`. O2 = (0, 0), and O4 = (1, 0) or the slide runs along
+    x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
     """
     while True:
         made = _LOOSE[mechanism](rng)

@@ -6,13 +6,13 @@ import numpy as np
 
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.driver_law import DriverLaw
+from grashof.analysis.mechanism.driver_samples import close_samples
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
 
 _SAMPLES = 361
-_NEAR = np.logspace(-8, -2, 31)  # rad, about the positions that come closest to a dead one
 
 
 def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
@@ -47,13 +47,4 @@ def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
 
 def sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
     """Driver angles from the lower end to the upper, close where a dead position is near."""
-    low, high = min(start, end), max(start, end)
-    spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-    spread[[0, -1]] = low, high
-    theta1 = float(linkage.theta1)
-    # With O2A along the ground line the diagonal A-O4 is shortest or longest.
-    turning = theta1 + np.pi * np.arange(
-        np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
-    )
-    near = (turning[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
-    return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
+    return close_samples(linkage, start, end, _SAMPLES, second=False)

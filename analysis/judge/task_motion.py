@@ -6,31 +6,20 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from grashof.analysis.judge.misses import wrapped
 from grashof.analysis.mechanism.mobility import range_index, rotatability
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
 
 STEADY = 1e-9  # rad: a driver step so small counts as none
 
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """The linkage at each target, as near as it comes.
+    """The linkage as near to each target as it comes: driver angle (N,) in rad, assembly, and errors.
 
-    Parameters
-    ----------
-    theta2 : ndarray, shape (N,), rad
-        Driver angle.
-    assembly : ndarray of int, shape (N,)
-        Assembly on which it is nearest.
-    position_error : ndarray, shape (N,), length
-        Distance from the target position, NaN where none is given; inf where it cannot be assembled.
-    angle_error : ndarray, shape (N,), rad
-        Turn from the target angle, NaN where none is given.
-    output_error : ndarray, shape (N,), rad
-        Of the output of a function; empty where none is asked for.
+    NaN where no position or angle is given; inf where it cannot be assembled; `output_error` (rad) is empty
+    but for functions.
     """
 
     theta2: FloatArray
@@ -45,7 +34,7 @@ class Targets:
         state = solve_position(linkage, theta2, assembly)
         gap = state.p - task.positions
         distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
-        turned = np.abs(wrapped(state.theta3 + linkage.body_angle - task.angles))
+        turned = np.abs(turned_from(state.theta3 + linkage.body_angle, task.angles))
         return cls(
             theta2,
             assembly,
@@ -56,18 +45,10 @@ class Targets:
 
 @dataclass(frozen=True, slots=True)
 class TaskMotion:
-    """The motion of the driver from the first target to the last.
+    """The driver from the first target to the last.
 
-    Parameters
-    ----------
-    theta2 : ndarray, shape (N,), rad
-        Driver angles at the targets, unwrapped along the motion.
-    start, end : float, rad
-        Ends of the motion.
-    direction : int
-        Sense of the driver: +1 counter-clockwise, -1 clockwise.
-    in_order : bool
-        The driver meets the targets in sequence, in one sense, within one turn.
+    Angles at the targets (N,) in rad, unwrapped, the ends, and its sense, +1 counter-clockwise. `in_order` if
+    it meets the targets in sequence, in one sense, within one turn.
     """
 
     theta2: FloatArray
@@ -87,21 +68,7 @@ class TaskMotion:
 
 
 def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMotion:
-    """The motion of the driver through given angles.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2 : ndarray, shape (N,), rad
-        Driver angle at each target.
-    ordered : bool
-        Meet the targets in sequence. Otherwise in any: the shortest motion that holds them all.
-
-    Returns
-    -------
-    TaskMotion
-    """
+    """The motion through driver angles (N,) in sequence, or the shortest that holds them all."""
     turns = bool((rotatability(linkage) >= 0).all())  # through a change point too, as circuits count it
     index, inside = range_index(linkage, theta2)
     if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around

@@ -35,35 +35,12 @@ class _Motion(NamedTuple):
 def task_peaks(
     linkages: Sequence[Linkage], problem: Problem, verdicts: Sequence[Verdict], *, torque_alone: bool = False
 ) -> FloatArray:
-    """Greatest speeds and loads of linkages over their motions from the first target to the last.
+    """Greatest magnitudes over the task motions, shape (n, 5).
 
-    Parameters
-    ----------
-    linkages : sequence of Linkage
-        Single ones, of any kinds; those of a kind are sampled together.
-    problem : Problem
-        Its dynamics give the driver's speed (else 1 rad/s), masses and loads.
-    verdicts : sequence of Verdict
-        Of `verify`, one for each.
-    torque_alone : bool
-        All but the torque are NaN then.
-
-    Returns
-    -------
-    ndarray, shape (n, 5)
-        Magnitudes of omega4 in rad/s, of speed and acceleration of P, of the torque in N m and of the
-        force in any joint in N. NaN where no motion joins the targets; of the last two also without
-        dynamics, and where a slide travels beyond the rows of a load.
-
-    Examples
-    --------
-    >>> from grashof.analysis.judge.planted import planted_motion
-    >>> from grashof.analysis.judge.verify import verify
-    >>> task, linkage = planted_motion(np.random.default_rng(0), poses=4)
-    >>> problem = Problem(task=task)
-    >>> verdict = verify(linkage, task, problem.requirements)
-    >>> task_peaks([linkage, linkage], problem, [verdict, verdict])[:, 0].round(6).tolist()
-    [1.260659, 1.260659]
+    omega4 in rad/s, speed and acceleration of P, torque in N m and force in any joint in N; all but the
+    torque NaN with `torque_alone`. At the speed of the problem's dynamics, else 1 rad/s; NaN where no motion
+    joins the targets, of the last two also without dynamics or where a slide travels beyond the rows of a
+    load.
     """
     found = np.full((len(linkages), 5), np.nan)
     motions = {}

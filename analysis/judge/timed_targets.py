@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from grashof.analysis.curves.coupler_curve import ROUNDING
-from grashof.analysis.judge.misses import misses, squares
-from grashof.analysis.judge.points_in_order import Met
+from grashof.analysis.judge.misses import as_good, misses, squares
+from grashof.analysis.judge.points import Met
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.numerics.minimisation import Model, lowest
 from grashof.problems import Linkage, Task
@@ -19,12 +18,7 @@ _BASINS = 4
 
 
 def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """The least weighted squares over the driver angle at the first target, in either sense.
-
-    Returns
-    -------
-    Met, or None when the linkage cannot be assembled at all targets.
-    """
+    """Least weighted squares over the first driver angle, in either sense; None without an assembly."""
     turns = np.multiply.outer([1.0, -1.0], task.driver_turns)
     own = int(linkage.assembly)
     signs = np.array([own] if same_branch else [own, -own])
@@ -36,8 +30,7 @@ def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: f
         start, sense = np.full(2, theta2_start), np.array([0, 1])
         low = high = start
     start, value = lowest(_model(linkage, task, turns[sense], signs), start, low, high)
-    level = value <= value.min() * (1 + 1e-9) + len(task) * (ROUNDING * task.size) ** 2
-    best = int(np.argmax(level))
+    best = int(np.argmax(as_good(task, value)))
     theta2 = start[best] + turns[sense[best]]
     side = np.argmin(misses(linkage, task, theta2, signs[:, None]), axis=0)
     return theta2, signs[side], 1 - 2 * int(sense[best])
@@ -50,10 +43,8 @@ def _model(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> 
     def model(start: FloatArray) -> Model:
         each = by_target(start[:, None] + turns)
         side = np.argmin(each[0], axis=0)[None]
-        value, slope, second, positive = (
-            np.take_along_axis(part, side, axis=0)[0].sum(axis=-1) for part in each
-        )
-        return value, slope, second, positive
+        value, slope, second, positive = (np.take_along_axis(part, side, axis=0)[0] for part in each)
+        return value.sum(axis=-1), slope.sum(axis=-1), second.sum(axis=-1), positive.sum(axis=-1)
 
     return model
 

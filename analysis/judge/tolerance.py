@@ -14,11 +14,12 @@ from typing import TypeVar
 import numpy as np
 
 from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.mechanism.driver_samples import ground_line
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Manufacturing, Task
-from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, turned_from
 
 AnyKind = TypeVar("AnyKind", bound=Linkage)
 
@@ -109,15 +110,9 @@ def measured_sensitivity(linkage: Linkage, task: Task, verdict: Verdict) -> Floa
 
 
 def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
-    """Share of made linkages whose worst target moves by at most `band`, linearised.
+    """Share of made linkages whose worst target moves by at most `band` (length), linearised.
 
-    Parameters
-    ----------
-    slope : ndarray, shape (N, 3, D)
-        Of `measured_sensitivity`.
-    band : float, length
-    errors : ndarray, shape (S, D), length
-        Deviations of the dimensions of each made linkage.
+    `slope` (N, 3, D) is of `measured_sensitivity`, `errors` (S, D) are lengths.
     """
     return float(np.mean(_linear_moves(slope, errors).max(axis=0) <= band))
 
@@ -125,19 +120,10 @@ def yield_linear(slope: FloatArray, band: float, errors: FloatArray) -> float:
 def yield_monte_carlo(
     linkage: Linkage, task: Task, verdict: Verdict, band: float, errors: FloatArray
 ) -> float:
-    """Share of made linkages whose worst target moves by at most `band`, by exact positions.
+    """Share of made linkages whose worst target moves by at most `band` (length), by exact positions.
 
-    Those that cannot be assembled at a target count as outside, and, when the nominal linkage passes
-    from the first target to the last, those that cannot be assembled in between.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        The nominal one, single.
-    task : Task
-    verdict : Verdict
-    band, errors
-        As for `yield_linear`.
+    Outside count those that cannot be assembled at a target or, when the nominal one passes from first to
+    last, in between.
     """
     theta2, assembly = verdict.theta2[:, None], verdict.assembly[:, None]
     nominal = solve_position(linkage, theta2, assembly)
@@ -151,25 +137,16 @@ def yield_monte_carlo(
         shift = state.p - nominal.p
         moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
         if task.has_angle.any():
-            turned = (state.theta3 - nominal.theta3 + np.pi) % (2 * np.pi) - np.pi
+            turned = turned_from(state.theta3, nominal.theta3)
             moves2 += (task.angle_length * turned) ** 2
         within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
     return within / len(errors)
 
 
 def made_linkages(linkage: AnyKind, errors: FloatArray) -> tuple[AnyKind, BoolArray]:
-    """Linkages of deviating dimensions, and which of them there can be: all lengths above zero.
+    """Linkages that deviate by errors (S, D) in length, and which of them there can be.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        The nominal one, single.
-    errors : ndarray, shape (S, D), length
-
-    Returns
-    -------
-    Linkage, ndarray of bool
-        Shape (S,); an impossible one is the nominal one.
+    All lengths must be above zero; an impossible one is the nominal one.
     """
     count = len(linkage.mechanism.lengths)  # which come first among the dimensions
     possible: BoolArray = np.all(linkage.lengths + errors[:, :count] > 0, axis=1)
@@ -197,12 +174,10 @@ def _linear_moves(slope: FloatArray, errors: FloatArray) -> FloatArray:
 
 
 def _nearest_to_dead(linkage: Linkage, task: Task, verdict: Verdict) -> FloatArray:
-    """Driver angles of the task motion where O2A lies along theta1, shape (0 to 2,), rad.
+    """Driver angles (rad) of the task motion where O2A lies along theta1.
 
-    There, or at the ends of the motion, a linkage comes nearest to a dead position, whatever the lengths.
+    There, or at its ends, a linkage of any lengths is nearest to a dead position.
     """
-    start, end = verdict.theta2.min(), verdict.theta2.max()
-    if task.closed:
-        end = start + 2 * np.pi
-    first, last = np.ceil((start - linkage.theta1) / np.pi), np.floor((end - linkage.theta1) / np.pi)
-    return linkage.theta1 + np.pi * np.arange(first, last + 1)[:2]
+    start = float(verdict.theta2.min())
+    end = start + TURN if task.closed else float(verdict.theta2.max())
+    return ground_line(linkage, start, end)[:2]

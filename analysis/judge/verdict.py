@@ -130,20 +130,10 @@ class Verdict:
 class Enclosure:
     """What intervals of the driver angle show of a design that the judge accepted.
 
-    Parameters
-    ----------
-    holds : bool
-        The loop closes over the motion that is required, without a dead position and so on one branch;
-        transmission angle, order, targets and places of joints at them are as required: proven, with
-        every rounding enclosed.
-    transmission : pair of float, rad
-        Holds the least min(mu, pi - mu) over the motion for which the requirements ask.
-    intervals : int
-        Of the driver angle, as many as that took.
-    why : str
-        What is not shown; empty where it holds.
-    contradicts : bool
-        Whether the judge is shown to be wrong, which is a defect of this program.
+    `holds` if closure over the required motion on one branch without a dead position, transmission, order,
+    targets and places there are proven, every rounding enclosed. `transmission` (rad) holds the least min(mu,
+    pi - mu) over the motion asked for; `intervals` is how many it took, `why` what is not shown, empty where
+    all is; `contradicts` shows the judge wrong, a defect of this program.
     """
 
     holds: bool

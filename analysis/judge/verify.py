@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from grashof.analysis.forces.stated import TRAVEL_ROUNDING
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.function_output import StructuralError, met_as_function
 from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
-from grashof.analysis.judge.loads_known import load_defects
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.mobility import (
@@ -26,8 +27,10 @@ from grashof.analysis.mechanism.mobility import (
     passes_change_point,
     rotatability,
 )
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.reach import diagonal, reach_box
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
+from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import (
     Cylinder,
     FunctionTask,
@@ -133,7 +136,7 @@ def verify(
         *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
-        *(load_defects(linkage, problem, verdict) if problem is not None else []),
+        *(_loads(linkage, problem, verdict) if problem is not None else []),
         *missed(
             Values(linkage, verdict, problem or Problem(task=task, mechanism=linkage.mechanism.word)), wanted
         ),
@@ -296,6 +299,33 @@ def _covered(targets: Targets) -> list[Defect]:
         return []
     what = "the number of targets at which the linkage cannot be assembled"
     return [Defect("rotatability", what, missed, "0", 1.0)]
+
+
+def _loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
+    """Loads over the travel of a slide that do not say what they are all the way."""
+    loads = () if problem.dynamics is None else problem.dynamics.loads
+    over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
+    if not over or not linkage.mechanism.slides:
+        return
+    linkage = as_used(linkage, verdict)
+    theta2 = sampled(linkage, *motion_ends(problem.task, verdict))
+    if not joins(linkage, verdict, theta2):
+        return
+
+    def travels(angles: FloatArray) -> FloatArray:
+        travel = solve_position(linkage, angles).travel
+        return np.stack([travel, -travel])
+
+    high, low = peaks(travels, [theta2])[0] * [1.0, -1.0]
+    for index, rows in over.items():
+        least, most = rows[0][0], rows[-1][0]
+        slack = TRAVEL_ROUNDING * max(abs(least), abs(most))
+        for found, miss in ((low, least - low), (high, high - most)):
+            if miss > slack:
+                what = f"the travel of the slide under loads[{index}]"
+                yield Defect(
+                    "loads", what, float(found), f"{least:g} to {most:g}", float(miss / problem.task.size)
+                )
 
 
 def _own(design: Design, constraints: Sequence[Constraint]) -> list[Defect]:

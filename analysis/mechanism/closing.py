@@ -31,14 +31,7 @@ class HostedDyad(NamedTuple):
 
 
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage, as plain arrays for `close`: C, D and the sizes of each dyad.
-
-    Parameters
-    ----------
-    linkage : Linkage
-    assembly : array_like, shape (...), optional
-        Sign of the first loop; the linkage's own by default.
-    """
+    """What closes a linkage, its first loop on `assembly`, for `close`: C, D and sizes of each dyad."""
     kind, o2 = linkage.mechanism, linkage.o2
     pinned = "o4" in kind.ground
     rounding = np.abs(o2).sum(axis=-1) + np.abs(linkage.o4).sum(axis=-1) if pinned else _ZERO
@@ -215,15 +208,10 @@ def move(
     *,
     whole: bool = False,
 ) -> tuple[list[Moving], dict[int, Turns]]:
-    """Rates of all loops to the jerk, for angular velocity, acceleration and jerk of the driver.
+    """Rates of all loops to the jerk, and turns by link, with `whole` of those of the last loop, too.
 
-    Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on
-    such a one.
-
-    Returns
-    -------
-    list of Moving, dict of int to Turns
-        By loop, and by link; with `whole` of those of the last loop, too.
+    Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on such
+    a one.
     """
     turns, found = {2: Turns.of(*driver)}, []
     for first, loop in zip((3, 5), loops, strict=False):
@@ -247,7 +235,7 @@ def _where(dead: BoolArray, one: Solved, other: Solved) -> Solved:
 
 
 def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
-    """Velocities that a linkage allows, with a limit in dead positions: of the driver, and of each loop.
+    """Velocities, with a limit in dead positions, of the driver and of each loop.
 
     The driver turns counter-clockwise by the product of all margins without their signs: each loop has adj J
     in place of J^-1, and scales all that moves before it by its margin.

@@ -191,13 +191,9 @@ class DriverLaw:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyDrivers:
-    """Drivers of a batch of linkages, each at a steady speed; its places are driver angles.
+    """Drivers of a batch (...), each steady: `start` in rad, `omega2` in rad/s.
 
-    Parameters
-    ----------
-    start : ndarray, shape (...), rad
-        Where each is at first.
-    omega2 : ndarray, shape (...), rad/s
+    Their places are driver angles.
     """
 
     start: FloatArray

@@ -36,14 +36,29 @@ def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:
     >>> float(samples[0]), float(samples[-1]), bool((samples == np.pi).any())
     (0.5, 6.0, True)
     """
+    return close_samples(linkage, start, end, _SAMPLES, second=True)
+
+
+def close_samples(linkage: Linkage, start: float, end: float, count: int, *, second: bool) -> FloatArray:
+    """Such driver angles, `count` and those near; with `second` those about a second loop, too."""
     low, high = min(start, end), max(start, end)
-    spread = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
+    spread = closer_at_ends(low, high, count)
     spread[[0, -1]] = low, high
-    theta1 = float(linkage.theta1)
-    aligned = theta1 + np.pi * np.arange(
-        np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1
-    )
-    if len(linkage.mechanism.dyads) > 1:
+    aligned = ground_line(linkage, low, high)
+    if second and len(linkage.mechanism.dyads) > 1:
         aligned = np.concatenate([aligned, lifted(cut(linkage).extremes, low, high)])
     near = (aligned[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
     return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
+
+
+def ground_line(linkage: Linkage, low: float, high: float) -> FloatArray:
+    """Driver angles between two ends at which O2A lies along the ground line, shape (N,), rad."""
+    theta1 = float(linkage.theta1)
+    halves = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
+    return np.asarray(theta1 + np.pi * halves)
+
+
+def closer_at_ends(low: float, high: float, count: int) -> FloatArray:
+    """Places from end to end, shape (count,), closer together towards both."""
+    share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+    return low + (high - low) * share

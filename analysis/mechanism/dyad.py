@@ -62,10 +62,9 @@ class Solved(NamedTuple):
 
 
 class Demands(NamedTuple):
-    """What the joints must exert on links 3 and 4, and what is known of it.
+    """Moments of link 3 about C, that of joint C taken off, and of link 4 about D, of a slider about E.
 
-    Moments of link 3 about C, that of joint C taken off, and of link 4 about D, of a slider about E; the
-    force on link 4; what joints E and D exert on link 4: the moment of a pin, the friction along a slide.
+    The force on link 4; what joints E and D exert on it: the moment of a pin, the friction along a slide.
     """
 
     turn3: FloatArray
@@ -86,8 +85,7 @@ class Pins(NamedTuple):
     def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
         """E is an intersection of the circles about C and D (Norton, *Design of Machinery*, sec. 4.5).
 
-        Its distance from the line C-D comes from Heron's product, which keeps its digits near the dead
-        positions where the usual m^2 - x^2 loses them.
+        Heron's product gives its distance from C-D: m^2 - x^2 loses digits near dead positions.
         """
         m, n, sign, rounding = self
         square = x * x + y * y
@@ -179,9 +177,9 @@ class Pins(NamedTuple):
 
 
 class Slider(NamedTuple):
-    """RRP: a bar m from C to E, which slides on a line with the direction e, at an offset from D.
+    """RRP: a bar m from C to E, which slides along e at an offset from D.
 
-    Gap m e3 - (s + i offset) e. The margin is cos(theta3 - slide).
+    Gap m e3 - (s + i offset) e, margin cos(theta3 - slide).
     """
 
     m: FloatArray
@@ -283,9 +281,9 @@ class Slider(NamedTuple):
 
 
 class Block(NamedTuple):
-    """RPR: a rod from C through a block that is pinned in D, at an offset; E is the foot of D on the rod.
+    """RPR: a rod from C through a block pinned in D, at an offset; E is the foot of D on the rod.
 
-    Gap (l - i offset) e3. The margin is l over the width of the gap.
+    Gap (l - i offset) e3, margin l over the width of the gap.
     """
 
     offset: FloatArray
@@ -293,10 +291,10 @@ class Block(NamedTuple):
     rounding: FloatArray
 
     def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
-        """With l from C along the rod to E (Norton, sec. 4.7).
+        """The length l from C along the rod to E (Norton, sec. 4.7).
 
-        l comes from the product (s - |offset|)(s + |offset|) of s = |D - C|, which keeps its digits near the
-        dead positions.
+        With s = |D - C| it comes from (s - |offset|)(s + |offset|), which keeps its digits near dead
+        positions.
         """
         offset, sign, rounding = self
         apart, away = np.hypot(x, y), np.abs(offset)

@@ -170,19 +170,7 @@ def extremes_of(
 def refined(
     curve: Curve, at: FloatArray, values: FloatArray, closed: bool = False, period: float | None = None
 ) -> Extremes:
-    """Least and largest value of a function of one variable, from its samples.
-
-    Parameters
-    ----------
-    curve, closed, period
-        As for `extremes_of`.
-    at, values : ndarray, shape (N,)
-        Where the curve is sampled, and its values there, unwrapped.
-
-    Returns
-    -------
-    Extremes
-    """
+    """Extremes, as of `extremes_of`, from samples (N,) of a curve and its values there, unwrapped."""
     low, at_low = _outermost(curve, at, -values, closed, period, -1.0)
     high, at_high = _outermost(curve, at, values, closed, period, 1.0)
     return Extremes(-low, high, at_low, at_high)
@@ -222,13 +210,7 @@ def dense_places(start: float, end: float, closed: bool) -> FloatArray:
 
 
 def counted_on(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
-    """Values at driver angles, unwrapped by `period`, shape (N,).
-
-    Raises
-    ------
-    AssemblyError
-        One is NaN.
-    """
+    """Values at driver angles, unwrapped by `period`, shape (N,); AssemblyError where one is NaN."""
     if values.shape != theta2.shape:
         raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
     if np.isnan(values).any():

@@ -19,6 +19,7 @@ from grashof.problems.values.linkages.slider_crank import SliderCrank
 CHANGE = 1e-12  # share of the lengths within which a linkage has a change point
 
 L_contra = TypeVar("L_contra", bound=Linkage, contravariant=True)
+P_contra = TypeVar("P_contra", bound=FourBar | SixBar | InvertedSliderCrank, contravariant=True)  # with O4
 
 
 class GrashofClass(StrEnum):
@@ -92,8 +93,20 @@ _BY_SHORTEST = (
 FOUR_BAR_CLASSES = (*_BY_SHORTEST, GrashofClass.CHANGE_POINT, GrashofClass.NON_GRASHOF)
 
 
-class FourBarLoop(FirstLoop[FourBar | SixBar]):
-    """The four-bar, that of a six-bar too; its `apart` is the diagonal A-O4."""
+class _DiagonalLoop(FirstLoop[P_contra]):
+    """A loop whose `apart` is the diagonal A-O4."""
+
+    def apart(self, linkage: P_contra, phi: FloatArray) -> FloatArray:
+        """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
+        r1, r2 = linkage.r1, linkage.r2
+        return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
+
+    def apart_on_line(self, linkage: P_contra) -> tuple[FloatArray, FloatArray]:
+        return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
+
+
+class FourBarLoop(_DiagonalLoop[FourBar | SixBar]):
+    """The four-bar, that of a six-bar too."""
 
     def span(self, linkage: FourBar | SixBar, cosine: float = 1.0) -> Span:
         """4 r1 r2 a = (r1 - r2)^2 - least^2, 4 r1 r2 b = most^2 - (r1 + r2)^2: least and most diagonals.
@@ -132,14 +145,6 @@ class FourBarLoop(FirstLoop[FourBar | SixBar]):
         if abs(excess) <= tolerance * lengths.sum():
             return GrashofClass.CHANGE_POINT
         return _BY_SHORTEST[int(np.argmin(lengths))] if excess > 0 else GrashofClass.NON_GRASHOF
-
-    def apart(self, linkage: FourBar | SixBar, phi: FloatArray) -> FloatArray:
-        """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
-        r1, r2 = linkage.r1, linkage.r2
-        return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
-
-    def apart_on_line(self, linkage: FourBar | SixBar) -> tuple[FloatArray, FloatArray]:
-        return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
 
     def limits(self, linkage: FourBar | SixBar) -> FloatArray:
         """O2, A and B in line: triangles O2-B-O4 with O2B = r2 + r3 or |r2 - r3| (Norton, secs. 3.2, 3.4)."""
@@ -201,8 +206,8 @@ class SliderCrankLoop(FirstLoop[SliderCrank]):
         return np.asarray(linkage.slide_angle[..., None] + rise + opposite)
 
 
-class InvertedLoop(FirstLoop[InvertedSliderCrank]):
-    """The inverted slider-crank; its `apart` is the diagonal A-O4."""
+class InvertedLoop(_DiagonalLoop[InvertedSliderCrank]):
+    """The inverted slider-crank."""
 
     def span(self, linkage: InvertedSliderCrank, cosine: float = 1.0) -> Span:
         """4 r1 r2 a = (r1 - r2)^2 - (offset / cosine)^2; nothing limits the diagonal where it is longest."""
@@ -235,14 +240,6 @@ class InvertedLoop(FirstLoop[InvertedSliderCrank]):
         if share < 0:
             return GrashofClass.INVERTED_SLIDER_ROCKER
         return GrashofClass.CRANK_SHAPER if linkage.r2 < linkage.r1 else GrashofClass.WHITWORTH
-
-    def apart(self, linkage: InvertedSliderCrank, phi: FloatArray) -> FloatArray:
-        """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
-        r1, r2 = linkage.r1, linkage.r2
-        return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
-
-    def apart_on_line(self, linkage: InvertedSliderCrank) -> tuple[FloatArray, FloatArray]:
-        return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
 
     def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""

@@ -28,21 +28,10 @@ class _Way(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FirstMotion:
-    """Driver angle as a function of a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
+    """Driver angle over a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
 
-    See `EvenMotion`. Made by `first_motion`.
-
-    Parameters
-    ----------
-    start, end : float, rad
-        Driver angles of the motion, in either order.
-    way : _Way
-    centre : float, rad
-        Driver angle from which tan(half the angle) is counted.
-    scale, modulus : float
-        c or X, and the complementary modulus k', of the notes to `first_motion`.
-    first, last : float
-        The elliptic integral at both ends, as a share of half its period.
+    Tangents of half angles are counted from `centre` (rad); `scale` is c or X and `modulus` the k' of
+    `first_motion`; `first` and `last` are the elliptic integral at both ends, as shares of half its period.
     """
 
     start: float
@@ -55,10 +44,7 @@ class FirstMotion:
     last: float = 1.0
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
-        """Driver angle at a share of the motion, shape (...), rad.
-
-        Where the driver turns fully the share may lie beyond 0 and 1.
-        """
+        """Driver angle (...) in rad at shares, beyond 0 and 1 where the driver turns fully."""
         t = np.asarray(share, dtype=np.float64)
         if self.way is _Way.PLAIN:
             angle = self.start + (self.end - self.start) * np.sin(np.pi / 2 * t) ** 2

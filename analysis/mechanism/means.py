@@ -16,31 +16,10 @@ from grashof.problems.values.arrays import FloatArray
 def mean_over(
     linkage: Linkage, curve: Curve, start: float, end: float, panels: int = 36
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean of one quantity or several over a motion of the driver, as over time at a steady speed.
+    """Mean over a motion of the driver, as over time at a steady speed, and what it may be wrong by.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    curve : callable
-        From driver angles, shape (N,), to values, shape (..., N).
-    start, end : float, rad
-    panels : int
-        To begin with; more where it takes them. What is narrower than a fiftieth of one may be missed.
-
-    Returns
-    -------
-    mean, error : ndarray, shape (...)
-        The error is what the mean may be wrong by; large where it does not converge, as for what grows
-        without bound towards a dead position.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
-    >>> mean, error = mean_over(norton, lambda theta2: np.sin(theta2) ** 2, 0.0, np.pi)
-    >>> float(mean.round(12)), bool(error < 1e-12)
-    (0.5, True)
+    The curve goes from (N,) in rad to (..., N). The error is large where it does not converge, as towards a
+    dead position; what is narrower than a fiftieth of a panel may be missed.
     """
     if start == end:
         at = np.asarray(curve(np.array([start])), dtype=np.float64)[..., 0]
@@ -53,10 +32,9 @@ def mean_over(
 def mean_in_time(
     linkage: Linkage, law: DriverLaw, curve: Curve, panels: int = 36
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean over the time that the driver takes from one angle to another; parameters as for `mean_over`.
+    """Mean and error, as of `mean_over`, over the time that the driver takes.
 
-    The curve is one over the places of the law, `DriverLaw.at_place`. At a steady speed, and at none,
-    it is the mean over the angle.
+    The curve is one over `DriverLaw.at_place`; at a steady speed, and at none, it is the mean over the angle.
     """
     if law.motor.steady:
         return mean_over(linkage, curve, law.start, law.start + law.rotation, panels)

@@ -105,26 +105,10 @@ def whole_turn(linkage: Linkage) -> bool:
 
 
 def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
-    """Whether a motion of the driver takes a linkage to a change point, where all joints are in line.
+    """Whether a motion of the driver takes a single linkage to a change point, where all joints are in line.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    start, end : float, rad
-        Driver angles of the motion, in either order.
-
-    Notes
-    -----
-    A parallelogram linkage has them at theta1 and theta1 + pi. It can leave them as an antiparallelogram,
-    and a driver at rest there cannot decide which: a dead position like others.
-
-    Examples
-    --------
-    >>> from grashof.problems import FourBar
-    >>> parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
-    >>> passes_change_point(parallelogram, 0.1, 3.1), passes_change_point(parallelogram, 3.1, 3.2)
-    (False, True)
+    A parallelogram can leave one as an antiparallelogram, which no driver decides: a dead position like
+    others.
     """
     stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
     low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
@@ -206,22 +190,9 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
 
 
 def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
-    """The driver range that each angle lies in, and the angle as counted inside that range.
+    """The driver range that each angle lies in, and the angle (rad) inside it; -1 and NaN outside all.
 
-    Parameters
-    ----------
-    linkage : Linkage
-        A single linkage.
-    theta2 : array_like, shape (...), rad
-    slack : float, rad
-        An angle so close to the end of a range still counts as inside.
-
-    Returns
-    -------
-    index : ndarray of int, shape (...)
-        0 or 1; -1 outside all ranges.
-    theta2 : ndarray, shape (...), rad
-        The same angle moved by whole turns into [low, high]; NaN outside all ranges.
+    Moved by whole turns into it; an angle within `slack` (rad) of an end is inside.
     """
     return _within(driver_ranges(linkage), np.asarray(theta2, dtype=np.float64), slack)
 

@@ -13,7 +13,7 @@ from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
 from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _PANELS = 480
 _TOGETHER = 1e-7  # share of the lengths: what rounding of a first loop's dead position leaves of the width
@@ -61,11 +61,8 @@ def width(linkage: Linkage) -> Curve:
 def cut(linkage: Linkage, transmission: float = 0.0) -> Cut:
     """What the second loop of a single linkage leaves of the ranges of the first.
 
-    Notes
-    -----
-    The width is sampled over a variable with which the first loop moves evenly, and has no branch points
-    there; each extreme is refined, so that between two of these places it meets a limit once or not at all.
-    The driver angle where it does is halved down to rounding.
+    Its gap is sampled over an even motion of the first loop and each extreme refined, so that between two
+    such places it meets a limit at most once; where it does is halved down to rounding.
     """
     limits = dyad_of(linkage, 2).limits(float(np.cos(transmission)))
     least, most = map(float, limits)
@@ -171,7 +168,7 @@ def branches(linkage: Linkage) -> Branches:
         if in_second:
             join(*circuits[number])
         if in_first:
-            away = np.abs((ranges[:, end] - ranges[number, end] + np.pi) % TURN - np.pi)
+            away = np.abs(turned_from(ranges[:, end], ranges[number, end]))
             for other in np.flatnonzero(dead[:, end, 0] & (away <= SAME)):
                 for side in (0, 1):
                     join(circuits[number, side], circuits[other, side])

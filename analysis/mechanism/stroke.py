@@ -15,7 +15,7 @@ from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
 _PANELS = 720
 
@@ -80,12 +80,12 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
     >>> float(stroke.time_ratio.round(6))
     1.355573
     """
-    theta2 = first_loop(linkage).limits(linkage) % (2 * np.pi)
+    theta2 = first_loop(linkage).limits(linkage) % TURN
     state = solve_position(linkage[..., None], theta2)
-    turned = (np.diff(state.theta4, axis=-1)[..., 0] + np.pi) % (2 * np.pi) - np.pi
+    turned = turned_from(state.theta4[..., 1], state.theta4[..., 0])
     theta4 = state.theta4[..., :1] + np.stack([np.zeros_like(turned), turned], axis=-1)
-    between = np.diff(theta2, axis=-1)[..., 0] % (2 * np.pi)
-    ratio = np.maximum(between, 2 * np.pi - between) / np.minimum(between, 2 * np.pi - between)
+    between = np.diff(theta2, axis=-1)[..., 0] % TURN
+    ratio = np.maximum(between, TURN - between) / np.minimum(between, TURN - between)
     return OutputStroke(
         theta2=theta2,
         theta4=theta4,

@@ -113,10 +113,7 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
 def transmission_at_extremes(
     linkage: Linkage, start: float, end: float, loop: int
 ) -> tuple[FloatArray, FloatArray]:
-    """The ends of a motion and where a loop's transmission angle has extremes between, and the angle there.
-
-    Of a single linkage; each of shape (N,).
-    """
+    """Driver angles of a single linkage at extremes of mu of a loop and at the ends, and mu, each (N,)."""
     low, high = min(start, end), max(start, end)
     if loop != 1:
         at = np.concatenate([[start, end], lifted(cut(linkage).extremes, low, high)])

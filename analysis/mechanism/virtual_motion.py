@@ -15,22 +15,8 @@ def virtual_motion(
 ) -> tuple[Kinematics, Kinematics]:
     """Positions with velocities that the linkage allows, and the same at rest.
 
-    Parameters
-    ----------
-    linkage : Linkage
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        Of the first loop; the linkage's own by default.
-
-    Returns
-    -------
-    moving, resting : Kinematics
-        Without accelerations.
-
-    Notes
-    -----
-    The driver turns counter-clockwise by the sine of the transmission angle, of two loops by the product of
-    both, so that the others have a limit in a dead position: the rates of `solve_kinematics` times that.
+    The driver turns counter-clockwise by the product of the sines of all transmission angles, so that the
+    rates, those of `solve_kinematics` times it, have a limit in a dead position.
     """
     angle = np.asarray(theta2, dtype=np.float64)
     loops, _ = close(linkage.mechanism, operands_of(linkage, assembly), angle)

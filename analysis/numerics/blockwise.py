@@ -15,24 +15,7 @@ _BLOCK = 8192
 def in_blocks(
     formula: Callable[..., Sequence[FloatArray]], operands: Sequence[FloatArray], results: int
 ) -> FloatArray:
-    """Results of a formula that works element by element.
-
-    Parameters
-    ----------
-    formula : callable
-        Takes the operands, or corresponding parts of them, and returns `results` arrays.
-    operands : sequence of ndarray
-        Of shapes that broadcast against each other.
-    results : int
-
-    Returns
-    -------
-    ndarray, shape (results, ...)
-
-    Notes
-    -----
-    A formula of fifty operations on arrays of 1e5 numbers runs three times faster this way.
-    """
+    """Results (results, ...) of an elementwise formula, in blocks: three times faster on 1e5 numbers."""
     shape = np.broadcast_shapes(*(operand.shape for operand in operands))
     out = np.empty((results, *shape))
     _fill(formula, operands, out)

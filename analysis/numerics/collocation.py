@@ -27,16 +27,7 @@ _MOST = 10_000  # panels: some five hundred turns
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """A part of a motion: its acceleration as a polynomial of the time.
-
-    Parameters
-    ----------
-    start, length : float, s
-    place, speed : float
-        At its start.
-    terms : ndarray, shape (N,)
-        Legendre coefficients of the acceleration, from -1 to 1.
-    """
+    """From `start` (s) and a place and speed there: Legendre coefficients (N,) of the acceleration."""
 
     start: float
     length: float
@@ -66,14 +57,7 @@ class Panel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """A motion, panel by panel.
-
-    Parameters
-    ----------
-    panels : tuple of Panel
-    event : int or None
-        Which event ended it; None where the time was over.
-    """
+    """A motion, panel by panel, and which event ended it; None where the time was over."""
 
     panels: tuple[Panel, ...]
     event: int | None
@@ -111,41 +95,15 @@ def integrate_motion(
     events: Events | None = None,
     fastest: float = 0.0,
 ) -> Path:
-    """The motion from a place and a speed, until an event or an end of time.
+    """The motion from a place and a speed until an end of time (s) or an event falls below zero.
 
-    Parameters
-    ----------
-    acceleration : callable
-        Of time, place, speed and a guess of the acceleration (for one that it depends on), shape
-        (N,) each. NaN where there is no motion: panels are shortened until they do not reach there.
-    start, end : float, s
-    place, speed : float
-        At the start.
-    tolerance : float
-        Of speed and place within a panel, as shares of what they change by in the motion so far.
-    events : callable, optional
-        Of place and speed, shape (N,), to values of K events, shape (K, N). The motion ends where one
-        falls below zero; one that is below it at the start counts once it has been above.
-    fastest : float, rad/s
-        The greatest speed before the start: `tolerance` is a share of it, too.
+    `acceleration` takes time, place, speed and a guess of itself, (N,) each; NaN where there is no motion,
+    which no panel reaches. `events` go to (K, N); one below zero at the start counts once it was above.
+    `tolerance` is of speed and place within a panel, as a share of what they change by so far and of
+    `fastest`, the greatest speed (rad/s) before. Collocation at 16 Gauss-Legendre points of each panel
+    (Hairer, Lubich & Wanner, *Geometric Numerical Integration*, sec. II.1), of order 32, by sweeps; the last
+    terms of the polynomial say what a panel errs by. SolverError where panels become too short to get on.
 
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    SolverError
-        Panels become so short that the motion does not get on.
-
-    Notes
-    -----
-    Collocation at 16 Gauss-Legendre points of each panel (Hairer, Lubich & Wanner, *Geometric
-    Numerical Integration*, sec. II.1): an implicit Runge-Kutta method of order 32, solved by
-    sweeps over all points at once. The last terms of the polynomial say what a panel errs by.
-
-    Examples
-    --------
     >>> path = integrate_motion(lambda t, x, v, a: -x, 0.0, 20.0, 1.0, 0.0)
     >>> bool(np.abs(path.at(np.array([20.0]))[0] - np.cos(20.0)).max() < 1e-13), len(path.panels) < 16
     (True, True)

@@ -33,37 +33,12 @@ def least_peak(
     end: float,
     outermost: Callable[[Curve], tuple[float, float]],
 ) -> LeastPeak:
-    """Parameters x for which |base + effects x| is least where it is greatest.
+    """Parameters x (K,) for which |base + effects x| is least where it is greatest between two ends.
 
-    Parameters
-    ----------
-    base : callable
-        From places, shape (N,), to values, shape (N,).
-    effects : callable
-        From places to what a unit of each parameter adds, shape (N, K).
-    start, end : float
-        Between which the peak counts.
-    outermost : callable
-        Places of the least and the largest value of a curve between these ends.
-
-    Returns
-    -------
-    LeastPeak
-        NaN where a curve is not finite.
-
-    Raises
-    ------
-    SolverError
-        The linear programme was not solved.
-
-    Notes
-    -----
-    A linear programme at some places; where the curve it finds has its peaks, these join them
-    (an exchange method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429).
-
-    Examples
-    --------
-    Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
+    `base` goes from places (N,) to (N,), `effects` to (N, K); `outermost` gives the places of a curve's least
+    and largest value. A linear programme at some places, which the peaks of its curve join (an exchange
+    method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429). NaN where a curve is not finite; SolverError
+    where the programme was not solved. Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
 
     >>> from grashof.analysis.mechanism.extremes import extremes_of
     >>> def outermost(curve):

@@ -23,18 +23,9 @@ _LEAST_WEIGHT = 1e-12  # of the mean
 def lowest(
     model: Callable[[FloatArray], Model], angle: FloatArray, low: FloatArray, high: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Each angle moved by itself to the bottom of its valley.
+    """Each angle (...) in rad moved by itself to the bottom of its valley, and the value there.
 
-    Parameters
-    ----------
-    model : callable
-        Of angles of shape (...); value inf where it is not defined.
-    angle, low, high : ndarray, shape (...), rad
-        Where to begin, and bounds: infinite, or where the driver's range ends.
-
-    Returns
-    -------
-    angle, value : ndarray, shape (...)
+    Bounds are infinite, or where the driver's range ends; the model is inf where it is not defined.
     """
     unknown = _Unknown(model, low, high)
     angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
@@ -60,28 +51,11 @@ def lowest_in_order(
     bounds: tuple[FloatArray, FloatArray],
     ends: tuple[FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
-    """Rows of angles moved to a least sum of their values, kept from going back within one turn.
+    """Rows of angles (K, N) moved to a least sum of values, kept from going back within one turn.
 
-    Parameters
-    ----------
-    model : callable
-        Of angles of shape (K, N), each value depending on its own angle only.
-    angle : ndarray, shape (K, N), rad
-        Where to begin, every row in order.
-    bounds : pair of ndarray, shape (K, N), rad
-        Lowest and highest angle, in order along each row.
-    ends : pair of ndarray, shape (K, N), rad
-        Of the driver's range; infinite for a driver that turns fully.
-
-    Returns
-    -------
-    angle, value : ndarray, shape (K, N)
-
-    Notes
-    -----
-    Newton steps with the diagonal second derivative, each projected on the order by weighted isotonic
-    regression (Best & Chakravarti 1990), which is the exact solution of the quadratic step; angles
-    that stand together share their second derivative, so that they take a Newton step together.
+    Each value depends on its own angle only; bounds, in order, and ends of the driver's range in rad. Newton
+    steps with the diagonal second derivative (angles that stand together share theirs), projected on the
+    order by weighted isotonic regression (Best & Chakravarti 1990), the exact solution of the quadratic step.
     """
     unknown = _Unknown(model, *ends)
     low, high = (np.clip(bound, *ends) for bound in bounds)

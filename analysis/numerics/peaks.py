@@ -19,32 +19,11 @@ Curves = Callable[[FloatArray], FloatArray]
 
 
 def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Greatest value of each of several curves, and where it is.
+    """Greatest value and its place, (R, ...), of R curves over stretches of ascending samples (..., N).
 
-    Parameters
-    ----------
-    curves : callable
-        From places, shape (..., N), to values, shape (R, ..., N). NaN counts as infinite.
-    stretches : sequence of ndarray, shape (..., N)
-        Ascending places at which the curves are sampled, for each interval between whose ends they are
-        searched. A peak must not be narrower than the samples are apart. A row with fewer samples than
-        others repeats its last one.
-
-    Returns
-    -------
-    values, places : ndarray, shape (R, ...)
-        Infinite values where the first sample is.
-
-    Notes
-    -----
-    Ever closer samples about the highest, then the top of a parabola through three of them: right to
-    rounding where the curve is smooth.
-
-    Examples
-    --------
-    >>> values, places = peaks(lambda x: np.stack([np.sin(x), x]), [np.linspace(0.0, 3.0, 50)])
-    >>> values.round(12).tolist(), places.round(9).tolist()
-    ([1.0, 3.0], [1.570796327, 3.0])
+    No peak may be narrower than the samples are apart; shorter rows repeat their last. NaN counts as
+    infinite, and a curve whose first sample is infinite has no other peak. Closer and closer samples, then a
+    parabola: right to rounding where a curve is smooth.
     """
 
     def each_its_own(places: FloatArray) -> FloatArray:
@@ -61,31 +40,10 @@ def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, 
 def greatest(
     curves: Curves, places: FloatArray, most: int = _MOST, rounds: int = _ROUNDS
 ) -> tuple[FloatArray, FloatArray]:
-    """Greatest value of each of many curves between two ends, each sampled where it is high by itself.
+    """Greatest value and its place, (R, ...), of R curves over ascending dense samples (..., N).
 
-    Parameters
-    ----------
-    curves : callable
-        From places to values of the R curves, shape (R, ..., N): from places that are the same for all,
-        shape (1, ..., N), or each curve's own, shape (R, ..., N). See `own`.
-    places : ndarray, shape (..., N)
-        Ascending: dense samples from end to end. Repeated ones count once.
-    most : int
-        So many of the highest samples that no neighbour exceeds are looked at more closely,
-    rounds : int
-        so many times, each an eighth as far about them. Four are enough for smooth curves.
-
-    Returns
-    -------
-    values, places : ndarray, shape (R, ...)
-
-    Examples
-    --------
-    >>> def curves(x):
-    ...     return np.stack([np.sin(x[0]), 5 - (x[-1] - 2.0) ** 2])
-    >>> values, places = greatest(curves, np.linspace(0, 3, 30))
-    >>> values.round(12).tolist(), places.round(6).tolist()
-    ([1.0, 5.0], [1.570796, 2.0])
+    Repeated samples count once. Curves take (1, ..., N) or each its own (R, ..., N), see `own`; about the
+    `most` highest samples each looks `rounds` times, an eighth as far: four are enough for smooth curves.
     """
     values = curves(places[None])
     padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
@@ -114,24 +72,11 @@ def greatest(
 def with_extremes(
     curve: Callable[[FloatArray], FloatArray], places: FloatArray, *, periodic: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """All extremes of a smooth curve, so that it is monotone from each place to the next.
+    """Ascending dense places (N,) with a smooth curve's extremes (M,) among them, and these alone.
 
-    Parameters
-    ----------
-    curve : callable
-        From places, shape (..., N), to values of the same shape.
-    places : ndarray, shape (N,)
-        Ascending: dense samples from end to end.
-    periodic : bool
-        The curve goes on beyond its ends as it began, and the places are those of a whole period.
+    The curve is monotone between. If `periodic` the places are those of a whole period, whose last is left
+    out.
 
-    Returns
-    -------
-    every, extremes : ndarray, shape (N + M,) and (M,)
-        The places with the extremes among them, but for the last one of a period; and the extremes alone.
-
-    Examples
-    --------
     >>> every, extremes = with_extremes(np.sin, np.linspace(0, 6, 20), periodic=False)
     >>> len(every), (extremes / np.pi).round(9).tolist()
     (22, [0.5, 1.5])
@@ -169,8 +114,6 @@ def last_where(
 ) -> FloatArray:
     """Where a condition holds last on the way from some places to others, to rounding; shape (N,).
 
-    Examples
-    --------
     >>> last_where(lambda x: x * x <= 2, np.array([0.0, -1.0]), np.array([2.0, -3.0])).round(12).tolist()
     [1.414213562373, -1.414213562373]
     """
@@ -199,8 +142,6 @@ def vertex(
 ) -> FloatArray:
     """Where the parabola through three values at equal steps is highest; the middle where none is.
 
-    Examples
-    --------
     >>> float(vertex(*map(np.float64, (2.0, 1.0, 0.0, 4.0, 4.0))))
     2.5
     """

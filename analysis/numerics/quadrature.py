@@ -28,18 +28,7 @@ _MOST = 1 << 18  # values of the curve, beyond which it is left as it is
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panels:
-    """Integral of a curve, panel by panel.
-
-    Parameters
-    ----------
-    edges : ndarray, shape (M + 1,)
-        Ends of the panels, in order.
-    parts : ndarray, shape (..., M)
-        Integral over each of them.
-    error : ndarray, shape (...)
-        What their sum may be wrong by, from the last change that splitting the panels made. Infinite where
-        there is no integral.
-    """
+    """Integrals (..., M) between edges (M + 1,); `error` of their sum, infinite where there is none."""
 
     edges: FloatArray
     parts: FloatArray
@@ -61,34 +50,11 @@ class Panels:
 
 
 def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> Panels:
-    """Integral of one curve or several, by panels that are split until the sum stays as it is.
+    """Integral of curves, (N,) to (..., N), by panels that are split until the sum stays as it is.
 
-    Parameters
-    ----------
-    curve : callable
-        From places, shape (N,), to values, shape (..., N).
-    edges : array_like, shape (M + 1,)
-        Where it is integrated from and to, and ends of panels between, in order.
-    narrowest : float
-        Share of the whole below which no panel is split.
-
-    Returns
-    -------
-    Panels
-        Not finite where the curve is not.
-
-    Notes
-    -----
-    Gauss-Legendre sums of 16 nodes over each panel and over two parts of it. Panels with a kink or jump
-    are split down to rounding, and so are those whose polynomials do not meet the next ones: a jump
-    beyond the last node of a panel leaves its sums alone. A curve that is smooth in panels a few times as
-    wide as its narrowest peak takes few.
-
-    Examples
-    --------
-    >>> found = integrate(lambda x: np.abs(x - 0.3), [0, 1])
-    >>> float(found.total.round(12)), bool(found.error < 1e-12)
-    (0.29, True)
+    `edges` (M + 1,) are in order, and no panel below a share `narrowest` is split; not finite where a curve
+    is not. Gauss-Legendre sums of 16 nodes over each panel and over two parts of it; panels whose polynomials
+    do not meet the next ones are split, too: a jump beyond the last node leaves sums alone.
     """
     edges = np.asarray(edges, dtype=np.float64)
     least, spent = narrowest * float(np.abs(edges[-1] - edges[0])), 0
@@ -122,8 +88,6 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
 def held(value: float, error: float) -> float:
     """A number without the digits that an error may change: 0 where none is left.
 
-    Examples
-    --------
     >>> held(1234.5678, 0.03), held(1234.5678, 1e-9), held(1e-9, 1e-6), held(1.0, float("nan"))
     (1234.6, 1234.5678, 0.0, nan)
     >>> held(float("inf"), 1.0), held(float("nan"), 1e308)
@@ -146,16 +110,7 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """Panels with the sums over them.
-
-    Parameters
-    ----------
-    low, high : ndarray, shape (M,)
-    part, size : ndarray, shape (..., M)
-        Integrals of the curve and of its magnitude.
-    ends : ndarray, shape (..., M, 2)
-        Values, at both ends, of the polynomial through the nodes.
-    """
+    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., M, 2)."""
 
     low: FloatArray
     high: FloatArray

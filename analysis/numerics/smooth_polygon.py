@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, turned_from
 
 _CHORD = 0.01  # share of the curve's extent: no chord is longer
 _TURN = np.radians(4)  # nor turns more against the next
@@ -19,27 +19,10 @@ _ROUNDS = 24
 def smooth_polygon(
     curve: Callable[[FloatArray], FloatArray], places: npt.ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Points of a curve, close enough together for lines between them to look like it.
+    """Places (M,) and points (M, 2) of a curve, so close together that lines between look like it.
 
-    Parameters
-    ----------
-    curve : callable
-        From places, shape (N,), to its points, shape (N, 2); NaN where there is none.
-    places : array_like, shape (N,)
-        Where it is sampled at the least, in order; for example driver angles.
-
-    Returns
-    -------
-    places : ndarray, shape (M,)
-        Those given and others halfway between them, while a chord is longer than a hundredth of the
-        curve's extent or turns by more than 4 deg, and up to about 2000 in all.
-    points : ndarray, shape (M, 2)
-
-    Examples
-    --------
-    >>> places, points = smooth_polygon(lambda t: np.column_stack([t, np.sqrt(t)]), np.linspace(0, 1, 5))
-    >>> bool(np.hypot(*np.diff(points, axis=0).T).max() < 0.01)
-    True
+    Places, in order, are halved while a chord exceeds a hundredth of the extent or turns by more than 4 deg,
+    up to about 2000 in all; points are NaN where there are none.
     """
     places = np.asarray(places, dtype=np.float64)
     points = curve(places)
@@ -63,7 +46,7 @@ def _coarse(points: FloatArray) -> npt.NDArray[np.bool_]:
     lengths = np.hypot(*chords.T)
     coarse: npt.NDArray[np.bool_] = lengths > _CHORD * extent
     ways = np.arctan2(chords[:, 1], chords[:, 0])
-    turns = np.abs((np.diff(ways) + np.pi) % (2 * np.pi) - np.pi)
+    turns = np.abs(turned_from(ways[1:], ways[:-1]))
     longer = np.maximum(lengths[1:], lengths[:-1])
     bent = (turns > _TURN) & (longer > _SEEN * extent)
     coarse[1:] |= bent & (lengths[1:] > longer / 2)

@@ -17,31 +17,11 @@ _FACTORIALS = (1.0, 1.0, 2.0, 6.0)
 
 
 def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[FloatArray, ...]:
-    """A function of time and its first three derivatives, to rounding.
+    """A function of time (...) and its first three derivatives, to rounding, by truncated Taylor series.
 
-    Parameters
-    ----------
-    function : callable
-        Written with arithmetic, NumPy's functions and ``np.where``; or a SciPy spline or NumPy
-        polynomial.
-    time : array_like, shape (...)
+    Forward automatic differentiation (Griewank & Walther, *Evaluating Derivatives*, ch. 13) of arithmetic,
+    NumPy's functions and ``np.where``, or a SciPy spline or NumPy polynomial; ProblemError for others.
 
-    Returns
-    -------
-    tuple of four ndarrays, shape (...)
-
-    Raises
-    ------
-    ProblemError
-        The function cannot be differentiated this way.
-
-    Notes
-    -----
-    Forward automatic differentiation with truncated Taylor series (Griewank & Walther, *Evaluating
-    Derivatives*, ch. 13). No step has to be chosen and nothing is lost to rounding.
-
-    Examples
-    --------
     >>> [float(value) for value in derivatives(lambda t: t**3 - np.cos(2 * t), 0.0)]
     [-1.0, 0.0, 4.0, 6.0]
     """
@@ -69,13 +49,7 @@ def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[Fl
 
 
 class Taylor(NDArrayOperatorsMixin):
-    """A quantity and its Taylor coefficients in time, that arithmetic and NumPy's functions take.
-
-    Parameters
-    ----------
-    terms : sequence of array_like, each of shape (...)
-        Coefficients from order 0; those left out are zero.
-    """
+    """Taylor coefficients in time from order 0 (else zero), for arithmetic and NumPy's functions."""
 
     __slots__ = ("terms",)
 

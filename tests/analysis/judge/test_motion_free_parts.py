@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass
-from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
+from grashof.analysis.judge.poses import nearest_to_poses
 from grashof.analysis.judge.task_motion import Targets
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, MotionTask

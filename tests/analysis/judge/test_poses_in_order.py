@@ -8,9 +8,8 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from grashof.analysis.judge.nearest_poses import nearest_to_poses
 from grashof.analysis.judge.planted import planted_motion
-from grashof.analysis.judge.poses_in_order import poses_in_order
+from grashof.analysis.judge.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.problems import FourBar, MotionTask
 

@@ -1,28 +1,29 @@
-"""Free points met in order: dynamic programming for the assignment, then Newton's method in all angles."""
+"""Free points met in order, by dynamic programming and Newton's method in all angles; or each by itself."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import (
     PIECES,
-    ROUNDING,
     Track,
     between,
     coupler_curve,
     range_around,
-    squared_distance,
     tracks,
 )
-from grashof.analysis.judge.assignment import Guess, ordered_guesses
+from grashof.analysis.judge.assignment import Guess, nearest_guess, ordered_guesses
+from grashof.analysis.judge.misses import as_good, squares
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.numerics.minimisation import lowest, lowest_in_order
+from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
+_VALLEYS = 3
 _BASINS = 4
 _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
@@ -32,16 +33,35 @@ _LOOK = np.linspace(-1, 1, 25)
 Met: TypeAlias = tuple[FloatArray, IntArray, int]
 
 
+def met_singly(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """Each point as near as possible, on the motion of the least squares; None without an assembly."""
+    target = np.arange(len(task))
+    best: Met | None = None
+    least = np.inf
+    for track in _tracks_through(linkage, same_branch, theta2_start):
+        angle, low, high, assembly = nearest_guess(track, task.positions @ np.array([1, 1j]), _VALLEYS)
+        if theta2_start is not None:
+            angle[:, 0] = low[:, 0] = high[:, 0] = theta2_start
+        angle, value = lowest(squares(linkage, task, assembly, weighted=False), angle, low, high)
+        chosen = np.argmin(value, axis=0)
+        total = float((task.weights * value[chosen, target]).sum())
+        if total < least:
+            best, least = (angle[chosen, target], assembly[chosen, target], 0), total
+    return best
+
+
+def _tracks_through(linkage: Linkage, same_branch: bool, theta2: float | None) -> list[Track]:
+    every = tracks(linkage, PIECES, same_branch)
+    if theta2 is None or len(every) == 1:
+        return every
+    return [track for track in every if (theta2 - track.low[0]) % TURN <= track.high[-1] - track.low[0]]
+
+
 def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
-    """The least weighted squares of distances over driver angles that do not go back, within one turn.
+    """The least weighted squares over driver angles that do not go back, within one turn.
 
-    Returns
-    -------
-    Met, or None when the linkage cannot be assembled.
-
-    Notes
-    -----
-    Where points have to stand together far from the curve, the least found may be a local one.
+    None when it cannot be assembled. Where points have to stand together far from the curve, the least found
+    may be a local one.
     """
     passages = _passages(linkage, task, same_branch, theta2_start)
     guesses = [(guess, passage) for passage in passages for guess in passage.guesses(middles=False)]
@@ -52,39 +72,46 @@ def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: 
     near = [item for item in guesses[:_BASINS] if item[0].distance <= first.distance + 2 * first.slack]
     for crowded in {id(passage): passage for guess, passage in near if guess.crowded}.values():
         near += [(guess, crowded) for guess in crowded.guesses(middles=True)]
-    theta2, value = _refined(linkage, near)
-    moved = _beside(linkage, near, theta2, value)
+    theta2, floor, ceiling, assembly = (
+        np.array([getattr(guess, name) for guess, _ in near])
+        for name in ("theta2", "floor", "ceiling", "assembly")
+    )
+    low, high = np.array([passage.bounds() for _, passage in near]).swapaxes(0, 1)
+    points = np.array([passage.points for _, passage in near])
+    model = squares(linkage, task, assembly, np.array([passage.order for _, passage in near]))
+
+    def gaps(angle: FloatArray) -> FloatArray:
+        p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
+        return np.asarray(np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf))
+
+    theta2, value = lowest_in_order(model, theta2, (low, high), (floor, ceiling))
+    moved = _beside(gaps, model, theta2, value, np.maximum(floor, low), np.minimum(ceiling, high))
     if (moved != theta2).any():
-        shifted = [(replace(item[0], theta2=row), item[1]) for item, row in zip(near, moved, strict=True)]
-        moved, depth = _refined(linkage, shifted)
+        moved, depth = lowest_in_order(model, moved, (low, high), (floor, ceiling))
         deeper = (depth.sum(axis=1) < value.sum(axis=1))[:, None]
         theta2, value = np.where(deeper, moved, theta2), np.where(deeper, depth, value)
-    total = value.sum(axis=1)
-    level = total <= total.min() * (1 + 1e-9) + len(task) * (ROUNDING * task.size) ** 2
+    level = as_good(task, value.sum(axis=1))
     row = int(np.argmin(np.where(level, np.ptp(theta2, axis=1), np.inf)))
-    guess, passage = near[row]
-    sense = passage.direction
-    return theta2[row][::sense], guess.assembly[::sense], sense
+    sense = near[row][1].direction
+    return theta2[row][::sense], assembly[row][::sense], sense
 
 
 def _beside(
-    linkage: Linkage, guesses: list[tuple[Guess, _Passage]], theta2: FloatArray, value: FloatArray
+    gaps: Callable[[FloatArray], FloatArray],
+    model: Callable[[FloatArray], Model],
+    theta2: FloatArray,
+    value: FloatArray,
+    lowest_angle: FloatArray,
+    highest_angle: FloatArray,
 ) -> FloatArray:
     """Angles moved over into the next valley where that is deeper, as it may be beside a cusp."""
     room = (TURN - (theta2[:, -1:] - theta2[:, :1])) / 2
     before = np.concatenate([theta2[:, :1] - room, theta2[:, :-1]], axis=1)
     after = np.concatenate([theta2[:, 1:], theta2[:, -1:] + room], axis=1)
-    bounds = np.array([passage.bounds() for _, passage in guesses]).swapaxes(0, 1)
-    floor, ceiling = (
-        np.array([getattr(guess, name) for guess, _ in guesses]) for name in ("floor", "ceiling")
-    )
-    low = np.maximum.reduce([before, floor, bounds[0], theta2 - _BESIDE])
-    high = np.minimum.reduce([after, ceiling, bounds[1], theta2 + _BESIDE])
-    assembly = np.array([guess.assembly for guess, _ in guesses])
-    points, weights = (np.array([getattr(one, name) for _, one in guesses]) for name in ("points", "weights"))
+    low = np.maximum.reduce([before, lowest_angle, theta2 - _BESIDE])
+    high = np.minimum.reduce([after, highest_angle, theta2 + _BESIDE])
     angle = np.clip(theta2[..., None] + _BESIDE * _LOOK * np.abs(_LOOK), low[..., None], high[..., None])
-    p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
-    gap = np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf)
+    gap = gaps(angle)
     valley = (gap[..., 1:-1] < gap[..., :-2]) & (gap[..., 1:-1] < gap[..., 2:])
     valley[..., len(_LOOK) // 2 - 1] = False
     other = np.where(valley, gap[..., 1:-1], np.inf)
@@ -92,26 +119,16 @@ def _beside(
         return theta2
     chosen = np.argmin(other, axis=-1)[..., None] + 1
     start = np.where(valley.any(axis=-1), np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
-    moved, depth = lowest(squared_distance(linkage, points, assembly, weights), start, low, high)
+    moved, depth = lowest(model, start, low, high)
     return np.maximum.accumulate(np.where(depth < value * (1 - 1e-6), moved, theta2), axis=1)
 
 
 @dataclass(frozen=True, slots=True)
 class _Passage:
-    """One sense of the driver on one of its motions.
+    """One sense of the driver on one of its motions: points and weights (N,) as growing angles meet them.
 
-    Parameters
-    ----------
-    track : Track
-    points : ndarray of complex, shape (N,)
-        In the order in which growing driver angles meet them.
-    weights : ndarray, shape (N,)
-    direction : int
-        -1 when that is the task's order reversed.
-    first : float, rad, optional
-        Driver angle that is given at the task's first point.
-    start : ndarray of complex, shape (S,)
-        P there, on each assembly of the track.
+    `direction` is -1 when that reverses the task's order; `first` the driver angle (rad) given at the task's
+    first point, and `start` P there on each assembly.
     """
 
     track: Track
@@ -120,6 +137,11 @@ class _Passage:
     direction: int
     first: float | None = None
     start: ComplexArray | None = None
+
+    @property
+    def order(self) -> IntArray:
+        """Numbers of the targets."""
+        return np.arange(len(self.points))[:: self.direction]
 
     def guesses(self, *, middles: bool) -> list[Guess]:
         if self.first is None or self.start is None:
@@ -145,45 +167,27 @@ class _Passage:
 def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) -> Guess:
     """A guess for the other targets, with one more at a given driver angle before or after them."""
     place = 0 if at == 0 else len(guess.theta2)
-    return replace(
-        guess,
-        theta2=np.insert(guess.theta2, place, theta2),
-        floor=np.insert(guess.floor, place, guess.floor[at]),
-        ceiling=np.insert(guess.ceiling, place, guess.ceiling[at]),
-        assembly=np.insert(guess.assembly, place, assembly),
-        distance=float(np.hypot(guess.distance, distance)),
-    )
+    added = {"theta2": theta2, "floor": guess.floor[at], "ceiling": guess.ceiling[at], "assembly": assembly}
+    fields: dict[str, Any] = {
+        name: np.insert(getattr(guess, name), place, value) for name, value in added.items()
+    }
+    return replace(guess, **fields, distance=float(np.hypot(guess.distance, distance)))
 
 
 def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
     points = task.positions @ np.array([1, 1j])
+    ordered = [(points[::sense], task.weights[::sense], sense) for sense in (1, -1)]
     if theta2_start is None:
         every = tracks(linkage, PIECES, same_branch)
-        return [
-            _Passage(track, points[::sense], task.weights[::sense], sense)
-            for track in every
-            for sense in (1, -1)
-        ]
+        return [_Passage(track, *one) for track in every for one in ordered]
     ends = range_around(linkage, theta2_start)
     passages = []
-    for sense in (1, -1):
-        far = float(np.clip(theta2_start + sense * TURN, *ends))
+    for one in ordered:
+        far = float(np.clip(theta2_start + one[-1] * TURN, *ends))
         if far == theta2_start or np.isnan(far):
             continue
         low, high = sorted((theta2_start, far))
         track = between(linkage, low, high, ends, PIECES, same_branch)
         start = coupler_curve(linkage, theta2_start, track.signs)[0]
-        ordered = points[::sense], task.weights[::sense]
-        passages.append(_Passage(track, *ordered, sense, theta2_start, start))
+        passages.append(_Passage(track, *one, theta2_start, start))
     return passages
-
-
-def _refined(linkage: Linkage, guesses: list[tuple[Guess, _Passage]]) -> tuple[FloatArray, FloatArray]:
-    theta2, floor, ceiling, assembly = (
-        np.array([getattr(guess, name) for guess, _ in guesses])
-        for name in ("theta2", "floor", "ceiling", "assembly")
-    )
-    points, weights = (np.array([getattr(one, name) for _, one in guesses]) for name in ("points", "weights"))
-    low, high = np.array([passage.bounds() for _, passage in guesses]).swapaxes(0, 1)
-    model = squared_distance(linkage, points, assembly, weights)
-    return lowest_in_order(model, theta2, (low, high), (floor, ceiling))
