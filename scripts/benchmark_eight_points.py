@@ -6,8 +6,9 @@ says so (OPENBLAS_NUM_THREADS=1).
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from time import process_time
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,10 @@ from grashof.synth.theory.eight_point_linkages import (
 from grashof.synth.theory.eight_points import FAMILIES
 from grashof.synth.theory.homotopy import follow
 
-THROUGH = {"slider-crank": slider_cranks_through, "inverted-slider-crank": inverted_slider_cranks_through}
+THROUGH: dict[str, Callable[..., Through[Any]]] = {
+    "slider-crank": slider_cranks_through,
+    "inverted-slider-crank": inverted_slider_cranks_through,
+}
 STEEPEST = np.cos(np.radians(15))  # cosine of the least transmission angle over the turn
 
 
@@ -70,7 +74,7 @@ def planted_points(
     return points, found
 
 
-def missed(planted: SliderCrank | InvertedSliderCrank, through: Through) -> float:
+def missed(planted: SliderCrank | InvertedSliderCrank, through: Through[Any]) -> float:
     """Greatest difference of pivots and r2 of the nearest linkage found, by the planted one's size."""
     pivots = [name for name in planted.mechanism.ground if name in planted.mechanism.pivots]
     size = planted.r2 + np.hypot(*planted.coupler_point)
@@ -98,7 +102,7 @@ def arrived(kind: str, points: ComplexArray, rng: np.random.Generator) -> int:
     return len(family.distinct(ends[determined]))
 
 
-def measure(kind: str, number: int) -> tuple[Through, float, float]:
+def measure(kind: str, number: int) -> tuple[Through[Any], float, float]:
     """One planted task: what was found, in how many seconds, and how far the planted linkage is."""
     points, planted = planted_points(kind, np.random.default_rng([8, number]))
     begun = process_time()
