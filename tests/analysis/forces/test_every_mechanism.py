@@ -26,9 +26,11 @@ from grashof.analysis import (
     advantage,
     balance_force,
     balance_torque,
+    balance_turn,
     energies,
     equilibria,
     free_response,
+    full_rotation,
     given_masses,
     holding,
     inverse_dynamics,
@@ -96,17 +98,23 @@ class Case:
         """Springs, dampers and friction of every kind besides."""
         joints, pins = joints_of(self.linkage), pins_of(self.linkage)
         each = np.array([0.3 * (joint + 1) if joint in pins else 0.0 for joint in joints])
-        slides = {"slide_viscous": 0.3, "slide_coulomb": 0.5} if len(pins) < len(joints) else {}
+        slides = {"slide_viscous": 0.3, "slide_coulomb": 0.5, "slide_mu": 0.02, "slide_length": 0.5}
+        swaying = np.random.default_rng(0).normal(size=(COUNT, 2))
         last = self.links[-1]
         return Loads(
             gravity=GRAVITY,
-            forces=(*self.loads.forces, AppliedForce(last, (0.3, 0.1), (1.0, -2.0), turning=True)),
+            forces=(
+                *self.loads.forces,
+                AppliedForce(last, (0.3, 0.1), (1.0, -2.0), turning=True),
+                AppliedForce(3, (0.2, -0.4), lambda state: swaying * np.cos(2 * state.theta2)[..., None]),
+            ),
+            moments=(*self.loads.moments, AppliedMoment(2, lambda state: np.sin(state.turning[-1].theta))),
             springs=(
                 Spring(1, (0.2, 0.9), last, (0.3, 0.1), 3.0, 0.4, 0.7),
                 Spring(2, (1, 1), 3, (0, 1), 2.0),
             ),
             torsion_springs=tuple(TorsionSpring(joint, 1.0 + joint, 0.3) for joint in pins),
-            friction=Friction(each, each, 0.001, **slides),
+            friction=Friction(each, each, 0.001, **(slides if len(pins) < len(joints) else {})),
         )
 
 
@@ -196,6 +204,8 @@ def test_friction_and_springs_by_virtual_work_and_the_system_of_equations(case: 
             agree(system.solution[..., 2 * joint : 2 * joint + 2], found.forces[joint], clear)
         else:
             assert names[2 * joint][-1] == "n"
+            across = found.slide_force if row.links[0] == 1 else -found.slide_force
+            agree(system.solution[..., 2 * joint], across, clear)
             agree(system.solution[..., 2 * joint + 1], found.slide_moment, clear)
 
 
@@ -219,14 +229,34 @@ def test_power_is_the_rate_of_energy(case: Case) -> None:
 
 def test_what_holds_a_linkage_is_the_torque_at_rest(case: Case) -> None:
     resting = solve_kinematics(case.linkage, case.state.theta2, 0.0)
-    held = holding(case.linkage, case.state.theta2, case.masses, case.loads)
-    agree(held.torque, inverse_dynamics(resting, case.masses, case.loads).torque, case.clear)
+    loads = replace(case.rubbing(), friction=Friction())
+    held = holding(case.linkage, case.state.theta2, case.masses, loads)
+    alone = inverse_dynamics(resting, case.masses, loads).torque
+    agree(held.torque, alone, case.clear)
+    at_p = AppliedForce(
+        case.linkage.mechanism.carries,
+        case.linkage.coupler_point,
+        held.force[..., None] * held.direction,
+    )
+    left = inverse_dynamics(resting, case.masses, replace(loads, forces=(*loads.forces, at_p))).torque
+    moves = case.clear & (case.state.p.speed > 1e-2)
+    agree(alone + left, alone, moves)
     ratio = advantage(case.linkage, case.state.theta2)
     unit, slide = solve_kinematics(case.linkage, case.state.theta2), case.state.slides[-1]
     is_slider = slide is not None and case.linkage.mechanism.slides[-1][0] == 1
     last = unit.slides[-1].velocity if is_slider and unit.slides[-1] else unit.turning[-1].omega
     agree(ratio.velocity_ratio, last, case.clear)
+    agree(ratio.way, unit.p.speed, case.clear)
+    agree(ratio.force_ratio * unit.p.speed, case.linkage.r2 + 0 * unit.p.speed, moves)
     agree(held.moment * ratio.velocity_ratio, held.torque, case.clear & (np.abs(last) > 1e-3))
+
+
+def test_frames_of_links_are_those_of_their_points(case: Case) -> None:
+    for link in case.links:
+        start, end = (case.state.point(link, at).position for at in ((0.0, 0.0), (1.0, 0.0)))
+        angle = case.state.frame_angle(link)
+        agree(end - start, np.stack([np.cos(angle), np.sin(angle)], axis=-1), case.clear)
+        agree(start, case.state.origin(link).position + 0 * end, case.clear)
 
 
 def test_bars_are_in_balance_to_their_ends(case: Case) -> None:
@@ -272,14 +302,26 @@ def test_a_driver_let_go_keeps_its_energy_and_swings_about_an_equilibrium(case: 
     np.testing.assert_allclose(torque, 0, atol=1e-7 * peak)
 
 
-@pytest.mark.parametrize("row", ROWS)
-def test_six_bars_take_counterweights_on_the_crank_alone(row: str) -> None:
-    linkage, masses = one_of(case_of(row))
-    turn = solve_kinematics(linkage, np.linspace(0, 2 * np.pi, 60, endpoint=False))
-    found = balance_torque(turn, masses, Loads(gravity=(0, -9.81)), 1.0)
-    assert np.square(found.torque_after).mean() <= np.square(found.torque_before).mean()
-    with pytest.raises(ProblemError, match="has two loops, so counterweights on links 2 and 4 cannot"):
-        balance_force(linkage, masses)
+def test_a_counterweight_on_the_crank_evens_the_torque_out(case: Case) -> None:
+    linkage, masses = one_of(case)
+    theta2, weight = np.linspace(0, 2 * np.pi, 720, endpoint=False), Loads(gravity=(0, -9.81))
+    turn = solve_kinematics(linkage, theta2 if full_rotation(linkage) else 0.3 * np.cos(theta2))
+    tried = [balance_torque(turn, masses, weight, 1.0)]
+    tried += [balance_turn(linkage, masses, 1.0, weight, 1.0)] if full_rotation(linkage) else []
+
+    def mean_square(crank: Body) -> float:
+        whole = Masses(crank, *masses.bodies[1:])
+        return float(np.square(inverse_dynamics(turn, whole, weight).torque).mean())
+
+    assert np.square(tried[0].torque_after).mean() == pytest.approx(mean_square(tried[0].masses.crank))
+    for found in tried:
+        least = mean_square(found.masses.crank)
+        assert least <= mean_square(masses.crank)
+        for at in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):  # no weight beside it does better
+            assert mean_square(found.masses.crank + Body(0.01, 0.0, at)) > least
+    if len(linkage.mechanism.dyads) > 1:
+        with pytest.raises(ProblemError, match="has two loops, so counterweights on links 2 and 4 cannot"):
+            balance_force(linkage, masses)
 
 
 def test_what_does_not_fit_a_six_bar_is_refused() -> None:
