@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from body_coordinates import follow, forces, margins, rates, start
-from body_plans import Array, plan_of
-from random_linkages import ROWS, any_linkages, six_bars
+from body_coordinates import forces
+from body_plans import Array
+from random_linkages import GRID, Moving, agree
 
 from grashof.analysis import (
     AppliedForce,
@@ -49,39 +49,24 @@ from grashof.analysis.forces.joints import joints_of, pins_of
 from grashof.problems import (
     DynamicsSpec,
     FourBar,
-    InvertedSliderCrank,
     Linkage,
     ProblemError,
     SectionSpec,
-    SliderCrank,
     StrengthSpec,
 )
 
-KINDS: tuple[Any, ...] = (FourBar, SliderCrank, InvertedSliderCrank)
-GRID = [*KINDS, *ROWS]
 DRIVER = (2.0, 0.7, -0.3)
 GRAVITY = (0.7, -9.81)
 COUNT, STEPS = 30, 13
 
 
-class Case:
+class Case(Moving):
     """A batch of linkages of a kind that move, with masses and loads on every link."""
 
     def __init__(self, kind: Any) -> None:
-        rng = np.random.default_rng(GRID.index(kind))
-        if kind in KINDS:
-            some, theta = any_linkages(kind, 3 * COUNT, rng), rng.uniform(-np.pi, np.pi, 3 * COUNT)
-            found = np.isfinite(start(plan_of(some), theta, 3, 40)).all(axis=-1)
-            linkage, theta = some[found][:COUNT], theta[found][:COUNT]
-        else:
-            linkage, theta = six_bars(kind, COUNT, rng), np.zeros(COUNT)
-        self.linkage: Linkage = linkage
-        self.plan = plan_of(linkage)
-        turn = theta + np.linspace(-np.pi, np.pi, STEPS)[:, None]
-        self.motion = rates(self.plan, follow(self.plan, start(self.plan, theta), theta, turn), *DRIVER)
-        self.state = solve_kinematics(linkage, turn, *DRIVER)
-        self.clear = (np.abs(margins(self.plan, self.motion[0])) > 0.05).all(axis=-1)
-        self.links = range(2, self.plan.moving + 2)
+        super().__init__(kind, COUNT, STEPS, DRIVER)
+        rng = self.rng
+        self.state = solve_kinematics(self.linkage, self.turn, *DRIVER)
         self.bodies = {k: (*rng.uniform(0.5, 2, (2, COUNT)), rng.normal(size=(COUNT, 2))) for k in self.links}
         self.acting = [
             (k, tuple(rng.normal(size=2)), rng.normal(size=(COUNT, 2)), rng.normal(size=COUNT))
@@ -126,15 +111,6 @@ def case_of(kind: Any) -> Case:
 @pytest.fixture(params=GRID)
 def case(request: pytest.FixtureRequest) -> Case:
     return case_of(request.param)
-
-
-def agree(found: Array, expected: Array, clear: Array, limit: float = 1e-9) -> None:
-    """To a share of the greatest of each linkage, where it is clear of dead positions."""
-    apart, size = (
-        np.where(clear, np.abs(values).reshape(*clear.shape, -1).max(axis=-1), 0.0)
-        for values in (found - expected, expected)
-    )
-    assert (apart <= limit * np.maximum(size.max(axis=0), 1e-3)).all()
 
 
 def one_of(case: Case) -> tuple[Linkage, Masses]:

@@ -68,15 +68,3 @@ def test_an_output_that_turns_fully_has_no_stroke() -> None:
     assert np.isnan(stroke.swing)
     assert np.isnan(stroke.theta2).all()
     assert np.isnan(stroke.time_ratio)
-
-
-def test_batches_give_what_single_linkages_give() -> None:
-    batch = FourBar(o2=(0, 0), o4=(4, 1), r2=[1, 0.8, 3], r3=4, r4=[3, 2, 3], assembly=[1, -1, 1])
-    together = output_stroke(batch)
-    assert together.theta2.shape == (3, 2)
-    assert together.b.shape == (3, 2, 2)
-    for index in range(3):
-        alone = output_stroke(batch[index])
-        np.testing.assert_array_equal(together.swing[index], alone.swing)
-        np.testing.assert_array_equal(together.chord[index], alone.chord)
-        np.testing.assert_array_equal(together.time_ratio[index], alone.time_ratio)

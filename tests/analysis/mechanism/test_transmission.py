@@ -176,19 +176,3 @@ def test_transmission_angle_where_the_linkage_cannot_close() -> None:
     assert worst_transmission(triple_rocker, np.radians(-100), np.radians(-260)) == 0
     assert worst_transmission(triple_rocker, np.radians(-100), np.radians(100)) > 0.1
     assert worst_transmission_cycle(triple_rocker) == 0
-
-
-def test_batches_give_what_single_linkages_give() -> None:
-    rng = np.random.default_rng(8)
-    batch = FourBar(
-        o2=rng.normal(size=(6, 2)), o4=3 + rng.normal(size=(6, 2)), r2=1, r3=rng.uniform(2, 5, 6), r4=3.5
-    )
-    starts, ends = rng.uniform(-7, 7, (6, 4)), rng.uniform(-7, 7, (6, 4))
-    together = worst_transmission(batch[:, None], starts, ends)
-    assert together.shape == (6, 4)
-    angles, cycles = transmission_angle(batch[:, None], starts), worst_transmission_cycle(batch)
-    for index in range(6):
-        alone = batch[index]
-        np.testing.assert_array_equal(together[index], worst_transmission(alone, starts[index], ends[index]))
-        np.testing.assert_array_equal(angles[index], transmission_angle(alone, starts[index]))
-        assert cycles[index] == worst_transmission_cycle(alone)
