@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refusal
 
 from grashof.analysis import (
     AppliedForce,
@@ -166,10 +167,9 @@ def test_what_a_kind_has_not_is_refused_in_one_line() -> None:
         (bar, Loads(friction=Friction(slide_mu=0.1)), "slide_mu friction is 0.1; a four-bar has no slide"),
         (engine, Loads(friction=Friction(slide_mu=-0.1)), "slide_mu is -0.1"),
     ):
-        with pytest.raises(ProblemError) as told:
-            inverse_dynamics(solve_kinematics(linkage, 1.0), none, loads)
-        assert str(told.value).startswith(line)
-        assert len(str(told.value).splitlines()) == 1
+        told = refusal(inverse_dynamics, solve_kinematics(linkage, 1.0), none, loads)
+        assert told.startswith(line)
+        assert len(told.splitlines()) == 1
 
 
 def test_a_load_over_travel_has_to_cover_it(everything: Specs) -> None:
