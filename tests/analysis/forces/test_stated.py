@@ -56,6 +56,7 @@ def test_the_torque_of_everything_at_once_is_virtual_work(
         work = virtual_work_torque(state, masses, loads, found.joint_moments)
         peak = np.abs(found.torque).max()
         np.testing.assert_allclose(found.torque, work, rtol=0, atol=1e-9 * peak)
+        np.testing.assert_allclose(found.power, found.torque * state.omega2)
 
 
 def test_newtons_are_newtons_in_every_length_unit(everything: Specs, made: Maker) -> None:
