@@ -76,7 +76,9 @@ def test_its_power_is_that_of_the_energy(linkage: Linkage, on: str) -> None:
     ahead, behind = (solve_kinematics(linkage, at + k, 1.0) for k in (step, -step))
     rise = np.asarray(energies(ahead, masses, WEIGHT).total) - energies(behind, masses, WEIGHT).total
     longer = cylinder_state(jack, linkage, ahead).length - cylinder_state(jack, linkage, behind).length
-    np.testing.assert_allclose(force * longer, rise, rtol=1e-6, atol=1e-7 * np.abs(rise).max())
+    np.testing.assert_allclose(
+        force * longer, rise, rtol=1e-6, atol=1e-7 * np.abs(rise).max() * (linkage is not ROCKER)
+    )
 
 
 @pytest.mark.parametrize(("linkage", "on"), RUBBING)

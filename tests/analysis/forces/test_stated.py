@@ -16,11 +16,13 @@ from grashof.analysis import (
     virtual_work_torque,
 )
 from grashof.analysis.forces.curve_through import curve_through
+from grashof.analysis.forces.loads import wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
+    LoadSpec,
     Place,
     SpringSpec,
 )
@@ -96,6 +98,20 @@ def test_bars_of_a_density_are_those_of_their_section(made: Maker) -> None:
         body = masses.of(link)
         assert float(body.mass) == pytest.approx(7850 * 0.02 * 0.01 * length * 1e-3)
         assert float(body.inertia) == pytest.approx(float(body.mass) * (length**2 + 20**2) / 12)
+
+
+def test_loads_and_counterweights_act_where_they_are_stated(made: Maker) -> None:
+    linkage = made(FourBar, 1)[0]
+    turning, varying = (
+        LoadSpec(4, (1, 0), (3, 4), frame="link"),
+        LoadSpec(2, values=((0, 1), (90, 7), (360, 1))),
+    )
+    weight = CounterweightSpec(2, 3.0, (-0.4, 0.1))
+    spec = DynamicsSpec(1e-12, loads=(turning, varying), counterweights=(weight,))
+    felt = wrenches(solve_kinematics(linkage, np.pi / 2), stated_loads(spec, 1.0))
+    assert felt[2].moment == pytest.approx(7)  # degrees
+    assert felt[4].moment == pytest.approx(4)  # the arm of 1 times what is across it
+    np.testing.assert_allclose(stated_masses(linkage, spec).crank.centre, weight.at, rtol=1e-9)
 
 
 def test_centres_off_the_middle(made: Maker) -> None:
