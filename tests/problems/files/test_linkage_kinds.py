@@ -77,7 +77,7 @@ def message(folder: Path, text: str) -> list[str]:
     return [line.removeprefix(f"{path}: ") for line in refusal(load_linkage, path).splitlines()]
 
 
-def test_what_is_not_toldis_usual(tmp_path: Path) -> None:
+def test_what_is_not_said_is_usual(tmp_path: Path) -> None:
     assert load_linkage(written(tmp_path, SLIDER)) == SliderCrank((0, 0), 1, 4)
     assert load_linkage(written(tmp_path, INVERTED)) == InvertedSliderCrank((0, 0), (2, 0), 1)
     plain = 'mechanism = "four-bar"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'

@@ -34,7 +34,7 @@ def refused(text: str, word: str = "stephenson-3") -> list[str]:
     return refusal(read, text, word).splitlines()
 
 
-def test_what_is_not_answeris_usual() -> None:
+def test_what_is_not_said_is_usual() -> None:
     assert read(FOUR_BAR + DYAD).linkage == PLAIN
     slider = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=3, slide_angle_2=0, hosts=(3, 1))
     assert read(FOUR_BAR + SLIDE).linkage == slider
