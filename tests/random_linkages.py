@@ -13,12 +13,17 @@ from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.linkages.mechanisms import CLASSES
 
 KINDS: tuple[Any, ...] = tuple(CLASSES.values())  # those of one loop
-# Every six-bar that there is: the links that carry C and D, and whether its second loop has a slide.
-ROWS = {
+# Draws go by place: other rows come behind these.
+_FIRST = (
+    "pins 2 3", "pins 3 4", "pins 2 1", "pins 4 1", "pins 2 4", "pins 3 1", "slide 4 1", "slide 3 1",
+)  # fmt: skip
+_EVERY = {
     f"{'slide' if dyad.slides else 'pins'} {dyad.hosts[0]} {dyad.hosts[1]}": (dyad.hosts, dyad.slides)
     for row in MECHANISMS
     for dyad in row.dyads[1:]
 }
+# Every six-bar that there is: the links that carry C and D, and whether its second loop has a slide.
+ROWS = {name: _EVERY[name] for name in dict.fromkeys((*_FIRST, *_EVERY))}
 GRID: tuple[Any, ...] = (*KINDS, *ROWS)
 TURN = np.linspace(0, 2 * np.pi, 73)
 
