@@ -5,19 +5,55 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from body_coordinates import carried, follow, rates, start
+from body_coordinates import carried, follow, margins, rates, start
 from body_plans import Array, plan_of
 
 from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
+from grashof.problems.values.linkages.mechanism import MECHANISMS
+from grashof.problems.values.linkages.mechanisms import CLASSES
 
-# Links that carry C and D: Watt I (twice), Watt II (twice), Stephenson I, Stephenson III.
-PINNED = ((2, 3), (3, 4), (2, 1), (4, 1), (2, 4), (3, 1))
-PRESSES = ((4, 1), (3, 1))  # those with a slide on the ground
-ROWS = {
-    **{f"pins {i} {j}": ((i, j), False) for i, j in PINNED},
-    **{f"slide {i} {j}": ((i, j), True) for i, j in PRESSES},
+KINDS: tuple[Any, ...] = tuple(CLASSES.values())  # those of one loop
+# Draws go by place: other rows come behind these.
+_FIRST = (
+    "pins 2 3", "pins 3 4", "pins 2 1", "pins 4 1", "pins 2 4", "pins 3 1", "slide 4 1", "slide 3 1",
+)  # fmt: skip
+_EVERY = {
+    f"{'slide' if dyad.slides else 'pins'} {dyad.hosts[0]} {dyad.hosts[1]}": (dyad.hosts, dyad.slides)
+    for row in MECHANISMS
+    for dyad in row.dyads[1:]
 }
+# Every six-bar that there is: the links that carry C and D, and whether its second loop has a slide.
+ROWS = {name: _EVERY[name] for name in dict.fromkeys((*_FIRST, *_EVERY))}
+GRID: tuple[Any, ...] = (*KINDS, *ROWS)
 TURN = np.linspace(0, 2 * np.pi, 73)
+
+
+class Moving:
+    """A batch of a kind at driver angles over a turn, by the judge: many pass through open positions."""
+
+    def __init__(self, kind: Any, count: int, steps: int, driver: tuple[float, ...]) -> None:
+        self.rng = rng = np.random.default_rng(GRID.index(kind))
+        if kind in KINDS:
+            some, theta = any_linkages(kind, 3 * count, rng), rng.uniform(-np.pi, np.pi, 3 * count)
+            found = np.isfinite(start(plan_of(some), theta, 3, 40)).all(axis=-1)
+            self.linkage, self.theta = some[found][:count], theta[found][:count]
+        else:
+            self.linkage, self.theta = six_bars(kind, count, rng), np.zeros(count)
+        self.plan = plan_of(self.linkage)
+        self.links = range(2, self.plan.moving + 2)
+        self.q = start(self.plan, self.theta)
+        self.turn = self.theta + np.linspace(-np.pi, np.pi, steps)[:, None]
+        self.motion = rates(self.plan, follow(self.plan, self.q, self.theta, self.turn), *driver)
+        self.clear = (np.abs(margins(self.plan, self.motion[0])) > 0.05).all(axis=-1)
+
+
+def agree(found: Array, expected: Array, clear: Array, limit: float = 1e-9) -> None:
+    """To a share of the greatest of each linkage, where it is clear of dead positions."""
+    apart, size = (
+        np.where(clear, np.abs(values).reshape(*clear.shape, -1).max(axis=-1), 0.0)
+        for values in (found - expected, expected)
+    )
+    assert (apart <= limit * np.maximum(size.max(axis=0), 1e-3)).all()
 
 
 def any_linkages(kind: type[Any], count: int, rng: np.random.Generator) -> Any:

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from body_coordinates import carried, follow, forces, gap, jacobian, margins, rates, reach, start
 from body_plans import Array, Plan, plan_of
-from random_linkages import ROWS, any_linkages, crank_rockers, six_bars
+from random_linkages import GRID, ROWS, any_linkages, crank_rockers, six_bars
 
 from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
 
-KINDS = (FourBar, SliderCrank, InvertedSliderCrank)
 NORTON = {"o2": (0, 0), "o4": (100, 0), "r2": 40, "r3": 120, "r4": 80}
 
 
@@ -48,7 +47,7 @@ def angles(motion: Array, link: int) -> Array:
     return motion[..., 3 * link - 4]
 
 
-@pytest.mark.parametrize("row", [*KINDS, *ROWS])
+@pytest.mark.parametrize("row", GRID)
 def test_the_jacobian_is_the_derivative_of_the_gap(row: Any) -> None:
     rng = np.random.default_rng(1)
     plan = plan_of(made(row, 5, rng))
@@ -160,7 +159,7 @@ def test_what_cannot_be_assembled_is_nan() -> None:
     assert np.isfinite(followed).all(axis=-1).T.tolist() == [[False] * 3, [True] * 3, [False, True, False]]
 
 
-@pytest.mark.parametrize("row", [*KINDS, *ROWS])
+@pytest.mark.parametrize("row", GRID)
 def test_work_is_the_change_of_energy_and_the_ground_bears_the_rest(row: Any) -> None:
     """Under an uneven driver, gravity, a force of constant direction and a constant moment on each link."""
     rng = np.random.default_rng(3)

@@ -38,16 +38,35 @@ def golden_linkages(golden: dict[str, Any]) -> dict[str, FourBar]:
     }
 
 
-def _pumpjack(given: dict[str, Any]) -> FourBar:
-    r3 = float(given["r3"])
+@pytest.fixture(scope="session")
+def golden_states(golden: dict[str, Any]) -> list[tuple[str, int, float, dict[str, Any]]]:
+    """Every state of these linkages: name, assembly, speed of the driver in rad/s, figures."""
+    pumpjack, bag = golden["pumpjack_report_geometry"]["states"], golden["bag_mechanism_exact"]
+    lufkin = golden["pumpjack_lufkin_C912D_427_144"]["states(omega2=1 rad/s, inches)"]
+    states = [
+        *(("pumpjack", 1, 2 * np.pi / 3, state) for state in pumpjack["sigma=+1"]),
+        *(("pumpjack", -1, 2 * np.pi / 3, state) for state in pumpjack["sigma=-1"]),
+        *(("lufkin", 1, 1.0, state) for state in lufkin),
+        *(("bag", 1, 1.0, state) for state in [*bag["states_at_poses"], *bag["states"]]),
+        *(("table7", 1, 1.0, state) for state in golden["table7_lengths_theta1_0"]["states"]),
+    ]
+    assert len(states) == 10 + 2 + 8 + 9
+    return states
+
+
+def _reported(
+    given: dict[str, Any], point: Callable[[float], npt.ArrayLike], body_angle: float = 0.0
+) -> FourBar:
+    """A linkage whose coupler point is given by its r3."""
+    r2, r3, r4 = (float(given[name]) for name in ("r2", "r3", "r4"))
     return FourBar(
-        o2=_pair(given["O2"]),
-        o4=_pair(given["O4"]),
-        r2=float(given["r2"]),
-        r3=r3,
-        r4=float(given["r4"]),
-        coupler_point=(r3 / 2 * np.cos(0.4), r3 / 2 * np.sin(0.4)),
-    )
+        o2=_pair(given["O2"]), o4=_pair(given["O4"]), r2=r2, r3=r3, r4=r4,
+        coupler_point=point(r3), body_angle=body_angle,
+    )  # fmt: skip
+
+
+def _pumpjack(given: dict[str, Any]) -> FourBar:
+    return _reported(given, lambda r3: (r3 / 2 * np.cos(0.4), r3 / 2 * np.sin(0.4)))
 
 
 def _lufkin(given: dict[str, Any]) -> FourBar:
@@ -58,16 +77,8 @@ def _lufkin(given: dict[str, Any]) -> FourBar:
 
 
 def _bag(given: dict[str, Any]) -> FourBar:
-    r3 = float(given["r3"])
-    return FourBar(
-        o2=_pair(given["O2"]),
-        o4=_pair(given["O4"]),
-        r2=float(given["r2"]),
-        r3=r3,
-        r4=float(given["r4"]),
-        coupler_point=r3 * np.array(_pair(given["coupler_ratio"])),
-        body_angle=-float(given["states_at_poses"][0]["theta3"]),
-    )
+    body_angle = -float(given["states_at_poses"][0]["theta3"])
+    return _reported(given, lambda r3: r3 * np.array(_pair(given["coupler_ratio"])), body_angle)
 
 
 def _table7(given: dict[str, Any]) -> FourBar:

@@ -1,13 +1,15 @@
-"""The same mechanism in a rigid-body engine that others wrote, its loop closed by an equality."""
+"""Every kind of one loop in a rigid-body engine that others wrote, its loop closed by an equality."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from grashof.analysis import (
+    Body,
     Kinematics,
     Masses,
     free_response,
@@ -16,30 +18,42 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
-from grashof.problems import DynamicsSpec, FourBar
+from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.acting import (
-    CounterweightSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
+from grashof.problems.values.dynamics.acting import CounterweightSpec, Place, SpringSpec, TorsionSpringSpec
 from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 mujoco: Any = pytest.importorskip("mujoco")
 
 CRANK_ROCKER = FourBar((0.2, -0.1), (1.2, 0.3), 0.35, 1.1, 0.8, (0.5, 0.3))
 DOUBLE_CRANK = FourBar((0, 0), (0.4, 0.1), 1.1, 0.9, 1.2, (0.4, -0.2), assembly=-1)
+ENGINE = SliderCrank((0.2, -0.1), 0.35, 1.1, 0.15, 0.4, (0.5, 0.3))
+BACKWARDS = SliderCrank((0.2, -0.1), 0.35, 1.1, -0.15, 2.0, (0.5, 0.3), assembly=-1)
+SHAPER = InvertedSliderCrank((0.2, -0.1), (1.2, 0.3), 0.35, 0.2, (0.5, 0.3))
+WHITWORTH = InvertedSliderCrank((0, 0), (0.4, 0.1), 1.1, -0.2, (-0.4, 0.3), assembly=-1)
+IN_O2, IN_O4 = TorsionSpringSpec((1, 2), 1.5, 20.0), TorsionSpringSpec((1, 4), 0.7, 100.0)
 SPEC = DynamicsSpec(
     density=700.0,
     section=SectionSpec(0.04, 0.03),
     payload=0.5,
     gravity=(0.3, -9.81),
     springs=(SpringSpec((Place(1, (0.1, 0.9)), Place(4, (0.5, 0.1))), 40.0, 0.4),),
-    torsion_springs=(TorsionSpringSpec((1, 2), 1.5, 20.0), TorsionSpringSpec((1, 4), 0.7, 100.0)),
+    torsion_springs=(IN_O2,),
     counterweights=(CounterweightSpec(2, 0.6, (-0.2, 0.05)),),
 )
+SLIDER = Body(0.9, 0.01, (0.1, 0.05))  # of slider or block: bars leave them without mass
 STEP = 2e-5  # s
+
+
+def spec_of(linkage: Linkage) -> DynamicsSpec:
+    return replace(SPEC, torsion_springs=(IN_O2, IN_O4)) if isinstance(linkage, FourBar) else SPEC
+
+
+def masses_of(linkage: Linkage) -> Masses:
+    """The bars, and a slider or block."""
+    bars = stated_masses(linkage, spec_of(linkage))
+    return bars if isinstance(linkage, FourBar) else bars.with_body(4, SLIDER)
 
 
 def body(masses: Masses, link: int) -> str:
@@ -53,93 +67,132 @@ def body(masses: Masses, link: int) -> str:
     )
 
 
-def engine(linkage: FourBar, masses: Masses, spec: DynamicsSpec) -> Any:
-    """The mechanism as the engine's tree: link 2 with link 3 on it, link 4, B of both held together."""
-    (o2x, o2y), (o4x, o4y) = linkage.o2.tolist(), linkage.o4.tolist()
-    r2, r3, r4 = (float(getattr(linkage, name)) for name in ("r2", "r3", "r4"))
-    (gx, gy), spring = spec.gravity, spec.springs[0]
-    hinges = [
-        f'stiffness="{each.stiffness}" springref="{float(np.radians(each.free_angle_deg))!r}"'
-        for each in spec.torsion_springs
-    ]
-    ends = [end.at for end in spring.between]
+def hinge(name: str, spring: TorsionSpringSpec) -> str:
+    free = float(np.radians(spring.free_angle_deg))
+    return f'<joint name="{name}" axis="0 0 1" stiffness="{spring.stiffness}" springref="{free!r}"/>'
+
+
+def links(linkage: Linkage, masses: Masses) -> str:
+    """Link 2, in a four-bar or slider-crank link 3 on it, and link 4; s2 and s3 are to be held together."""
+    (o2x, o2y), r2 = linkage.o2.tolist(), float(linkage.r2)
+    crank = f'<body pos="{o2x} {o2y} 0">{body(masses, 2)}{hinge("q2", IN_O2)}'
+    eye = '<site name="eye" pos="0.5 0.1 0"/>'
+    if isinstance(linkage, InvertedSliderCrank):
+        (o4x, o4y), offset = linkage.o4.tolist(), float(linkage.offset)
+        # The rod on the block: its frame, a right angle behind the block's, begins in A, -travel from B.
+        return f"""
+        {crank}<site name="s2" pos="{r2} 0 0"/></body>
+        <body pos="{o4x} {o4y} 0">{body(masses, 4)}<joint name="q4" axis="0 0 1"/>{eye}
+          <body pos="{offset} 0 0" euler="0 0 {-np.pi / 2!r}">{body(masses, 3)}
+            <joint name="q3" type="slide" axis="-1 0 0"/><site name="s3" pos="0 0 0"/>
+          </body>
+        </body>"""
+    if isinstance(linkage, FourBar):
+        (o4x, o4y), r4 = linkage.o4.tolist(), float(linkage.r4)
+        output = f"""
+        <body pos="{o4x} {o4y} 0">{body(masses, 4)}{hinge("q4", IN_O4)}
+          <site name="s3" pos="{r4} 0 0"/>{eye}
+        </body>"""
+    else:
+        assert isinstance(linkage, SliderCrank)
+        angle, offset = float(linkage.slide_angle), float(linkage.offset)
+        x, y = o2x - offset * float(np.sin(angle)), o2y + offset * float(np.cos(angle))
+        output = f"""
+        <body pos="{x!r} {y!r} 0" euler="0 0 {angle!r}">{body(masses, 4)}
+          <joint name="q4" type="slide" axis="1 0 0"/><site name="s3" pos="0 0 0"/>{eye}
+        </body>"""
+    return f"""
+        {crank}
+          <body pos="{r2} 0 0">{body(masses, 3)}<joint name="q3" axis="0 0 1"/>
+            <site name="s2" pos="{float(linkage.r3)} 0 0"/>
+          </body>
+        </body>{output}"""
+
+
+def engine(linkage: Linkage, masses: Masses) -> Any:
+    (gx, gy), spring = SPEC.gravity, SPEC.springs[0]
+    hook = spring.between[0].at
     return mujoco.MjModel.from_xml_string(f"""
     <mujoco>
       <compiler angle="radian"/>
       <option gravity="{gx} {gy} 0" timestep="{STEP}" integrator="RK4" tolerance="1e-15" iterations="200">
         <flag contact="disable"/>
       </option>
-      <worldbody>
-        <site name="hook" pos="{ends[0][0]} {ends[0][1]} 0"/>
-        <body pos="{o2x} {o2y} 0">{body(masses, 2)}<joint name="q2" axis="0 0 1" {hinges[0]}/>
-          <body pos="{r2} 0 0">{body(masses, 3)}<joint name="q3" axis="0 0 1"/>
-            <site name="b3" pos="{r3} 0 0"/>
-          </body>
-        </body>
-        <body pos="{o4x} {o4y} 0">{body(masses, 4)}<joint name="q4" axis="0 0 1" {hinges[1]}/>
-          <site name="b4" pos="{r4} 0 0"/><site name="eye" pos="{ends[1][0]} {ends[1][1]} 0"/>
-        </body>
-      </worldbody>
+      <worldbody><site name="hook" pos="{hook[0]} {hook[1]} 0"/>{links(linkage, masses)}</worldbody>
       <tendon>
         <spatial stiffness="{spring.stiffness}" springlength="{spring.free_length}">
           <site site="hook"/><site site="eye"/>
         </spatial>
       </tendon>
       <equality>
-        <connect site1="b3" site2="b4" solref="{2 * STEP} 1" solimp="0.9999 0.9999 0.001"/>
+        <connect site1="s2" site2="s3" solref="{2 * STEP} 1" solimp="0.9999 0.9999 0.001"/>
       </equality>
     </mujoco>""")
 
 
-def set_state(data: Any, state: Kinematics, k: int) -> FloatArray:
-    """The engine in a state of ours; the accelerations of its joints."""
-    # The engine's springs are wound without end, ours by less than half a turn.
-    free = np.radians(SPEC.torsion_springs[1].free_angle_deg)
-    theta4 = free + (state.theta4[k] - free + np.pi) % (2 * np.pi) - np.pi
-    data.qpos[:] = state.theta2[k], state.theta3[k] - state.theta2[k], theta4
-    data.qvel[:] = state.omega2[k], state.omega3[k] - state.omega2[k], state.omega4[k]
-    return np.array([state.alpha2[k], state.alpha3[k] - state.alpha2[k], state.alpha4[k]])
+def joints(state: Kinematics) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Places, velocities and accelerations of the engine's joints, in their order, a row each."""
+    rows = zip(state.angular(2)[:3], state.angular(3)[:3], state.angular(4)[:3], strict=True)
+    if state.slide is None:
+        columns = [(two, three - two, four) for two, three, four in rows]
+        # The engine's springs are wound without end, ours by less than half a turn.
+        free, theta4 = np.radians(IN_O4.free_angle_deg), columns[0][2]
+        columns[0] = (*columns[0][:2], free + (theta4 - free + np.pi) % (2 * np.pi) - np.pi)
+    else:
+        travel = state.slide.travel, state.slide.velocity, state.slide.acceleration
+        sliding = zip(rows, travel, strict=True)
+        if isinstance(state.linkage, SliderCrank):
+            columns = [(two, three - two, slid) for (two, three, _), slid in sliding]
+        else:
+            columns = [(two, four, slid) for (two, _, four), slid in sliding]
+    place, rate, bend = (np.stack(np.broadcast_arrays(*each), axis=-1) for each in columns)
+    return place, rate, bend
 
 
-@pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK])
-def test_the_torque_is_what_the_engine_takes(linkage: FourBar) -> None:
+@pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK, ENGINE, BACKWARDS, SHAPER, WHITWORTH])
+def test_the_torque_is_what_the_engine_takes(linkage: Linkage) -> None:
     """Its mass matrix, its bias, its springs, its Jacobian of the loop; our accelerations."""
-    masses, loads = stated_masses(linkage, SPEC), stated_loads(SPEC, 1.0)
+    masses, loads = masses_of(linkage), stated_loads(spec_of(linkage), 1.0)
     theta2 = np.linspace(0.1, 3.0, 40)
     state = solve_kinematics(linkage, theta2, 7.0, 11.0)
     found = inverse_dynamics(state, masses, loads)
-    model = engine(linkage, masses, SPEC)
+    model = engine(linkage, masses)
     data, matrix = mujoco.MjData(model), np.zeros((3, 3))
-    scale, force_scale = np.abs(found.torque).max(), np.abs(found.f43).max()
+    held = found.f32 if isinstance(linkage, InvertedSliderCrank) else found.f43
+    scale, force_scale = np.abs(found.torque).max(), np.abs(held).max()
+    places, rates, accelerations = joints(state)
     for k in range(len(theta2)):
-        alpha = set_state(data, state, k)
+        data.qpos[:], data.qvel[:] = places[k], rates[k]
         mujoco.mj_forward(model, data)
         loop = data.efc_J.reshape(-1, 3)[: data.ne]
         assert np.abs(data.efc_pos[: data.ne]).max() < 1e-12  # the loop is closed
         assert np.abs(loop @ data.qvel).max() < 1e-10
         mujoco.mj_fullM(model, data, matrix)
-        demand = matrix @ alpha + data.qfrc_bias - data.qfrc_passive
+        demand = matrix @ accelerations[k] + data.qfrc_bias - data.qfrc_passive
         columns = np.column_stack([[1.0, 0.0, 0.0], loop[:2].T])
         torque, fx, fy = np.linalg.solve(columns, demand)
         assert torque == pytest.approx(found.torque[k], abs=1e-9 * scale)
-        assert np.hypot(fx, fy) == pytest.approx(np.hypot(*found.f43[k]), abs=1e-9 * force_scale)
+        assert np.hypot(fx, fy) == pytest.approx(np.hypot(*held[k]), abs=1e-9 * force_scale)
 
 
 @pytest.mark.slow
-def test_a_released_linkage_moves_as_in_the_engine() -> None:
-    linkage = CRANK_ROCKER
-    masses, loads = stated_masses(linkage, SPEC), stated_loads(SPEC, 1.0)
+@pytest.mark.quick("linkage0-4.0", "linkage1-1.3")
+@pytest.mark.parametrize(("linkage", "swept"), [(CRANK_ROCKER, 4.0), (ENGINE, 1.3), (SHAPER, 1.3)])
+def test_a_released_linkage_moves_as_in_the_engine(linkage: Linkage, swept: float) -> None:
+    masses, loads = masses_of(linkage), stated_loads(spec_of(linkage), 1.0)
     time = np.linspace(0, 0.4, 21)
     ours = free_response(linkage, masses, time, 2.0, -8.0, loads=loads).state
-    model = engine(linkage, masses, SPEC)
+    model = engine(linkage, masses)
     data = mujoco.MjData(model)
-    set_state(data, solve_kinematics(linkage, np.array([2.0]), -8.0), 0)
-    stride = round((time[1] - time[0]) / STEP)
-    worst = 0.0
+    places, rates, _ = joints(solve_kinematics(linkage, np.array([2.0]), -8.0))
+    data.qpos[:], data.qvel[:] = places[0], rates[0]
+    stride, worst = round((time[1] - time[0]) / STEP), 0.0
+    expected = joints(ours)[0]
     for k in range(1, len(time)):
         mujoco.mj_step(model, data, stride)
-        angles = np.array([ours.theta2[k], ours.theta3[k] - ours.theta2[k], ours.theta4[k]])
-        off = (data.qpos - angles + np.pi) % (2 * np.pi) - np.pi
+        off = data.qpos - expected[k]
+        off = np.where([model.jnt_type[j] == mujoco.mjtJoint.mjJNT_HINGE for j in range(3)],
+                       (off + np.pi) % (2 * np.pi) - np.pi, off)  # fmt: skip
         worst = max(worst, float(np.abs(off).max()))
-    assert np.ptp(ours.theta2) > 4.0
+    assert np.ptp(ours.theta2) > swept
     assert worst < 1e-8

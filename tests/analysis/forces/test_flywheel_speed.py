@@ -17,20 +17,25 @@ from grashof.analysis import (
     solve_kinematics,
     uniform_bars,
 )
-from grashof.problems import FourBar
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 TURN = 2 * np.pi
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
+LINKAGES = [JACK, SliderCrank((0, 0), 1, 3, 0.3, 0.4), InvertedSliderCrank((0, 0), (3, 0), 1.2, 0.3)]
 BARS = uniform_bars(JACK, (312, 312, 314))
 LOADS = Loads(gravity=(0, -9.81), springs=(Spring(1, (0, 6), 4, (2, 0), 9e3, 1.0),))
 
 
+@pytest.mark.parametrize("linkage", LINKAGES)
 @pytest.mark.parametrize("omega2", [TURN / 3, -TURN / 3])
 @pytest.mark.parametrize("fluctuation", [0.05, 0.3])
-def test_the_speed_varies_by_the_fluctuation_about_its_mean(omega2: float, fluctuation: float) -> None:
-    wheel = size_flywheel(JACK, BARS, omega2, fluctuation, LOADS)
+def test_the_speed_varies_by_the_fluctuation_about_its_mean(
+    linkage: Linkage, omega2: float, fluctuation: float
+) -> None:
+    bars = uniform_bars(linkage, 312.0)
+    wheel = size_flywheel(linkage, bars, omega2, fluctuation, LOADS)
     theta2 = np.linspace(0, TURN, 2001)
-    speed = flywheel_speed(JACK, BARS, omega2, wheel, theta2, LOADS)
+    speed = flywheel_speed(linkage, bars, omega2, wheel, theta2, LOADS)
     assert np.ptp(speed) == pytest.approx(fluctuation * abs(omega2), rel=1e-5)
     assert (speed.max() + speed.min()) / 2 == pytest.approx(omega2, rel=1e-5)
     assert speed[0] == pytest.approx(speed[-1], rel=1e-9)
@@ -38,11 +43,13 @@ def test_the_speed_varies_by_the_fluctuation_about_its_mean(omega2: float, fluct
     assert np.abs(np.exp(1j * fastest) - np.exp(1j * wheel.fastest)) < 0.01
 
 
-def test_energy_of_the_wheel_is_the_integral_of_the_torque() -> None:
-    wheel = size_flywheel(JACK, BARS, 2.0, 0.1, LOADS)
+@pytest.mark.parametrize("linkage", LINKAGES)
+def test_energy_of_the_wheel_is_the_integral_of_the_torque(linkage: Linkage) -> None:
+    bars = uniform_bars(linkage, 312.0)
+    wheel = size_flywheel(linkage, bars, 2.0, 0.1, LOADS)
     theta2 = np.linspace(0, TURN, 721)
-    speed = flywheel_speed(JACK, BARS, 2.0, wheel, theta2, LOADS)
-    torque = inverse_dynamics(solve_kinematics(JACK, theta2, 2.0), BARS, LOADS).torque
+    speed = flywheel_speed(linkage, bars, 2.0, wheel, theta2, LOADS)
+    torque = inverse_dynamics(solve_kinematics(linkage, theta2, 2.0), bars, LOADS).torque
     gained = CubicSpline(theta2, wheel.mean_torque - torque).antiderivative()(theta2)
     energy = wheel.inertia * speed**2 / 2
     np.testing.assert_allclose(energy - energy[0], gained, atol=1e-6 * np.ptp(gained))
@@ -66,13 +73,10 @@ def test_a_heavy_wheel_really_turns_so() -> None:
     assert off.max() < 0.02 * fluctuation * omega2
 
 
-GEARED = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
-
-
 @pytest.mark.parametrize("omega2", [2.0, -2.0])
 def test_power_into_the_gear_comes_out_but_for_its_losses(omega2: float) -> None:
-    state = solve_kinematics(GEARED, np.linspace(0, 6.28, 200), omega2)
-    torque = inverse_dynamics(state, uniform_bars(GEARED, 300.0), Loads(gravity=(0, -9.81))).torque
+    state = solve_kinematics(JACK, np.linspace(0, 6.28, 200), omega2)
+    torque = inverse_dynamics(state, uniform_bars(JACK, 300.0), Loads(gravity=(0, -9.81))).torque
     motor = motor_torque(torque, omega2, 0.0, 25.0, 0.8) * 25 * omega2
     load = torque * omega2
     drives = load > 0

@@ -1,36 +1,40 @@
-"""Inverse dynamics of slider kinds: virtual work, power, balance of each link and of the whole, textbooks."""
+"""Slider kinds, driven or left to themselves: friction of slides, textbooks, rest and equilibrium."""
 
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refusal
 
 from grashof.analysis import (
     AppliedForce,
     AppliedMoment,
     Body,
-    DriverLaw,
+    Ending,
     Friction,
     Joint,
     Kinematics,
     Loads,
     Masses,
     TorsionSpring,
+    balance_force,
     energies,
+    equilibria,
+    free_response,
+    generalised_inertia,
+    holding,
     inverse_dynamics,
-    powers,
     solve_kinematics,
     stated_loads,
     stated_masses,
-    system_of_equations,
-    virtual_work_torque,
 )
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.joints import joint_motion, slides_of
 from grashof.analysis.forces.loads import wrenches
+from grashof.analysis.numerics import collocation
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, ProblemError, SliderCrank
-from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 TURN = 2 * np.pi
@@ -44,83 +48,10 @@ def state_of(linkage: Linkage, count: int = 97, speed: float = 3.0) -> Kinematic
     return solve_kinematics(linkage, np.linspace(0.01, 6.27, count), speed, 2.0)
 
 
-@pytest.mark.quick("30.0-profile0-SliderCrank", "-30.0-profile2-InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("profile", [MotorSpec(), MotorSpec("trapezoid"), MotorSpec("cycloid")])
-@pytest.mark.parametrize("speed", [30.0, -30.0])
-def test_the_torque_of_everything_at_once_is_virtual_work(
-    profile: MotorSpec, speed: float, kind: type[Linkage], slider_loads: Specs, made: Maker
-) -> None:
-    spec = slider_loads[kind]
-    for linkage in made(kind, 20):
-        omega2 = speed * np.pi / 30
-        law = DriverLaw(0.0, np.copysign(TURN, omega2), omega2, profile)
-        time = np.linspace(0.001, 0.999, 173) * law.duration
-        state = solve_kinematics(linkage, *law.at_time(time))
-        masses = stated_masses(linkage, spec)
-        loads = stated_loads(spec, 1.0, lambda _, now=time: now)
-        found = inverse_dynamics(state, masses, loads)
-        work = virtual_work_torque(state, masses, loads, found.joint_moments)
-        peak = np.abs(found.torque).max()
-        np.testing.assert_allclose(found.torque, work, rtol=0, atol=1e-9 * peak)
-
-
-@pytest.mark.quick("2.0-SliderCrank", "-2.0-InvertedSliderCrank")
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("speed", [2.0, -2.0])
-def test_power_of_drive_loads_and_friction_is_the_rate_of_the_energy(
-    kind: type[Linkage], speed: float, slider_loads: Specs, made: Maker
-) -> None:
-    """Against differences of the energy over time, without any formula of accelerations or forces."""
-    spec = slider_loads[kind]
-    step = 2e-4
-    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    for linkage in made(kind, 20, margin=0.2):
-        masses = stated_masses(linkage, spec)
-        loads = stated_loads(spec, 1.0, lambda state: np.full(state.shape, 0.7))
-        now = np.linspace(0.1, 2.9, 41)
-        near = now[:, None] + step * np.arange(-4, 5)
-        law = speed * near + 0.3 * np.sin(near)
-        stored = energies(solve_kinematics(linkage, law, speed + 0.3 * np.cos(near)), masses, loads).total
-        rate = (stored * weights).sum(axis=1) / step
-        state = solve_kinematics(
-            linkage, speed * now + 0.3 * np.sin(now), speed + 0.3 * np.cos(now), -0.3 * np.sin(now)
-        )
-        given = powers(state, masses, loads)
-        together = given.drive + given.loads + given.friction
-        peak = np.abs(given.drive).max()
-        np.testing.assert_allclose(together, rate, rtol=0, atol=1e-9 * peak)
-        assert (given.friction < 0).all()
-
-
-@pytest.mark.quick("InvertedSliderCrank")
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_system_of_equations_has_the_same_solution(
-    kind: type[Linkage], slider_loads: Specs, made: Maker
-) -> None:
-    spec = slider_loads[kind]
-    for linkage in made(kind, 20):
-        state, masses = state_of(linkage), stated_masses(linkage, spec)
-        loads = stated_loads(spec, 1.0, lambda state: np.full(state.shape, 0.7))
-        found, system = inverse_dynamics(state, masses, loads), system_of_equations(state, masses, loads)
-        solution = dict(zip(system.unknowns, np.moveaxis(system.solution, -1, 0), strict=True))
-        across = found.slide_force * (-1 if kind is InvertedSliderCrank else 1)
-        expected = {
-            "T12": found.torque, "F14n": across, "F43n": across,
-            "M14": found.slide_moment, "M34": found.slide_moment,
-        }  # fmt: skip
-        for name in ("12", "32", "43", "14"):
-            force = getattr(found, f"f{name}")
-            expected |= {f"F{name}x": force[..., 0], f"F{name}y": force[..., 1]}
-        for name, values in solution.items():
-            scale = np.abs(expected[name]).max()
-            np.testing.assert_allclose(values, expected[name], rtol=0, atol=1e-9 * scale, err_msg=name)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_friction_of_a_slide_is_what_is_stated(kind: type[Linkage], slider_loads: Specs, made: Maker) -> None:
+def test_friction_of_a_slide_is_what_is_stated(kind: type[Linkage], everything: Specs, made: Maker) -> None:
     for linkage in made(kind, 5):
-        state, masses = state_of(linkage), stated_masses(linkage, slider_loads[kind])
+        state, masses = state_of(linkage), stated_masses(linkage, everything[kind])
         (slide,) = slides_of(linkage)
         speed = joint_motion(state, slide)[1]
         weight = Loads(gravity=(0, -9.81))
@@ -214,21 +145,9 @@ def test_a_quick_return_that_cuts() -> None:
     np.testing.assert_allclose(found.slide_moment, -7.0, rtol=1e-12)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_frames_of_links_are_those_of_their_points(kind: type[Linkage], made: Maker) -> None:
-    for linkage in made(kind, 4):
-        state = state_of(linkage)
-        for link in (2, 3, 4):
-            start, end = (state.point(link, at).position for at in ((0.0, 0.0), (1.0, 0.0)))
-            angle = state.frame_angle(link)
-            np.testing.assert_allclose(end - start, np.stack([np.cos(angle), np.sin(angle)], -1), atol=1e-14)
-            np.testing.assert_allclose(start + np.zeros_like(end), state.origin(link).position + 0 * end)
-        assert (state.margins[0] * linkage.assembly > 0).all()
-
-
-def test_masses_of_bars_sliders_blocks_and_rods(slider_loads: Specs) -> None:
+def test_masses_of_bars_sliders_blocks_and_rods(everything: Specs) -> None:
     engine = SliderCrank((0, 0), 1, 3, coupler_point=(1.0, 0.5))
-    masses = stated_masses(engine, replace(slider_loads[SliderCrank], counterweights=(), payload=0.0))
+    masses = stated_masses(engine, replace(everything[SliderCrank], counterweights=(), payload=0.0))
     assert [float(masses.of(link).mass) for link in (2, 3, 4)] == pytest.approx([0.8, 2.4, 0.0])
     for assembly in (1, -1):
         for point in ((0.3, 1.0), (9.0, 0.0), (-5.0, 0.0)):
@@ -238,7 +157,7 @@ def test_masses_of_bars_sliders_blocks_and_rods(slider_loads: Specs) -> None:
             reach = [0.0, point[0], travel.min(), travel.max()]
             assert float(bar.low) == pytest.approx(min(reach), rel=1e-12)
             assert float(bar.high) == pytest.approx(max(reach), rel=1e-12)
-            rod = stated_masses(shaper, replace(slider_loads[InvertedSliderCrank], counterweights=())).coupler
+            rod = stated_masses(shaper, replace(everything[InvertedSliderCrank], counterweights=())).coupler
             assert float(rod.mass) == pytest.approx(0.8 * (max(reach) - min(reach)) + 1.0)
 
 
@@ -257,15 +176,14 @@ def test_what_a_kind_has_not_is_refused_in_one_line() -> None:
         (bar, Loads(friction=Friction(slide_mu=0.1)), "slide_mu friction is 0.1; a four-bar has no slide"),
         (engine, Loads(friction=Friction(slide_mu=-0.1)), "slide_mu is -0.1"),
     ):
-        with pytest.raises(ProblemError) as told:
-            inverse_dynamics(solve_kinematics(linkage, 1.0), none, loads)
-        assert str(told.value).startswith(line)
-        assert len(str(told.value).splitlines()) == 1
+        told = refusal(inverse_dynamics, solve_kinematics(linkage, 1.0), none, loads)
+        assert told.startswith(line)
+        assert len(told.splitlines()) == 1
 
 
-def test_a_load_over_travel_has_to_cover_it(slider_loads: Specs) -> None:
+def test_a_load_over_travel_has_to_cover_it(everything: Specs) -> None:
     engine = SliderCrank((0, 0), 1, 3)
-    spec = slider_loads[SliderCrank]
+    spec = everything[SliderCrank]
     short = replace(spec, loads=(replace(spec.loads[1], values=((2.5, 1, 0), (4, 2, 0))),))
     with pytest.raises(ProblemError, match=r"^a load over travel covers 2.5 to 4; the slide comes to 2, too"):
         inverse_dynamics(
@@ -277,3 +195,133 @@ def test_a_load_over_travel_has_to_cover_it(slider_loads: Specs) -> None:
     state = solve_kinematics(engine, np.array([0.0, np.pi]))
     felt = wrenches(state, stated_loads(replace(whole, springs=(), dampers=()), 1.0))
     np.testing.assert_allclose(felt[4].force, [[2, 0], [1, 0]], atol=1e-12)
+
+
+NONE = Masses(Body(0.0), Body(0.0), Body(0.0))
+
+
+def lossless(spec: DynamicsSpec) -> DynamicsSpec:
+    return replace(spec, loads=(), dampers=(), friction=None)
+
+
+@pytest.mark.study
+@pytest.mark.quick("InvertedSliderCrank--40.0-2.0-0.3")
+@pytest.mark.parametrize(("omega2", "lasts", "margin"), [(40.0, 2.0, 0.2), (-40.0, 2.0, 0.3)])
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_released_linkage_keeps_its_energy_for_ten_turns(
+    kind: type[Linkage], omega2: float, lasts: float, margin: float, everything: Specs, made: Maker
+) -> None:
+    for linkage in made(kind, 1, margin=margin):
+        # A spring about a joint that turns fully is wound by less than half a turn, so its moment jumps.
+        turning = kind is InvertedSliderCrank and linkage.r2 > linkage.r1
+        springs = [each for each in everything[kind].torsion_springs if each.between != (2, 3)]
+        spec = replace(lossless(everything[kind]), torsion_springs=() if turning else tuple(springs))
+        masses, loads = stated_masses(linkage, spec), stated_loads(spec, 1.0)
+        free = free_response(linkage, masses, np.linspace(0, lasts, 99), 0.4, omega2, loads=loads)
+        assert free.ending is Ending.TIME
+        assert abs(free.state.theta2[-1] - 0.4) > 10 * TURN
+        assert np.ptp(free.energy) < 1e-11 * np.abs(free.energy).max()
+
+
+@pytest.mark.slow
+@pytest.mark.quick("SliderCrank")
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_torque_of_a_released_linkage_is_none(
+    kind: type[Linkage], everything: Specs, made: Maker
+) -> None:
+    """With everything that acts, friction of pins and slide too, from rest on: its motion needs no drive."""
+    spec = replace(everything[kind], loads=everything[kind].loads[2:6])
+    for linkage in made(kind, 1, margin=0.2):
+        masses, loads = stated_masses(linkage, spec), stated_loads(spec, 1.0)
+        time = np.linspace(0, 1.5, 40)
+        free = free_response(linkage, masses, time, 0.3, 0.0, loads=loads)
+        moving = free.state
+        steady = inverse_dynamics(moving, masses, loads)
+        inertia = generalised_inertia(linkage, moving.theta2, masses)
+        scale = np.abs(inertia * moving.alpha2).max()
+        turning = np.abs(moving.omega2) > 1e-3 * np.abs(moving.omega2).max()
+        assert turning.sum() > 20
+        np.testing.assert_allclose(steady.torque[turning], 0.0, atol=1e-8 * scale)
+
+
+@pytest.mark.study
+def test_friction_of_a_slide_brings_an_engine_to_rest() -> None:
+    engine = SliderCrank((0, 0), 0.05, 0.2)
+    masses = Masses(Body(1.0, 0.01), Body(0.5, 0.002, (0.07, 0.0)), Body(0.4))
+    loads = Loads(friction=Friction(slide_coulomb=2.0))
+    begin = float(energies(solve_kinematics(engine, 0.3, 20.0), masses).total)
+    free = free_response(engine, masses, np.linspace(0, 60, 50), 0.3, 20.0, loads=loads)
+    assert free.ending is Ending.AT_REST
+    last = free_response(engine, masses, np.array([0.0, free.end]), 0.3, 20.0, loads=loads).state
+    travel = np.linspace(0.3, float(last.theta2[-1]), 200_001)
+    slid = np.abs(np.diff(solve_kinematics(engine, travel).slide.travel)).sum()
+    assert begin == pytest.approx(2.0 * slid, rel=1e-6)  # the work of friction, over the way of the slider
+
+
+@pytest.mark.slow
+def test_a_swing_that_dies_away_where_the_slide_turns_back_takes_few_steps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    crank = SliderCrank((0, 0), 1, 3, offset=-0.5, slide_angle=np.pi / 6, assembly=-1)
+    spec = DynamicsSpec(
+        mass_per_length=0.002,
+        loads=(LoadSpec(4, values=((-9, 1, 2), (0, 3, 4), (9, 1, 2)), over="travel"),),
+        friction=FrictionSpec(slide_mu=0.1, slide_length=0.4, slide_viscous=2, slide_force=3),
+    )
+    made, steps = collocation._panel, list[float]()
+    monkeypatch.setattr(collocation, "_panel", lambda *given: (steps.append(given[1]), made(*given))[1])
+    masses, loads = stated_masses(crank, spec, 1e-3), stated_loads(spec, 1e-3)
+    free = free_response(crank, masses, np.linspace(0, 0.06, 601), np.pi / 9, 0.0, loads=loads)
+    assert free.end == pytest.approx(0.06)
+    assert len(steps) < 300
+    speeds = np.abs(free.state.omega2)
+    assert speeds.max() > 100
+    assert speeds[-20:].max() < 1e-3 * speeds.max()
+
+
+@pytest.mark.slow
+def test_dead_positions_hold_what_the_driver_cannot() -> None:
+    """A slider-crank whose driver swings: rod across the slide. A rod through O4's block, at its offset."""
+    swings = SliderCrank((0, 0), 2.0, 1.0)
+    weight, masses = Loads(gravity=(3, -10)), Masses(Body(1.0, 0, (1, 0)), Body(1.0, 0, (0.5, 0)), Body(1.0))
+    dead = holding(swings, np.array([np.radians(30.0)]), masses, weight)
+    assert np.abs(dead.torque[0]) > 1e6
+    assert np.isfinite(dead.moment[0])
+    free = free_response(swings, masses, np.linspace(0, 5, 9), 0.2, 2.0, loads=weight)
+    assert free.ending is Ending.DEAD_POSITION
+    rod = InvertedSliderCrank((0, 0), (2, 0), 1.5, 1.0)
+    end = float(np.arccos((4 + 2.25 - 1) / (2 * 2 * 1.5)))
+    dead = holding(rod, np.array([end, -end]), masses, weight)
+    assert (np.abs(dead.torque) > 1e6).all()
+    assert np.isfinite(dead.moment).all()
+    free = free_response(rod, masses, np.linspace(0, 9, 9), 1.0, -3.0, loads=weight)
+    assert free.ending is Ending.DEAD_POSITION
+
+
+def test_equilibria_and_swings_of_a_hanging_engine() -> None:
+    """A slider on a vertical slide: of x = r cos t + sqrt(l^2 - r^2 sin^2 t) the second derivatives."""
+    r, length, mass = 0.5, 2.0, 3.0
+    engine = SliderCrank((0, 0), r, length, slide_angle=-np.pi / 2)
+    masses = Masses(Body(2.0, 0.3), Body(0.0), Body(mass))
+    found = equilibria(engine, masses, Loads(gravity=(0, -9.81)), 0.0, TURN, closed=True)
+    np.testing.assert_allclose(np.degrees(found.theta2), [90, 270], atol=1e-9)
+    up, down = (mass * 9.81 * (r**2 / length + sign * r) for sign in (-1, 1))
+    np.testing.assert_allclose(found.stiffness, [up, down], rtol=1e-8)
+    np.testing.assert_allclose(found.inertia, 0.3, rtol=1e-9)
+
+
+def test_a_balanced_inverted_slider_crank_does_not_shake(everything: Specs, made: Maker) -> None:
+    spec = replace(lossless(everything[InvertedSliderCrank]), springs=(), torsion_springs=(), gravity=(0, 0))
+    for linkage in made(InvertedSliderCrank, 10):
+        masses, loads = stated_masses(linkage, spec), stated_loads(spec, 1.0)
+        state = solve_kinematics(linkage, np.linspace(0, 6, 50), 3.0, 2.0)
+        before = inverse_dynamics(state, masses, loads)
+        whole = balance_force(linkage, masses, 0.5, 0.7).masses
+        after = inverse_dynamics(state, whole, loads)
+        scale = np.abs(before.shaking_force).max()
+        np.testing.assert_allclose(after.shaking_force, 0, atol=1e-10 * scale)
+
+
+def test_a_slider_crank_is_not_balanced_by_weights_on_links_that_turn_about_the_ground() -> None:
+    with pytest.raises(ProblemError, match=r"^a slider-crank has no link 4 that turns about the ground"):
+        balance_force(SliderCrank((0, 0), 1, 3), NONE)

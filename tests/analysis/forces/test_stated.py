@@ -16,46 +16,56 @@ from grashof.analysis import (
     virtual_work_torque,
 )
 from grashof.analysis.forces.curve_through import curve_through
-from grashof.problems import DynamicsSpec, FourBar
+from grashof.analysis.forces.loads import wrenches
+from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.dynamics.acting import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
+    LoadSpec,
     Place,
     SpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.linkages.linkage import Linkage
 
 CARD = ((0, -9), (90, -20), (180, -20), (250, -11), (360, -9))
 INCH = 0.0254
-Linkages = Callable[[int], list[FourBar]]
+Maker = Callable[..., list[Linkage]]
+Specs = dict[type[Linkage], DynamicsSpec]
 
 
-@pytest.mark.quick("30.0-profile0", "30.0-profile2", "-30.0-profile2")
+@pytest.mark.quick(
+    "30.0-profile0-FourBar", "-30.0-profile2-FourBar", "30.0-profile0-SliderCrank",
+    "-30.0-profile2-InvertedSliderCrank",
+)  # fmt: skip
+@pytest.mark.parametrize("kind", [FourBar, SliderCrank, InvertedSliderCrank])
 @pytest.mark.parametrize("profile", [MotorSpec(), MotorSpec("trapezoid"), MotorSpec("cycloid")])
 @pytest.mark.parametrize("speed", [30.0, -30.0])
 def test_the_torque_of_everything_at_once_is_virtual_work(
-    profile: MotorSpec, speed: float, everything: DynamicsSpec, linkages: Linkages
+    profile: MotorSpec, speed: float, kind: type[Linkage], everything: Specs, made: Maker
 ) -> None:
-    for linkage in linkages(20):
+    spec = everything[kind]
+    for linkage in made(kind, 20):
         omega2 = speed * np.pi / 30
         law = DriverLaw(0.0, np.copysign(2 * np.pi, omega2), omega2, profile)
         time = np.linspace(0.001, 0.999, 173) * law.duration
         state = solve_kinematics(linkage, *law.at_time(time))
-        masses = stated_masses(linkage, everything)
-        loads = stated_loads(everything, 1.0, lambda _, now=time: now)
+        masses = stated_masses(linkage, spec)
+        loads = stated_loads(spec, 1.0, lambda _, now=time: now)
         found = inverse_dynamics(state, masses, loads)
         work = virtual_work_torque(state, masses, loads, found.joint_moments)
         peak = np.abs(found.torque).max()
         np.testing.assert_allclose(found.torque, work, rtol=0, atol=1e-9 * peak)
+        np.testing.assert_allclose(found.power, found.torque * state.omega2)
 
 
-def test_newtons_are_newtons_in_every_length_unit(everything: DynamicsSpec, linkages: Linkages) -> None:
+def test_newtons_are_newtons_in_every_length_unit(everything: Specs, made: Maker) -> None:
     def in_inches(place: Place) -> Place:
         return Place(place.link, tuple(each / INCH for each in place.at))
 
-    spec = everything
+    spec = everything[FourBar]
     small = replace(
         spec,
         section=SectionSpec(0.05 / INCH, 0.02 / INCH),
@@ -69,11 +79,8 @@ def test_newtons_are_newtons_in_every_length_unit(everything: DynamicsSpec, link
         friction=FrictionSpec(0.1, tuple(np.array([0.01, 0.02, 0.01, 0.03]) / INCH), 0.1, (0, 0.1, 0, 0)),
     )
     theta2 = np.linspace(0, 6, 50)
-    for linkage in linkages(5):
-        shrunk = FourBar(
-            linkage.o2 / INCH, linkage.o4 / INCH, linkage.r2 / INCH, linkage.r3 / INCH, linkage.r4 / INCH,
-            linkage.coupler_point / INCH, linkage.assembly,
-        )  # fmt: skip
+    for linkage in made(FourBar, 5):
+        shrunk = linkage.scaled(1 / INCH, np.zeros(2))
         torques = []
         for bar, given, metre in ((linkage, spec, 1.0), (shrunk, small, INCH)):
             state = solve_kinematics(bar, theta2, 3.0)
@@ -83,8 +90,8 @@ def test_newtons_are_newtons_in_every_length_unit(everything: DynamicsSpec, link
         np.testing.assert_allclose(torques[1], torques[0], rtol=1e-9, atol=1e-9 * np.abs(torques[0]).max())
 
 
-def test_bars_of_a_density_are_those_of_their_section(linkages: Linkages) -> None:
-    linkage = linkages(1)[0]
+def test_bars_of_a_density_are_those_of_their_section(made: Maker) -> None:
+    linkage = made(FourBar, 1)[0]
     masses = stated_masses(linkage, DynamicsSpec(density=7850, section=SectionSpec(20, 10)), 1e-3)
     for link in (2, 3, 4):
         length = float(getattr(linkage, f"r{link}"))
@@ -93,9 +100,23 @@ def test_bars_of_a_density_are_those_of_their_section(linkages: Linkages) -> Non
         assert float(body.inertia) == pytest.approx(float(body.mass) * (length**2 + 20**2) / 12)
 
 
-def test_centres_off_the_middle(linkages: Linkages) -> None:
+def test_loads_and_counterweights_act_where_they_are_stated(made: Maker) -> None:
+    linkage = made(FourBar, 1)[0]
+    turning, varying = (
+        LoadSpec(4, (1, 0), (3, 4), frame="link"),
+        LoadSpec(2, values=((0, 1), (90, 7), (360, 1))),
+    )
+    weight = CounterweightSpec(2, 3.0, (-0.4, 0.1))
+    spec = DynamicsSpec(1e-12, loads=(turning, varying), counterweights=(weight,))
+    felt = wrenches(solve_kinematics(linkage, np.pi / 2), stated_loads(spec, 1.0))
+    assert felt[2].moment == pytest.approx(7)  # degrees
+    assert felt[4].moment == pytest.approx(4)  # the arm of 1 times what is across it
+    np.testing.assert_allclose(stated_masses(linkage, spec).crank.centre, weight.at, rtol=1e-9)
+
+
+def test_centres_off_the_middle(made: Maker) -> None:
     spec = DynamicsSpec(masses=(1, 2, 3), inertias=(0, 0, 0), centres=((0.1, 0.2), (0.3, 0), (0, -1)))
-    masses = stated_masses(linkages(1)[0], spec)
+    masses = stated_masses(made(FourBar, 1)[0], spec)
     assert [masses.of(link).centre.tolist() for link in (2, 3, 4)] == [[0.1, 0.2], [0.3, 0], [0, -1]]
 
 

@@ -16,7 +16,7 @@ from grashof.problems import FourBar, Linkage, SliderCrank
 class SecondOpinion:
     """The loop of a single linkage as two equations in two unknowns: theta3, and theta4 or a length.
 
-    Vectors are pairs of numbers, which may be complex, so that derivatives come from Cauchy's integrals.
+    Vectors are pairs of numbers.
     """
 
     linkage: Linkage
@@ -95,24 +95,6 @@ class SecondOpinion:
                 if np.sign(self.sine(x)) == assembly:
                     return x
         return np.full(2, np.nan)
-
-    def derivatives(self, theta2: float, x: npt.NDArray[np.float64], radius: float) -> npt.NDArray[Any]:
-        """Value and three derivatives of theta3 and the other unknown by theta2, shape (4, 2).
-
-        Cauchy's integrals over a circle of driver angles, along which the loop stays closed.
-        """
-        around = radius * np.exp(2j * np.pi * np.arange(_ROUND) / _ROUND)
-        found, guess = [], x.astype(complex)
-        for share in np.linspace(0, 1, 9)[1:]:
-            guess = self.solve(theta2 + share * around[0], guess)
-        for place in around:
-            guess = self.solve(theta2 + place, guess)
-            found.append(guess)
-        terms = np.fft.fft(np.array(found), axis=0)[:4] / _ROUND
-        return (terms * (np.array([1, 1, 2, 6]) / radius ** np.arange(4))[:, None]).real
-
-
-_ROUND = 64
 
 
 def _along(angle: Any) -> Any:

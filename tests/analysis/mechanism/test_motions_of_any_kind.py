@@ -17,10 +17,14 @@ from grashof.analysis import (
     extremes,
     full_rotation,
     instant_centres,
+    output_stroke,
+    rotatability,
     solve_kinematics,
     solve_position,
     straightness,
     transmission_angle,
+    worst_transmission,
+    worst_transmission_cycle,
 )
 from grashof.analysis.curves.coupler_curve import tracks
 from grashof.analysis.mechanism.extremes import transmission_extremes
@@ -167,20 +171,34 @@ def test_links_have_one_velocity_in_their_instant_centre(linkages, kind) -> None
     check()
 
 
-@pytest.mark.parametrize("kind", CLASSES)
+# What is of linkages alone, and what is at driver angles.
+OF_LINKAGES = (
+    driver_ranges, full_rotation, rotatability, worst_transmission_cycle,
+    *(lambda linkage, name=name: getattr(output_stroke(linkage), name)
+      for name in ("theta2", "theta4", "swing", "chord", "time_ratio")),
+)  # fmt: skip
+AT_ANGLES = (
+    *(lambda linkage, theta2, name=name: getattr(solve_position(linkage, theta2), name)
+      for name in ("theta2", "theta3", "theta4", "a", "b", "p")),
+    *(lambda linkage, theta2, name=name: getattr(solve_kinematics(linkage, theta2, 1 + theta2, 0.3), name)
+      for name in ("omega3", "omega4", "alpha3", "alpha4", "jerk3", "jerk4")),
+    lambda linkage, theta2: solve_kinematics(linkage, theta2, 1.5, 0.3).p.jerk,
+    transmission_angle,
+    lambda linkage, theta2: worst_transmission(linkage, theta2, theta2[::-1] + 0.4),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK, *CLASSES])
 def test_a_batch_is_its_linkages_one_by_one(linkages, kind) -> None:
     @few
     @given(linkages(kind), linkages(kind))
     def check(one, other) -> None:
         batch = type(one)(*(np.stack(pair) for pair in zip(one.parameters, other.parameters, strict=True)))
         theta2 = np.linspace(-3, 3, 7)
-        together = solve_position(batch[:, None], theta2)
         for row, linkage in enumerate((one, other)):
-            single = solve_position(linkage, theta2)
-            for name in ("theta3", "theta4", "a", "b", "p"):
-                assert np.array_equal(getattr(together, name)[row], getattr(single, name), equal_nan=True)
-            assert np.array_equal(driver_ranges(batch)[row], driver_ranges(linkage), equal_nan=True)
-            mu = transmission_angle(batch[:, None], theta2)[row]
-            assert np.array_equal(mu, transmission_angle(linkage, theta2), equal_nan=True)
+            for of in OF_LINKAGES:
+                assert np.array_equal(of(batch)[row], of(linkage), equal_nan=True)
+            for of in AT_ANGLES:
+                assert np.array_equal(of(batch[:, None], theta2)[row], of(linkage, theta2), equal_nan=True)
 
     check()

@@ -36,21 +36,10 @@ def least_of_sweep(close_loop: Brute) -> Sweep:
     return sweep
 
 
-def golden_states(golden: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
-    pumpjack, bag = golden["pumpjack_report_geometry"]["states"], golden["bag_mechanism_exact"]
-    lufkin = golden["pumpjack_lufkin_C912D_427_144"]["states(omega2=1 rad/s, inches)"]
-    return [
-        *(("pumpjack", state) for state in [*pumpjack["sigma=+1"], *pumpjack["sigma=-1"]]),
-        *(("lufkin", state) for state in lufkin),
-        *(("bag", state) for state in [*bag["states_at_poses"], *bag["states"]]),
-        *(("table7", state) for state in golden["table7_lengths_theta1_0"]["states"]),
-    ]
-
-
 def test_every_state_of_the_reference_figures(
-    golden: dict[str, Any], golden_linkages: dict[str, FourBar]
+    golden_states: list[Any], golden_linkages: dict[str, FourBar]
 ) -> None:
-    for name, expected in golden_states(golden):
+    for name, _, _, expected in golden_states:
         mu = transmission_angle(golden_linkages[name], np.radians(float(expected["theta2_deg"])))
         assert np.degrees(mu) == pytest.approx(float(expected["mu_deg"]), rel=1e-12)
 
@@ -176,19 +165,3 @@ def test_transmission_angle_where_the_linkage_cannot_close() -> None:
     assert worst_transmission(triple_rocker, np.radians(-100), np.radians(-260)) == 0
     assert worst_transmission(triple_rocker, np.radians(-100), np.radians(100)) > 0.1
     assert worst_transmission_cycle(triple_rocker) == 0
-
-
-def test_batches_give_what_single_linkages_give() -> None:
-    rng = np.random.default_rng(8)
-    batch = FourBar(
-        o2=rng.normal(size=(6, 2)), o4=3 + rng.normal(size=(6, 2)), r2=1, r3=rng.uniform(2, 5, 6), r4=3.5
-    )
-    starts, ends = rng.uniform(-7, 7, (6, 4)), rng.uniform(-7, 7, (6, 4))
-    together = worst_transmission(batch[:, None], starts, ends)
-    assert together.shape == (6, 4)
-    angles, cycles = transmission_angle(batch[:, None], starts), worst_transmission_cycle(batch)
-    for index in range(6):
-        alone = batch[index]
-        np.testing.assert_array_equal(together[index], worst_transmission(alone, starts[index], ends[index]))
-        np.testing.assert_array_equal(angles[index], transmission_angle(alone, starts[index]))
-        assert cycles[index] == worst_transmission_cycle(alone)

@@ -11,6 +11,7 @@ import numpy as np
 import openpyxl
 import pytest
 import shapely
+from refusals import refusal
 
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Task, load
 from grashof.problems.files.drawing_files import areas_of
@@ -35,9 +36,7 @@ def written(folder: Path, text: str, **files: str | bytes) -> Problem:
 
 
 def refused(folder: Path, text: str, **files: str | bytes) -> list[str]:
-    with pytest.raises(ProblemError) as error:
-        written(folder, text, **files)
-    return str(error.value).replace(f"{folder}/", "").splitlines()
+    return refusal(written, folder, text, **files).replace(f"{folder}/", "").splitlines()
 
 
 def same(task: Task, other: Task) -> None:

@@ -4,6 +4,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
+from refusals import refusal
 
 from grashof.problems import Objective, PathTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_file import problem_of
@@ -24,9 +25,7 @@ def problem(mechanism: str, requirements: str = "") -> Problem:
 
 
 def message(mechanism: str, requirements: str = "") -> str:
-    with pytest.raises(ProblemError) as caught:
-        problem(mechanism, requirements)
-    return str(caught.value)
+    return refusal(problem, mechanism, requirements)
 
 
 @pytest.mark.parametrize(

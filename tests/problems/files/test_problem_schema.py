@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from refusals import MOTION, POSES, message, problem
 
 from grashof.problems import (
     Box,
     CylinderSpec,
     MotionTask,
     Objective,
-    Problem,
     ProblemError,
     Requirements,
     Rotatability,
@@ -23,9 +23,6 @@ from grashof.problems import (
 )
 from grashof.problems.files.problem_schema import RequirementsTable, problem_from
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-
-POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
-HEAD = f'kind = "motion"\n[motion]\n{POSES}\n'
 
 EVERY_KEY = f"""
 kind = "motion"
@@ -78,7 +75,7 @@ effort = 2.5
 """
 
 # Limits of what takes masses, tolerances or a whole turn.
-EVERY_LIMIT = f"""{HEAD}
+EVERY_LIMIT = f"""{MOTION}
 closed = true
 [requirements]
 size = [0, 9]
@@ -110,7 +107,7 @@ length_tolerance = 0.1
 """
 
 
-WITH_CYLINDER = f"""{HEAD}
+WITH_CYLINDER = f"""{MOTION}
 [driver]
 cylinder = {{ closed = [3, 9], ratio_max = 1.5, on = ["output", "driver"], base = {{ x = [0, 4] }} }}
 [requirements]
@@ -119,17 +116,6 @@ cylinder_force_max = [0, 9]
 [dynamics]
 payload = 1
 """
-
-
-def problem(text: str) -> Problem:
-    return problem_from(tomllib.loads(text), "test")
-
-
-def message(text: str) -> str:
-    with pytest.raises(ProblemError) as caught:
-        problem(text)
-    assert caught.value.__cause__ is None
-    return str(caught.value)
 
 
 def test_every_key_reaches_its_field() -> None:
@@ -200,7 +186,7 @@ def test_the_examples_above_use_every_requirement() -> None:
 
 
 def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:
-    plain = problem(HEAD)
+    plain = problem(MOTION)
     assert plain.requirements == Requirements()
     assert plain.objective == Objective()
     assert plain.search == Search()
@@ -211,7 +197,7 @@ def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:
 
 
 def test_empty_tables_change_nothing() -> None:
-    text = HEAD + "[scene]\n[requirements]\n[objective]\n[search]\n"
+    text = MOTION + "[scene]\n[requirements]\n[objective]\n[search]\n"
     assert problem(text).requirements == Requirements()
     assert problem(text).objective == Objective()
 
@@ -226,7 +212,7 @@ def test_empty_tables_change_nothing() -> None:
     ],
 )
 def test_objective(maximise: str, expected: Objective) -> None:
-    assert problem(HEAD + f"[objective]\nmaximise = {maximise}").objective == expected
+    assert problem(MOTION + f"[objective]\nmaximise = {maximise}").objective == expected
 
 
 @pytest.mark.parametrize("count", [2, 3, 7])
@@ -262,29 +248,29 @@ DRIVEN = 'length_unit = "m"\n{}\n[objective]\nmaximise = {}\n[dynamics]\nmass_pe
     ],
 )
 def test_the_torque_is_an_objective(maximise: str, expected: Objective) -> None:
-    assert problem_from(tomllib.loads(DRIVEN.format(HEAD, maximise)), "test").objective == expected
+    assert problem_from(tomllib.loads(DRIVEN.format(MOTION, maximise)), "test").objective == expected
 
 
 @pytest.mark.parametrize("maximise", ["'torque'", "{ transmission = 1, torque = 0.1 }"])
 def test_the_torque_as_an_objective_needs_masses(maximise: str) -> None:
     expected = "dynamics is missing; objective.maximise.torque needs it"
-    assert message(f"{HEAD}[objective]\nmaximise = {maximise}") == expected
+    assert message(f"{MOTION}[objective]\nmaximise = {maximise}") == expected
 
 
 def test_the_torque_as_an_objective_needs_a_motion() -> None:
-    text = DRIVEN.format(HEAD, "'torque'") + "[requirements]\nsame_branch = false"
+    text = DRIVEN.format(MOTION, "'torque'") + "[requirements]\nsame_branch = false"
     with pytest.raises(ProblemError, match=r"requirements\.same_branch is false; it must be true when"):
         problem_from(tomllib.loads(text), "test")
 
 
 def test_poses_may_be_timed_and_closed() -> None:
-    task = problem(HEAD + "timing_deg = [0, 20, 45.5, 90]\nclosed = true\n").task
+    task = problem(MOTION + "timing_deg = [0, 20, 45.5, 90]\nclosed = true\n").task
     assert task.timing is not None
     assert task.timing.tolist() == np.radians([0, 20, 45.5, 90]).tolist()
     assert task.closed
-    plain = problem(HEAD).task
+    plain = problem(MOTION).task
     assert (plain.timing, plain.closed) == (None, False)
-    wrong = HEAD + "timing_deg = [0, 20, 10, 90]\nclosed = 1\nwithin = [-1, 1, 1, 1]\n"
+    wrong = MOTION + "timing_deg = [0, 20, 10, 90]\nclosed = 1\nwithin = [-1, 1, 1, 1]\n"
     assert message(wrong).splitlines() == [
         "motion.within[0] is -1; it must be from 3e-12 to 1e+20",
         "motion.timing_deg[2] is 10 after 20; the angles must only grow, or only fall",
@@ -357,21 +343,21 @@ def test_all_errors_are_told_a_line_each() -> None:
 
 
 def test_long_values_are_shortened_and_stay_on_one_line() -> None:
-    text = message("title = [" + "1, " * 500 + "]\n" + HEAD)
+    text = message("title = [" + "1, " * 500 + "]\n" + MOTION)
     assert text.startswith("title is [1, 1, 1,")
     assert len(text) < 100
-    assert "\n" not in message(HEAD + '[requirements]\ntolerance = """a\nb"""')
+    assert "\n" not in message(MOTION + '[requirements]\ntolerance = """a\nb"""')
 
 
 @pytest.mark.parametrize("key", ["title", "source", "length_unit"])
 def test_control_characters_are_refused(key: str) -> None:
     said = f"{key} has control character U+001B; it must be plain text"
-    assert message(f'{key} = "red \\u001b[31m"\n{HEAD}') == said
+    assert message(f'{key} = "red \\u001b[31m"\n{MOTION}') == said
 
 
 def test_tables_that_do_not_go_together_are_all_told() -> None:
     text = (
-        HEAD
+        MOTION
         + "[dynamics]\nspeed_rpm = -1\n[objective]\nmaximise = 'torque'\n[requirements]\nsame_branch = false"
     )
     assert message("length_unit = 'm'\n" + text).splitlines() == [
@@ -387,8 +373,8 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
     wanted = CylinderSpec(closed=(3, 9), ratio_max=1.5, on=["driver", "output"], base=Box((0, 4)))
     assert given.driver == wanted
     assert given.requirements.rotatability is Rotatability.ANY
-    assert problem(f"{HEAD}[driver]\ncylinder = {{}}\n").driver == CylinderSpec()
-    fixed = problem(f"{HEAD}[driver]\ncylinder = {{ base = [1, 2] }}\n").driver
+    assert problem(f"{MOTION}[driver]\ncylinder = {{}}\n").driver == CylinderSpec()
+    fixed = problem(f"{MOTION}[driver]\ncylinder = {{ base = [1, 2] }}\n").driver
     assert fixed == CylinderSpec(base=Box((1, 1), (2, 2)))
 
 
@@ -419,31 +405,31 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
     ],
 )
 def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) -> None:
-    assert message(f"{HEAD}[driver]\ncylinder = {{ {text} }}\n") == line
+    assert message(f"{MOTION}[driver]\ncylinder = {{ {text} }}\n") == line
 
 
 def test_what_a_cylinder_cannot_do_is_refused_in_a_line() -> None:
     driven = "[driver]\ncylinder = {}\n"
-    assert message(f'{HEAD}{driven}[requirements]\nrotatability = "full-crank"\n') == (
+    assert message(f'{MOTION}{driven}[requirements]\nrotatability = "full-crank"\n') == (
         "requirements.rotatability is full-crank; it must be any with driver.cylinder, "
         "which turns nothing fully"
     )
-    assert message(f"{HEAD}closed = true\n{driven}") == (
+    assert message(f"{MOTION}closed = true\n{driven}") == (
         "motion.closed is true; it must be false with driver.cylinder, which reverses"
     )
-    assert message(f"{HEAD}{driven}[requirements]\nsame_branch = false\n") == (
+    assert message(f"{MOTION}{driven}[requirements]\nsame_branch = false\n") == (
         "requirements.same_branch is false; it must be true with driver.cylinder"
     )
-    assert message(f"{HEAD}[requirements]\ncylinder_angle_min_deg = 20\n") == (
+    assert message(f"{MOTION}[requirements]\ncylinder_angle_min_deg = 20\n") == (
         "driver.cylinder is missing; requirements.cylinder_angle_min_deg needs it"
     )
-    assert message(f"{HEAD}[driver]\n") == "driver.cylinder is missing"
+    assert message(f"{MOTION}[driver]\n") == "driver.cylinder is missing"
 
 
 def test_a_cylinder_drives_every_kind_but_no_strokes() -> None:
     driven = "[driver]\ncylinder = {}\n"
     kinds = ["four-bar", "slider-crank", "inverted-slider-crank"]
-    assert problem(f"mechanism = {kinds}\n{HEAD}{driven}").driver == CylinderSpec()
+    assert problem(f"mechanism = {kinds}\n{MOTION}{driven}").driver == CylinderSpec()
     stroke = 'kind = "stroke"\n[stroke]\nswing_deg = 80\ntime_ratio = 1.2\n'
     assert message(f"{stroke}{driven}") == (
         "driver.cylinder does not go with stroke, whose driver turns all round"

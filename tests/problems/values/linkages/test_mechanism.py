@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from six_bar_examples import SIX_BARS
 
 from grashof.problems import FourBar, InvertedSliderCrank, ProblemError, SixBar, SliderCrank
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
@@ -18,6 +19,11 @@ EVERY = (
     LEG,
     PRESS,
 )
+
+
+def test_every_six_bar_has_an_example_that_pages_drawings_and_plates_are_tested_with() -> None:
+    shown = {linkage.mechanism.dyads for linkage in SIX_BARS.values()}
+    assert shown == {row.dyads for row in MECHANISMS if len(row.dyads) > 1}
 
 
 @pytest.mark.parametrize("row", MECHANISMS, ids=lambda row: f"{row.word}-{row.dyads[-1].hosts}")

@@ -1,0 +1,36 @@
+"""What is refused, and the problem files that it is tried with."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from grashof.problems import Problem, ProblemError
+from grashof.problems.files.problem_schema import problem_from
+
+POSES = "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]"
+MOTION = f'kind = "motion"\n[motion]\n{POSES}\n'
+PATH = 'kind = "path"\n[path]\npoints = [[20, 20], [20, 25], [21, 30]]\n'
+
+
+def refusal(make: Callable[..., object], *given: Any, **named: Any) -> str:
+    """The lines with which something is refused."""
+    with pytest.raises(ProblemError) as caught:
+        make(*given, **named)
+    return str(caught.value)
+
+
+def problem(text: str) -> Problem:
+    """The problem of a file."""
+    return problem_from(tomllib.loads(text), "test")
+
+
+def message(text: str) -> str:
+    """What its file is refused with; whatever found it is not told besides."""
+    with pytest.raises(ProblemError) as caught:
+        problem(text)
+    assert caught.value.__cause__ is None
+    return str(caught.value)
