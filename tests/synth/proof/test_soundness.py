@@ -1,9 +1,10 @@
 """Soundness: linkages that meet a problem are in its pieces, and no bound is below what they transmit."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from luggage_limits import STAIRS, luggage, with_links
 from piece_descent import JUST_BELOW, Descent, descent
 
 from grashof import load
@@ -18,23 +19,12 @@ from grashof.synth.starts.dyad_pairs import judged_pairs, screen
 from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
 
 
-def luggage(**requirements: object) -> Problem:
-    problem = load("luggage")
-    wanted = {"transmission_min_deg": 0.0, **requirements}
-    return replace(problem, requirements=replace(problem.requirements, **wanted))
-
-
-def with_links(longest: float, **requirements: object) -> Problem:
-    return luggage(link_length=(0.3, longest), coupler_arms=(0.3, longest), **requirements)
-
-
 def random_poses(seed: int, **requirements: object) -> Problem:
     rng = np.random.default_rng(seed)
     poses = np.column_stack([rng.uniform(0, 1, (4, 2)), rng.uniform(-180, 180, 4)])
     return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
 
 
-STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=np.float64)
 WITHIN = {"o2": Box((-4, 4), (-5, 5)), "b": Box((-3, 9), (-8, 8)), "a_on_body": Box((-6, 6), (-6, 6))}
 TURNED = {"driver_sense": "ccw", "driver_rotation_deg": (20, 120), "ground_angle_deg": (-60, 90)}
 
