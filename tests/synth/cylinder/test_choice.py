@@ -1,24 +1,17 @@
 """The best cylinder of every kind: closed forms, limits in all combinations, an independent search."""
 
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
 from grashof.analysis import driver_ranges
-from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures, cylinder_state
+from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.problems import (
-    Box,
-    Cylinder,
-    CylinderSpec,
-    FourBar,
-    InvertedSliderCrank,
-    Linkage,
-    SliderCrank,
-)
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems import Box, Cylinder, CylinderSpec, FourBar, InvertedSliderCrank, Linkage, SliderCrank
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.cylinder.choice import best_cylinder
 from grashof.synth.cylinder.planes import planes_of
 
@@ -174,38 +167,53 @@ def test_it_is_the_same_in_every_unit(linkage: Linkage, scale: float) -> None:
         assert other[1].angle_min == pytest.approx(one[1].angle_min, abs=1e-7)
 
 
-def room_of(way: Travel, on: str) -> tuple[complex, float]:
-    """Where the pivot on a link may be: the middle and the radius."""
-    linkage = way.linkage
-    if isinstance(linkage, FourBar):
-        p, r3 = complex(*linkage.coupler_point), float(linkage.r3)
-        reach = {"driver": linkage.r2, "output": linkage.r4, "coupler": max(r3, abs(p), abs(p - r3))}[on]
-        return r3 / 2 if on == "coupler" else 0.0, float(reach)
-    at = way.at(np.linspace(way.start, way.end, 81))
-    plane = planes_of(linkage, *map(np.unwrap, (at.theta2, at.theta3, at.theta4)), None)[on]
-    return complex(plane.middle), plane.reach
+class Carried(NamedTuple):
+    """Where the pivot on a link may be in its frame, and how the link moves."""
+
+    middle: complex
+    reach: float
+    origin: ComplexArray
+    axis: ComplexArray
+
+
+def carried(way: Travel, on: str) -> Carried:
+    """Of a four-bar by its own angles."""
+    linkage, at = way.linkage, way.at(np.linspace(way.start, way.end, 81))
+    if not isinstance(linkage, FourBar):
+        plane = planes_of(linkage, *map(np.unwrap, (at.theta2, at.theta3, at.theta4)), None)[on]
+        return Carried(complex(plane.middle), plane.reach, plane.origin, plane.axis)
+    p, r3 = complex(*linkage.coupler_point), float(linkage.r3)
+    if on == "coupler":
+        return Carried(r3 / 2, max(r3, abs(p), abs(p - r3)), at.a @ [1, 1j], np.exp(1j * at.theta3))
+    pivot, length, angle = {
+        "driver": (linkage.o2, linkage.r2, at.theta2), "output": (linkage.o4, linkage.r4, at.theta4)
+    }[on]  # fmt: skip
+    return Carried(0j, float(length), np.full(81, complex(*pivot)), np.exp(1j * angle))
 
 
 def searched(way: Travel, spec: CylinderSpec, on: str, seed: int) -> float:
-    """The worst lever angle, deg, of what differential evolution finds with its own penalties, judged."""
+    """The worst lever angle of what differential evolution finds by differences of places, judged, deg."""
     assert spec.base is not None
-    at = way.at(np.linspace(way.start, way.end, 81))
+    link = carried(way, on)
     low, high = spec.closed or (0.0, np.inf)
-    middle, reach = room_of(way, on)
 
-    def cylinder(x: FloatArray) -> Cylinder:
-        pivot = middle + x[0] * np.exp(1j * x[1])
-        return Cylinder(on, (float(x[2]), float(x[3])), (pivot.real, pivot.imag))
+    def pivot(x: FloatArray) -> complex:
+        return complex(link.middle + x[0] * np.exp(1j * x[1]))
 
     def cost(x: FloatArray) -> float:
-        state = cylinder_state(cylinder(x), way.linkage, at)
-        least, closed = max(state.lever.min(), (-state.lever).min()), state.length.min()
-        over = max(state.length.max() / max(closed, 1e-9) - spec.ratio_max, 0)
+        places = link.origin + pivot(x) * link.axis
+        out, way_of = places - complex(x[2], x[3]), np.gradient(places)
+        lever = (np.real(np.conj(out) * way_of) / np.abs(out) / np.maximum(np.abs(way_of), 1e-12))[1:-1]
+        least, closed = max(lever.min(), (-lever).min()), np.abs(out).min()
+        over = max(np.abs(out).max() / max(closed, 1e-9) - spec.ratio_max, 0)
         return float(-least + 100 * (over + max(low - closed, 0) + max(closed - high, 0)))
 
-    bounds = [(0, reach), (-np.pi, np.pi), spec.base.x, spec.base.y]
+    bounds = [(0, link.reach), (-np.pi, np.pi), spec.base.x, spec.base.y]
     best = differential_evolution(cost, bounds, seed=seed, popsize=24, maxiter=260, tol=1e-10, polish=False)
-    return float(np.degrees(cylinder_figures(cylinder(best.x), way).angle_min)) if best.fun < 0 else 0.0
+    if best.fun >= 0:
+        return 0.0
+    q, base = pivot(best.x), (float(best.x[2]), float(best.x[3]))
+    return float(np.degrees(cylinder_figures(Cylinder(on, base, (q.real, q.imag)), way).angle_min))
 
 
 @pytest.mark.study
