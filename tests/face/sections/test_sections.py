@@ -48,7 +48,7 @@ DYNAMICS = {
     "at rest": ("in", DynamicsSpec(mass_per_length=2.0, speed_rpm=0.0)),
     "payload alone": ("m", DynamicsSpec(payload=3.0)),
 }  # fmt: skip
-TURNING = {
+CLASSES = {
     "crank-rocker": FourBar((1, 2), (4, 3), 0.9, 3, 2.5, (1, 1)),
     "double-crank": FourBar((0, 0), (1, 0), 3, 2.5, 3, (1, 1), assembly=-1),
     "double-rocker": FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1)),
@@ -137,10 +137,10 @@ def check_finite(made: Iterable[Section]) -> None:
             assert not isinstance(fact.value, float) or np.isfinite(fact.value), fact
 
 
-@pytest.mark.parametrize("name", [*TURNING, "pumpjack", "lufkin-c912d", "still", "loaded"])
+@pytest.mark.parametrize("name", [*CLASSES, "pumpjack", "lufkin-c912d", "still", "loaded"])
 def test_every_section_is_sound(sections: Any, name: str) -> None:
-    if name in TURNING:
-        spec = LinkageSpec(TURNING[name], name, length_unit="mm", dynamics=HEAVY)
+    if name in CLASSES:
+        spec = LinkageSpec(CLASSES[name], name, length_unit="mm", dynamics=HEAVY)
         turns = name in ("crank-rocker", "double-crank")
         made = sections(spec, **ASKED, **(MOVED if turns else {"balance": True}))
     elif name == "loaded":
