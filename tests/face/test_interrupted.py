@@ -18,13 +18,11 @@ from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
 from grashof.output.ending import Exit, interruptible
-from grashof.problems import (
-    Problem,
-    problem_text,
-)
+from grashof.problems import Problem, problem_text
 from grashof.synth import Candidate
 
 Grashof = Callable[..., Any]
+COMMAND = [sys.executable, "-c", "from grashof.cli import main; main()"]
 
 
 @pytest.mark.study
@@ -57,10 +55,9 @@ def test_interrupt_while_drawing_leaves_drawings_out(
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for its processes in /proc")
 @pytest.mark.parametrize("later", [0.05, 0.2])
 def test_ctrl_c_while_processes_begin_leaves_no_traceback(tmp_path: Path, later: float) -> None:
-    program = "from grashof.cli import main; main()"
     given = ["solve", "path-ellipse", "--effort", "20", "--workers", "2", "--drawings", "0"]
     process = subprocess.Popen(
-        [sys.executable, "-c", program, *given],
+        [*COMMAND, *given],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -102,10 +99,8 @@ def test_a_drawing_that_fails_costs_neither_lists_nor_tidiness(
 @pytest.mark.parametrize("merged", [True, False])
 def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None:
     # FORCE_COLOR makes rich take a pipe for a terminal.
-    program = "from grashof.cli import main; main()"
-    command = [sys.executable, "-c", program, "solve", "luggage", "--starts", "8", "--drawings", "0"]
     running = subprocess.Popen(
-        command,
+        [*COMMAND, "solve", "luggage", "--starts", "8", "--drawings", "0"],
         cwd=tmp_path,
         env={**os.environ, "FORCE_COLOR": "1"} if merged else None,
         stdout=subprocess.PIPE,
@@ -128,16 +123,8 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
 def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
     (tmp_path / "long.toml").write_text(text, encoding="utf-8")
-    command = [
-        sys.executable,
-        "-c",
-        "from grashof.cli import main; main()",
-        "solve",
-        "long.toml",
-        "--drawings",
-        "0",
-    ]
-    running = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    given = ["solve", "long.toml", "--drawings", "0"]
+    running = subprocess.Popen([*COMMAND, *given], cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     assert running.stderr is not None
     seen = ""
     while "starts solved" not in seen:

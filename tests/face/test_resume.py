@@ -20,6 +20,7 @@ from grashof.output.folder import in_use
 Grashof = Callable[..., Any]
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 
+FOUR = ("solve", "luggage", "--starts", "4", "--drawings", "0")
 # Some seconds of search: a drawn curve, fitted by crank-rockers.
 LONG = """
 kind = "path"
@@ -37,18 +38,8 @@ def running(folder: Path, *options: str) -> subprocess.Popen[str]:
         "import grashof.synth.search.journal as journal; journal.EVERY = 0.0; "
         "from grashof.cli import main; main()"
     )
-    command = [
-        sys.executable,
-        "-c",
-        program,
-        "solve",
-        "long.toml",
-        "--drawings",
-        "0",
-        "--out",
-        "out",
-        *options,
-    ]
+    given = ["solve", "long.toml", "--drawings", "0", "--out", "out", *options]
+    command = [sys.executable, "-c", program, *given]
     return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
 
@@ -116,10 +107,10 @@ def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: P
     record = tmp_path / "luggage-designs" / "search"
     record.mkdir(parents=True)
     (record / "search.json").write_text("{}", encoding="utf-8")
-    refused = grashof("solve", "luggage", "--starts", "4", "--drawings", "0", "--resume")
+    refused = grashof(*FOUR, "--resume")
     assert refused.exit_code == 2
     assert "search.json: is not the record of a search" in refused.stderr
-    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+    done = grashof(*FOUR)
     assert done.exit_code == 0
     assert "the record of an unfinished search is kept as search-old" in done.stderr
     assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
@@ -135,8 +126,7 @@ def test_files_of_others_beside_a_record_are_never_deleted(
         (folder / name).mkdir(parents=True)
         (folder / name / "search.json").write_text("{}", encoding="utf-8")
     (folder / place / "2026.json").write_text("mine", encoding="utf-8")
-    command = ("solve", "luggage", "--starts", "4", "--drawings", "0")
-    done = [grashof(*command) for _ in range(2)]
+    done = [grashof(*FOUR) for _ in range(2)]
     # The record moves with what is beside it, and is not replaced there.
     assert [each.exit_code for each in done] == ([0, 0] if place == "search" else [2, 2])
     if place == "search-old":
@@ -150,7 +140,7 @@ def test_a_folder_of_others_named_search_stays(grashof: Grashof, tmp_path: Path)
     mine = tmp_path / "luggage-designs" / "search" / "notes"
     mine.parent.mkdir(parents=True)
     mine.touch()
-    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+    assert grashof(*FOUR).exit_code == 0
     assert mine.exists()
 
 
@@ -158,30 +148,28 @@ def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> Non
     folder = tmp_path / "luggage-designs"
     folder.mkdir()
     (folder / "search").touch()
-    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+    done = grashof(*FOUR)
     assert done.exit_code == 2
     assert "search: is a file; the search is recorded in a folder of this name" in done.stderr
     assert [path.name for path in folder.iterdir()] == ["search"]
 
 
-def test_without_a_record_the_search_begins_anew(grashof: Grashof, tmp_path: Path) -> None:
-    done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0", "--resume")
-    assert done.exit_code == 0
-    assert "has no record of a search; it begins anew" in done.stderr
-
-
 def test_two_runs_do_not_share_a_folder(grashof: Grashof, tmp_path: Path) -> None:
     folder = tmp_path / "luggage-designs"
     with in_use(folder):
-        done = grashof("solve", "luggage", "--starts", "4", "--drawings", "0")
+        done = grashof(*FOUR)
     assert done.exit_code == 2
     assert done.stderr.splitlines()[-1].endswith("name another folder")
-    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+    assert grashof(*FOUR).exit_code == 0
 
 
-def test_what_a_killed_run_left_is_removed(grashof: Grashof, tmp_path: Path) -> None:
+def test_what_a_killed_run_left_is_removed_and_without_a_record_it_begins_anew(
+    grashof: Grashof, tmp_path: Path
+) -> None:
     left = tmp_path / "luggage-designs" / ".writing-abc"
     left.mkdir(parents=True)
     (left / "candidates.csv").touch()
-    assert grashof("solve", "luggage", "--starts", "4", "--drawings", "0").exit_code == 0
+    done = grashof(*FOUR, "--resume")
+    assert done.exit_code == 0
+    assert "has no record of a search; it begins anew" in done.stderr
     assert not left.exists()

@@ -15,12 +15,7 @@ import pytest
 
 from grashof.analysis import verify
 from grashof.output.run_files import write_csv, write_rows, write_run
-from grashof.problems import (
-    FourBar,
-    Requirements,
-    load,
-    problem_text,
-)
+from grashof.problems import FourBar, Requirements, load, problem_text
 from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 

@@ -25,7 +25,7 @@ from grashof.problems import (
 )
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.synth import Result, synthesize
+from grashof.synth import Candidate, Result, synthesize
 from grashof.synth.designs.driving import cylinder_for
 from grashof.synth.search.plain import plain, restored
 
@@ -56,19 +56,24 @@ def test_every_design_has_a_cylinder_within_its_limits(problem: Problem, result:
     assert problem.driver is not None
 
 
+def check_by_pivots(each: Candidate, problem: Problem) -> None:
+    """The judge needs the linkage and the pivots alone; its figures are those of dense samples."""
+    stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
+    again = verify(each.linkage, problem.task, problem.requirements, problem=problem, cylinder=stated)
+    assert again.ok
+    at = solve_position(each.linkage, np.linspace(*again.theta2[[0, -1]], 2001), again.assembly[0])
+    dense = cylinder_state(stated, each.linkage, at)
+    least = float(dense.angle.min())
+    assert each.values["cylinder_closed"] == pytest.approx(dense.length.min(), rel=1e-9)
+    assert each.values["cylinder_stroke"] == pytest.approx(np.ptp(dense.length), rel=1e-9)
+    assert each.values["cylinder_angle_min"] == pytest.approx(least, abs=1e-6 * min(least, 1.0))
+    forces = cylinder_forces(each.linkage, problem, again)
+    assert np.abs(forces).max() <= each.values["cylinder_force_max"] * (1 + 1e-12)
+
+
 def test_the_judge_needs_the_linkage_and_the_pivots_alone(problem: Problem, result: Result) -> None:
     for each in result.candidates[:3]:
-        stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
-        asked = problem.task, problem.requirements
-        again = verify(each.linkage, *asked, problem=problem, cylinder=stated)
-        assert again.ok
-        at = solve_position(each.linkage, np.linspace(*again.theta2[[0, -1]], 2001), again.assembly[0])
-        dense = cylinder_state(stated, each.linkage, at)
-        assert each.values["cylinder_closed"] == pytest.approx(dense.length.min(), rel=1e-9)
-        assert each.values["cylinder_stroke"] == pytest.approx(np.ptp(dense.length), rel=1e-9)
-        assert each.values["cylinder_angle_min"] == pytest.approx(dense.angle.min(), rel=1e-6)
-        forces = cylinder_forces(each.linkage, problem, again)
-        assert np.abs(forces).max() <= each.values["cylinder_force_max"] * (1 + 1e-12)
+        check_by_pivots(each, problem)
 
 
 def test_a_cylinder_that_is_missing_or_beyond_its_limits_is_a_defect(
@@ -115,28 +120,6 @@ def driven_problem(linkage: Linkage, theta2: np.ndarray, assembly: np.ndarray, s
     return Problem(task=task, requirements=Requirements(rotatability="any"), driver=spec)
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-def test_a_dead_position_of_link_2_is_none_for_a_cylinder_on_the_output(sense: int) -> None:
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3, coupler_point=(1, 1))
-    high = float(driver_ranges(linkage)[0, 1])
-    theta2, assembly = high - np.array([0.3, 0.1, 0.2])[::sense], np.array([1, 1, -1])[::sense]
-    problem = driven_problem(linkage, theta2, assembly, CylinderSpec(on=["coupler", "output"]))
-    used = replace(linkage, assembly=np.asarray(float(assembly[0])))
-
-    def judged(cylinder: Cylinder | None, of: Problem = problem) -> Verdict:
-        return verify(used, of.task, of.requirements, problem=of, cylinder=cylinder)
-
-    without = judged(None)
-    assert {each.requirement for each in without.defects} >= {"same_branch", "driver.cylinder"}
-    cylinder = cylinder_for(problem, used, without)
-    assert cylinder is not None
-    assert judged(cylinder).ok
-    on_link_2 = replace(problem, driver=CylinderSpec(on=["driver"]))
-    assert cylinder_for(on_link_2, used, without) is None
-    missed = {each.requirement for each in judged(replace(cylinder, on="driver"), on_link_2).defects}
-    assert "same_branch" in missed
-
-
 ENGINE = SliderCrank((0, 0), 1, 3, 0.4, 0.3, (1.5, 0.7))
 SHAPER = InvertedSliderCrank((0, 0), (3, 0.4), 1.2, 0.3, (1.5, 0.7))
 
@@ -153,16 +136,7 @@ def test_slider_kinds_are_driven_and_judged_from_the_pivots_alone(linkage: Linka
     assert len(found)
     for each in found.candidates:
         assert type(each.linkage) is type(linkage)
-        stated = Cylinder(**each.verdict.cylinder.stated)  # type: ignore[union-attr]
-        again = verify(each.linkage, of.task, of.requirements, problem=of, cylinder=stated)
-        assert again.ok
-        at = solve_position(each.linkage, np.linspace(*again.theta2[[0, -1]], 2001), again.assembly[0])
-        dense = cylinder_state(stated, each.linkage, at)
-        assert each.values["cylinder_closed"] == pytest.approx(dense.length.min(), rel=1e-9)
-        assert each.values["cylinder_stroke"] == pytest.approx(np.ptp(dense.length), rel=1e-9)
-        assert each.values["cylinder_angle_min"] == pytest.approx(dense.angle.min(), abs=1e-6)
-        forces = cylinder_forces(each.linkage, of, again)
-        assert np.abs(forces).max() <= each.values["cylinder_force_max"] * (1 + 1e-12)
+        check_by_pivots(each, of)
     restored_ = restored(plain(found.best), of)
     assert restored_.verdict.cylinder == found.best.verdict.cylinder
 
@@ -177,32 +151,38 @@ def test_kinds_together_give_one_list_of_driven_designs() -> None:
     assert frame["cylinder_angle_min_deg"].gt(0).all()
 
 
-def through_a_dead_position(linkage: Linkage) -> tuple[Problem, Linkage]:
-    """Poses on both sides of a dead position of link 2, and the linkage that has them."""
-    high = float(driver_ranges(linkage)[0, 1])
-    theta2, assembly = high - np.array([0.3, 0.1, 0.2]), np.array([1, 1, -1])
-    of = driven_problem(linkage, theta2, assembly, CylinderSpec(on=["coupler", "output"]))
-    return replace(of, mechanism=linkage.mechanism.word), linkage
-
-
 @pytest.mark.parametrize(
     "linkage",
     [
+        FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3, coupler_point=(1, 1)),
         SliderCrank((0, 0), 2, 1.5, 0.2, 0.7, (1, 0.6)),
         InvertedSliderCrank((0, 0), (2, 0.5), 1.5, 0.9, (2, 0.6)),
     ],
 )
 @pytest.mark.parametrize("on", ["coupler", "output"])
-def test_slider_kinds_go_through_dead_positions_of_link_2(linkage: Linkage, on: str) -> None:
-    of, used = through_a_dead_position(linkage)
-    of = replace(of, driver=CylinderSpec(on=[on]))
-    without = verify(used, of.task, of.requirements, problem=of)
-    assert "same_branch" in {each.requirement for each in without.defects}
-    cylinder = cylinder_for(of, used, without)
+@pytest.mark.parametrize("sense", [1, -1])
+def test_a_dead_position_of_link_2_is_none_for_a_cylinder_on_another(
+    linkage: Linkage, on: str, sense: int
+) -> None:
+    """Poses on both sides of it, whichever comes first."""
+    high = float(driver_ranges(linkage)[0, 1])
+    theta2, assembly = high - np.array([0.3, 0.1, 0.2])[::sense], np.array([1, 1, -1])[::sense]
+    problem = driven_problem(linkage, theta2, assembly, CylinderSpec(on=[on]))
+    problem = replace(problem, mechanism=linkage.mechanism.word)
+    used = linkage.changed(assembly=float(assembly[0]))
+
+    def judged(cylinder: Cylinder | None, of: Problem = problem) -> Verdict:
+        return verify(used, of.task, of.requirements, problem=of, cylinder=cylinder)
+
+    without = judged(None)
+    assert {each.requirement for each in without.defects} >= {"same_branch", "driver.cylinder"}
+    cylinder = cylinder_for(problem, used, without)
     assert cylinder is not None
-    assert verify(used, of.task, of.requirements, problem=of, cylinder=cylinder).ok
-    on_link_2 = replace(of, driver=CylinderSpec(on=["driver"]))
+    assert judged(cylinder).ok
+    on_link_2 = replace(problem, driver=CylinderSpec(on=["driver"]))
     assert cylinder_for(on_link_2, used, without) is None
+    missed = {each.requirement for each in judged(replace(cylinder, on="driver"), on_link_2).defects}
+    assert "same_branch" in missed
 
 
 def test_a_cylinder_needs_a_driver_that_need_not_turn() -> None:

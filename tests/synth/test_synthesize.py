@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from share_apart import share_apart
 
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion
@@ -24,16 +25,6 @@ from grashof.synth import Result
 
 LIMITS = {"link_length": (0.3, 8.0), "coupler_arms": (0.3, 8.0)}
 HIGH = Box(y=(0.0, np.inf))
-
-
-def share_apart(task: MotionTask, one: FourBar, other: FourBar) -> float:
-    """As DESIGN section 2 words it, seen from the middle of the task; above 0.01 for distinct designs."""
-    middle = task.positions.mean(axis=0)
-    x, y = (
-        np.array([*(a.o2 - middle), *(a.o4 - middle), a.r2, a.r3, a.r4, *a.coupler_point])
-        for a in (one, other)
-    )
-    return float(np.abs(x - y).max() / np.abs([x, y]).max())
 
 
 def luggage_with(**wanted: Any) -> Problem:
@@ -194,36 +185,36 @@ def test_the_requirement_in_the_way_is_named(kind: str, relaxing_only: Callable[
     assert result.counts["verified and distinct"] == 0
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("small_search")
-def test_a_required_ground_angle_is_kept(independent_judge: Any) -> None:
-    problem = Problem(task=load("luggage").task, requirements=Requirements(ground_angle_deg=0))
-    result = synthesize(problem, enough=5)
-    assert len(result) > 1
-    check_designs(result, independent_judge)
-    for candidate in result.candidates:
-        ground = candidate.linkage.o4 - candidate.linkage.o2
-        assert abs(np.arctan2(ground[1], ground[0])) < 1e-9
+def off_required(result: Result, key: str) -> np.ndarray:
+    """How far each design is from the angle or the line that is required: rad, or sizes."""
+    if key == "o2":
+        places = np.array([each.linkage.o2[1] for each in result.candidates])
+        return np.abs(places + 3) / result.problem.task.size
+    if key == "theta2_start_deg":
+        return np.abs(np.array([each.verdict.theta2[0] for each in result.candidates]) - np.radians(75))
+    ground = np.array([each.linkage.o4 - each.linkage.o2 for each in result.candidates])
+    return np.abs(np.arctan2(ground[:, 1], ground[:, 0]))
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
-def test_a_pivot_required_on_a_line_is_on_it(independent_judge: Any) -> None:
-    result = synthesize(luggage_with(o2=Box(y=(-3, -3))), enough=8)
+@pytest.mark.parametrize(
+    "problem",
+    [
+        Problem(task=load("luggage").task, requirements=Requirements(ground_angle_deg=0)),
+        luggage_with(o2=Box(y=(-3, -3))),
+        luggage_with(theta2_start_deg=75),
+    ],
+    ids=["ground_angle_deg", "o2", "theta2_start_deg"],
+)
+def test_required_angles_and_lines_are_kept(
+    problem: Problem, request: pytest.FixtureRequest, independent_judge: Any
+) -> None:
+    key = request.node.callspec.id
+    result = synthesize(problem, enough=5 if key == "ground_angle_deg" else 8)
     assert len(result) > 1
     check_designs(result, independent_judge)
-    for candidate in result.candidates:
-        assert abs(candidate.linkage.o2[1] + 3) < 1e-9 * result.problem.task.size
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("small_search")
-def test_a_required_start_angle_is_kept(independent_judge: Any) -> None:
-    result = synthesize(luggage_with(theta2_start_deg=75), enough=8)
-    assert len(result) > 1
-    check_designs(result, independent_judge)
-    for candidate in result.candidates:
-        assert abs(np.degrees(candidate.verdict.theta2[0]) - 75) < 1e-7
+    assert off_required(result, key).max() < 1e-9
 
 
 def rotation_about(x: float, y: float) -> list[list[float]]:
@@ -235,9 +226,6 @@ DEGENERATE = {
     "pure translation": ([[0, 0, 10], [1, 0, 10], [2, 1, 10], [0, 3, 370]], "pure translations"),
     "pure rotation": (rotation_about(3, 1), r"pure rotation about \(3, 1\)"),
 }
-REFUSED = {
-    "equal later": ([[0, 0, 0], [1, 0, 20], [0, 0, 360], [0, 3, 30]], r"\[0\] and .*\[2\] are equal"),
-}  # fmt: skip
 
 
 @pytest.mark.quick("pure rotation")
@@ -251,10 +239,9 @@ def test_degenerate_poses_are_explained(kind: str) -> None:
         _ = result.best
 
 
-@pytest.mark.parametrize("kind", REFUSED)
-def test_poses_of_another_kind_are_refused(kind: str) -> None:
-    rows, why = REFUSED[kind]
-    with pytest.raises(ProblemError, match=why):
+def test_equal_poses_are_refused() -> None:
+    rows = [[0, 0, 0], [1, 0, 20], [0, 0, 360], [0, 3, 30]]
+    with pytest.raises(ProblemError, match=r"\[0\] and .*\[2\] are equal"):
         synthesize(Problem(task=MotionTask.from_degrees(rows)))
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from share_apart import share_apart
 
 from grashof import synthesize
 from grashof.analysis.judge.planted import planted_path
@@ -37,16 +38,6 @@ def case1(**wanted: Any) -> Problem:
 @pytest.fixture(scope="module")
 def case1_result() -> Result:
     return synthesize(case1(), enough=50)
-
-
-def share_apart(task: PathTask, one: FourBar, other: FourBar) -> float:
-    """As DESIGN section 2 words it, seen from the middle of the task; above 0.01 for distinct designs."""
-    middle = task.points.mean(axis=0)
-    x, y = (
-        np.array([*(a.o2 - middle), *(a.o4 - middle), a.r2, a.r3, a.r4, *a.coupler_point])
-        for a in (one, other)
-    )
-    return float(np.abs(x - y).max() / np.abs([x, y]).max())
 
 
 def check_designs(result: Result, judge: Any) -> None:

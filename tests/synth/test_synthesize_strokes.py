@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from stroke_figures import SLIDES
 
 from grashof.analysis import verify
 from grashof.problems import (
@@ -16,6 +17,7 @@ from grashof.problems import (
     load,
 )
 from grashof.problems.files.problem_schema import problem_from
+from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result, synthesize
 from grashof.synth.theory.limit_positions import best_transmission
 
@@ -72,19 +74,23 @@ def test_limits_are_kept(swing: float, ratio: float, wanted: dict[str, Any]) -> 
     assert worst(result)[0] <= np.degrees(best_transmission(np.radians(swing), ratio)) + 1e-6
 
 
-@pytest.mark.quick("wanted1-link_ratio_max 1.562 instead of 1.5")
+@pytest.mark.quick("None-wanted1-link_ratio_max 1.562 instead of 1.5", "2.9-wanted8-rotatability_margin")
 @pytest.mark.parametrize(
-    ("wanted", "words"),
-    [
-        ({"transmission_min_deg": 40}, "transmission_min_deg 37.73 instead of 40"),
-        ({"link_ratio_max": 1.5}, "link_ratio_max 1.562 instead of 1.5"),
-        ({"r1": [120, 120], "link_length": [0, 30]}, "r1"),
-        ({"output_swing_deg": [82, 90]}, "output_swing_deg from 80 instead of 82"),
-        ({"ground_angle_deg": 10, "theta2_start_deg": 60}, "theta2_start_deg 59.7"),
+    ("ratio", "wanted", "words"),
+    [  # a crank-rocker where there is no time ratio, else a slider-crank
+        (None, {"transmission_min_deg": 40}, "transmission_min_deg 37.73 instead of 40"),
+        (None, {"link_ratio_max": 1.5}, "link_ratio_max 1.562 instead of 1.5"),
+        (None, {"r1": [120, 120], "link_length": [0, 30]}, "r1"),
+        (None, {"output_swing_deg": [82, 90]}, "output_swing_deg from 80 instead of 82"),
+        (None, {"ground_angle_deg": 10, "theta2_start_deg": 60}, "theta2_start_deg 59.7"),
+        (1.2, {"transmission_min_deg": 60}, "transmission_min_deg 47.2 instead of 60"),
+        (1.2, {"stroke": [2, 3]}, "stroke from 1 instead of 2"),
+        (1.2, {"r2": [0.6, 0.9]}, "r2 from 0.499 instead of 0.6"),
+        (2.9, {"rotatability_margin": 1e-3}, "rotatability_margin"),
     ],
 )
-def test_an_empty_list_names_what_would_do(wanted: dict[str, Any], words: str) -> None:
-    result = found(**wanted)
+def test_an_empty_list_names_what_would_do(ratio: float | None, wanted: dict[str, Any], words: str) -> None:
+    result = found(**wanted) if ratio is None else slides(ratio, **wanted)
     assert len(result) == 0
     assert result.complete
     assert words in result.note
@@ -96,30 +102,22 @@ def test_near_the_greatest_ratio_the_margin_of_rotatability_is_in_the_way() -> N
     assert "rotatability_margin" in result.note
 
 
+AREA = {"keep_out": [[[2, 0], [3, 0], [3, 1], [2, 1]]], "keep_out_for": ["links"]}
+
+
 @pytest.mark.slow
 @pytest.mark.quick("a")
 @pytest.mark.parametrize(
-    "tables",
+    "wanted",
     [
-        {"requirements": {"a": {"x": [1, 2], "y": [3, 4]}}},
-        {"requirements": {"size": [0.2, 0.5]}},
-        pytest.param(
-            {
-                "requirements": {
-                    "o2": [0, 0],
-                    "o4": [5, 5],
-                    "b": {"x": [0, 10]},
-                    "keep_out": [[[2, 0], [3, 0], [3, 1], [2, 1]]],
-                    "keep_out_for": ["links"],
-                }
-            },
-            marks=pytest.mark.slow,
-        ),
+        {"a": {"x": [1, 2], "y": [3, 4]}},
+        {"size": [0.2, 0.5]},
+        {"o2": [0, 0], "o4": [5, 5], "b": {"x": [0, 10]}, **AREA},
     ],
     ids=["a", "size", "keep out"],
 )
-def test_places_and_areas_are_kept(tables: dict[str, Any]) -> None:
-    result = found(tables=tables)
+def test_places_and_areas_are_kept(wanted: dict[str, Any]) -> None:
+    result = found(**wanted)
     assert len(result) > 3
     asked = result.problem
     assert all(verify(each.linkage, asked.task, asked.requirements).ok for each in result.candidates)
@@ -177,18 +175,7 @@ def slides(ratio: float = 1.2, travel: float = 1.0, **wanted: Any) -> Result:
 
 
 @pytest.mark.quick("1.05-67.641-0.49088-2.53044-0.47171", "2.5-3.214-0.47051-0.54314-0.07177")
-@pytest.mark.parametrize(
-    ("ratio", "angle", "r2", "r3", "offset"),
-    [
-        (1.05, 67.641, 0.49088, 2.53044, 0.47171),
-        (1.1, 58.852, 0.48302, 1.79519, 0.44555),
-        (1.2, 47.201, 0.47047, 1.27911, 0.39859),
-        (1.25, 42.808, 0.46554, 1.14896, 0.37738),
-        (1.5, 27.458, 0.45074, 0.83284, 0.28828),
-        (2.0, 11.211, 0.45078, 0.62481, 0.16211),
-        (2.5, 3.214, 0.47051, 0.54314, 0.07177),
-    ],
-)
+@pytest.mark.parametrize(("ratio", "angle", "r2", "r3", "offset"), SLIDES)
 def test_the_best_slide_is_first(ratio: float, angle: float, r2: float, r3: float, offset: float) -> None:
     result = slides(ratio, 100.0)
     best = result.best.linkage
@@ -199,23 +186,30 @@ def test_the_best_slide_is_first(ratio: float, angle: float, r2: float, r3: floa
         check_sampled(each.linkage, 100.0, ratio)
 
 
+TURN = np.linspace(0, 2 * np.pi, 400_001)
+
+
 def check_sampled(linkage: Linkage, travel: float, ratio: float) -> None:
     """Stroke and time ratio of a turn in small steps, by the position of B written out."""
     assert isinstance(linkage, SliderCrank)
-    phi = np.linspace(0, 2 * np.pi, 400_001)
-    rise = linkage.offset - linkage.r2 * np.sin(phi)
-    b = linkage.r2 * np.cos(phi) + linkage.assembly * np.sqrt(linkage.r3**2 - rise**2)
-    assert np.ptp(b) == pytest.approx(travel, rel=1e-9)
-    there = abs(phi[b.argmax()] - phi[b.argmin()])
+    rise = linkage.offset - linkage.r2 * np.sin(TURN)
+    b = linkage.r2 * np.cos(TURN) + linkage.assembly * np.sqrt(linkage.r3**2 - rise**2)
+    check_turned(b, travel, 1e-9, ratio, 2e-4)
+
+
+def check_sampled_swing(linkage: Linkage, swing: float, ratio: float) -> None:
+    """Swing and time ratio of a turn in small steps, by the direction of the rod written out."""
+    assert isinstance(linkage, InvertedSliderCrank)
+    way = linkage.r1 - linkage.r2 * np.exp(1j * TURN)  # from A to O4, O2O4 along x
+    rod = np.unwrap(np.angle(way)) + np.arcsin(linkage.offset / np.abs(way))
+    check_turned(np.degrees(rod), swing, 1e-8, ratio, 1e-3)
+
+
+def check_turned(place: FloatArray, travel: float, near: float, ratio: float, near_ratio: float) -> None:
+    assert np.ptp(place) == pytest.approx(travel, rel=near)
+    there = abs(TURN[place.argmax()] - TURN[place.argmin()])
     slow = max(there, 2 * np.pi - there)
-    assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=2e-4)
-
-
-def test_a_slide_that_takes_as_long_both_ways_has_no_offset() -> None:
-    best = slides(1.0, 50.0).best.linkage
-    assert isinstance(best, SliderCrank)
-    assert (float(best.r2), float(best.offset)) == pytest.approx((25.0, 0.0), abs=1e-9)
-    assert best.r3 > 350  # as long as is not unwieldy
+    assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=near_ratio)
 
 
 @pytest.mark.quick("wanted0", "wanted8")
@@ -258,25 +252,6 @@ def test_no_slide_within_limits_does_better() -> None:
     assert worst(result)[0] == pytest.approx(best, abs=1e-3)
 
 
-@pytest.mark.quick("2.9-wanted3-rotatability_margin")
-@pytest.mark.parametrize(
-    ("ratio", "wanted", "words"),
-    [
-        (1.2, {"transmission_min_deg": 60}, "transmission_min_deg 47.2 instead of 60"),
-        (1.2, {"stroke": [2, 3]}, "stroke from 1 instead of 2"),
-        (1.2, {"r2": [0.6, 0.9]}, "r2 from 0.499 instead of 0.6"),
-        (2.9, {"rotatability_margin": 1e-3}, "rotatability_margin"),
-    ],
-)
-def test_an_empty_list_of_slides_names_what_would_do(
-    ratio: float, wanted: dict[str, Any], words: str
-) -> None:
-    result = slides(ratio, **wanted)
-    assert len(result) == 0
-    assert words in result.note
-    assert len(result.nearest) > 0
-
-
 @pytest.mark.parametrize(
     ("mechanism", "stroke", "words"),
     [
@@ -303,15 +278,13 @@ def test_a_slide_almost_three_times_as_slow_is_listed_with_how_badly_it_transmit
         check_sampled(each.linkage, 1.0, 2.9)
 
 
-def test_as_long_both_ways_the_longest_rod_is_first() -> None:
-    result = slides(1.0)
-    lengths = [
-        float(result.best.linkage.r2),
-        float(result.best.linkage.r3),
-        float(result.best.linkage.offset),
-    ]
-    assert lengths == pytest.approx([0.5, 10.0, 0.0], abs=1e-9)  # 20 times the crank
-    assert worst(result)[0] == worst(result).max()
+def test_as_long_both_ways_the_longest_rod_is_first_and_none_has_an_offset() -> None:
+    for travel in (1.0, 50.0):
+        result = slides(1.0, travel)
+        best = result.best.linkage
+        lengths = [float(getattr(best, name)) for name in ("r2", "r3", "offset")]
+        assert lengths == pytest.approx([travel / 2, 10 * travel, 0.0], abs=1e-9)  # 20 times the crank
+        assert worst(result)[0] == worst(result).max()
 
 
 @pytest.mark.quick("box0-cw", "box1-cw")
@@ -343,18 +316,6 @@ def test_crank_shapers_by_their_swing(swing: float) -> None:
     assert worst(result)[0] == pytest.approx(90, abs=1e-6)
     for each in result.candidates:
         check_sampled_swing(each.linkage, swing, ratio)
-
-
-def check_sampled_swing(linkage: Linkage, swing: float, ratio: float) -> None:
-    """Swing and time ratio of a turn in small steps, by the direction of the rod written out."""
-    assert isinstance(linkage, InvertedSliderCrank)
-    phi = np.linspace(0, 2 * np.pi, 400_001)
-    way = linkage.r1 - linkage.r2 * np.exp(1j * phi)  # from A to O4, O2O4 along x
-    rod = np.unwrap(np.angle(way)) + np.arcsin(linkage.offset / np.abs(way))
-    assert np.degrees(np.ptp(rod)) == pytest.approx(swing, rel=1e-8)
-    there = abs(phi[rod.argmax()] - phi[rod.argmin()])
-    slow = max(there, 2 * np.pi - there)
-    assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=1e-3)
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from grashof.figures import draw_design, save, save_animation
@@ -18,19 +19,27 @@ from grashof.survey import report_on
 from grashof.synth import Result
 
 
-def test_drivers_end_on_circles_about_o2(few: Result) -> None:
+@pytest.fixture
+def axes(few: Result) -> Axes:
+    """The first design, drawn as number 7."""
+    return draw_design(few.problem, few.candidates[0], 7).axes[0]
+
+
+def test_drivers_end_on_circles_about_o2_and_axes_are_equal(few: Result, axes: Axes) -> None:
     candidate = few.candidates[0]
-    axes = draw_design(few.problem, candidate, 1).axes[0]
     drivers = [line.get_xydata() for line in axes.lines if to_hex(line.get_color()) == DRIVER]
     assert len(drivers) == 4
     for ends in drivers:
         np.testing.assert_allclose(ends[0], candidate.linkage.o2)
         np.testing.assert_allclose(np.hypot(*(ends[1] - ends[0])), candidate.linkage.r2)
+    assert (axes.get_aspect(), axes.get_xlabel()) == (1, "x (m)")
+    assert "design 7" in axes.get_title()
+    assert f"{np.degrees(candidate.verdict.transmission_min_task):.1f} deg" in axes.get_title()
+    assert {to_hex(text.get_color()) for text in axes.texts if text.get_text() in set("1234")} == {PATH}
 
 
-def test_path_of_p_passes_the_poses_and_bodies_stand_there(few: Result) -> None:
+def test_path_of_p_passes_the_poses_and_bodies_stand_there(few: Result, axes: Axes) -> None:
     candidate, task = few.candidates[0], few.problem.task
-    axes = draw_design(few.problem, candidate, 1).axes[0]
     path = next(line.get_xydata() for line in axes.lines if "first to last" in str(line.get_label()))
     for position in task.positions:
         assert np.hypot(*(path - position).T).min() < 0.02 * task.size
@@ -42,18 +51,8 @@ def test_path_of_p_passes_the_poses_and_bodies_stand_there(few: Result) -> None:
     np.testing.assert_allclose([body.get_xy()[0] for body in bodies], task.positions)
 
 
-def test_axes_are_equal_and_carry_the_unit(few: Result) -> None:
-    axes = draw_design(few.problem, few.candidates[0], 7).axes[0]
-    assert axes.get_aspect() == 1
-    assert axes.get_xlabel() == "x (m)"
-    assert "design 7" in axes.get_title()
-    assert f"{np.degrees(few.candidates[0].verdict.transmission_min_task):.1f} deg" in axes.get_title()
-    assert {to_hex(text.get_color()) for text in axes.texts if text.get_text() in set("1234")} == {PATH}
-
-
-def test_names_legend_and_sense_of_the_driver(few: Result) -> None:
+def test_names_legend_and_sense_of_the_driver(few: Result, axes: Axes) -> None:
     candidate = few.candidates[0]
-    axes = draw_design(few.problem, candidate, 1).axes[0]
     named = {text.get_text(): text.xy for text in axes.texts}
     assert {"O2", "O4", "A", "B", "P"} <= set(named)
     np.testing.assert_allclose(named["P"], few.problem.task.positions[-1], atol=1e-9)
@@ -67,41 +66,38 @@ def test_names_legend_and_sense_of_the_driver(few: Result) -> None:
 
 
 @pytest.mark.parametrize("circuit_ok", [True, False])
-def test_a_defect_is_told_and_no_motion_is_drawn(few: Result, circuit_ok: bool) -> None:
+def test_a_defect_is_told_and_no_motion_is_drawn(few: Result, axes: Axes, circuit_ok: bool) -> None:
     verdict = replace(few.candidates[0].verdict, branch_ok=False, circuit_ok=circuit_ok)
-    axes = draw_design(few.problem, replace(few.candidates[0], verdict=verdict), 1).axes[0]
-    assert f"{'branch' if circuit_ok else 'circuit'} defect" in axes.get_title()
-    assert not any("first to last" in str(line.get_label()) for line in axes.lines)
-    assert "defect" not in draw_design(few.problem, few.candidates[0], 1).axes[0].get_title()
+    wrong = draw_design(few.problem, replace(few.candidates[0], verdict=verdict), 1).axes[0]
+    assert f"{'branch' if circuit_ok else 'circuit'} defect" in wrong.get_title()
+    assert not any("first to last" in str(line.get_label()) for line in wrong.lines)
+    assert "defect" not in axes.get_title()
 
 
-def test_areas_kept_out_are_hatched_where_they_are(few: Result) -> None:
+def test_areas_kept_out_are_hatched_where_they_are(few: Result, axes: Axes) -> None:
     areas = ([[0, -9], [0, 0], [5, 0], [5, -9]], [[8, 8], [9, 8], [9, 9]])
     wanted = replace(few.problem.requirements, keep_out=areas, keep_out_for=("o2", "links"))
-    axes = draw_design(replace(few.problem, requirements=wanted), few.candidates[0], 1).axes[0]
-    hatched = [patch for patch in axes.patches if patch.get_hatch()]
+    kept = draw_design(replace(few.problem, requirements=wanted), few.candidates[0], 1).axes[0]
+    hatched = [patch for patch in kept.patches if patch.get_hatch()]
     assert [patch.get_xy()[:-1].tolist() for patch in hatched] == list(areas)
-    legend = axes.get_legend()
+    legend = kept.get_legend()
     assert legend is not None
     assert "kept out: O2, links" in {text.get_text() for text in legend.get_texts()}
-    plain = draw_design(few.problem, few.candidates[0], 1).axes[0]
-    assert not any(patch.get_hatch() for patch in plain.patches)
+    assert not any(patch.get_hatch() for patch in axes.patches)
 
 
-def test_dollars_and_backslashes_are_plain_text(few: Result, tmp_path: Path) -> None:
-    problem = replace(few.problem, title=r"$\nonsense{ for 5$", length_unit="$^$", dynamics=None)
-    figure = draw_design(problem, few.candidates[0], 1)
-    save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])
-    assert figure.axes[0].get_title().startswith(r"$\nonsense{ for 5$: design 1")
-    save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
+SIGN = "\N{CJK UNIFIED IDEOGRAPH-4F38}"
 
 
-@pytest.mark.slow
-def test_signs_that_the_font_lacks_stay_in_the_svg(few: Result, tmp_path: Path) -> None:
-    problem = replace(few.problem, title="\N{CJK UNIFIED IDEOGRAPH-4F38}", dynamics=None)
+@pytest.mark.parametrize("title", [r"$\nonsense{ for 5$", pytest.param(SIGN, marks=pytest.mark.slow)])
+def test_dollars_and_backslashes_and_signs_that_the_font_lacks_are_plain_text(
+    few: Result, tmp_path: Path, title: str
+) -> None:
+    problem = replace(few.problem, title=title, length_unit="$^$", dynamics=None)
     figure = draw_design(problem, few.candidates[0], 1)
     save(figure, [tmp_path / "d.png", tmp_path / "d.svg"])  # warnings are errors here
-    assert "\N{CJK UNIFIED IDEOGRAPH-4F38}" in (tmp_path / "d.svg").read_text(encoding="utf-8")
+    assert figure.axes[0].get_title().startswith(f"{title}: design 1")
+    assert title in (tmp_path / "d.svg").read_text(encoding="utf-8")
     save_animation(draw_motion(few.candidates[0], problem, seconds=0.2, fps=10), tmp_path / "d.gif")
 
 

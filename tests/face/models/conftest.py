@@ -13,19 +13,11 @@ from grashof.analysis.judge.planted import (
     random_slider_crank,
 )
 from grashof.models import Model
-from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, SixBar, load_linkage_spec
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage, load_linkage_spec
 
 DRIVEN = DynamicsSpec(
     speed_rpm=-90.0, masses=(0.4, 1.2, 0.7), inertias=(0.01, 0.05, 0.02), gravity=(0.0, -9.81)
 )
-
-
-# Klann's leg (US patent 6 260 862).
-LEG = SixBar(
-    o2=(1.599, 0.750), o4=(1.009, 0.574), r2=0.268, r3=0.590, r4=0.3206, assembly=-1, hosts=(3, 1),
-    c=(1.09894712, -0.11645274), d=(1.366, 1.366), r5=0.8966, r6=0.5177,
-    coupler_point=(-0.77628869, -0.44862839),
-)  # fmt: skip
 
 
 def models() -> list[Model]:
@@ -42,7 +34,7 @@ def models() -> list[Model]:
     found.append(Model.of(LinkageSpec(rocker, "swinging", length_unit="m")))
     for number, (name, linkage) in enumerate(SIX_BARS.items()):
         found.append(Model.of(LinkageSpec(linkage, name, length_unit=("m", "mm", "in", "")[number % 4])))
-    found.append(Model.of(LinkageSpec(LEG, "leg", length_unit="m")))
+    found.append(Model.of(LinkageSpec(load_linkage("klann"), "leg", length_unit="m")))
     return [*found, Model.of(load_linkage_spec("pumpjack"))]
 
 

@@ -3,28 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page
+from shown_pages import state, wait_until
 
 from grashof.survey import LinkageReport
 
 Open = Callable[..., Page]
-
-
-def state(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = page.evaluate("grashof.state()")
-    return found
-
-
-def wait_until(page: Page, condition: str) -> None:
-    for _ in range(200):
-        if page.evaluate(condition):
-            return
-        page.wait_for_timeout(20)
-    pytest.fail(f"never true: {condition}")
 
 
 def plot(page: Page, title: str) -> Locator:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page
+from shown_pages import state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
@@ -22,20 +23,6 @@ UNCOVERED = """
   return document.elementFromPoint(x + width / 2, y + height / 2) === node;
 }).map((node) => Number(node.dataset.index))
 """
-
-
-def state(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = page.evaluate("grashof.state()")
-    return found
-
-
-def wait_until(page: Page, condition: str) -> None:
-    """As `page.wait_for_function`, which the page's own security policy forbids."""
-    for _ in range(200):
-        if page.evaluate(condition):
-            return
-        page.wait_for_timeout(20)
-    pytest.fail(f"never true: {condition}")
 
 
 def centre(place: Locator) -> tuple[float, float]:

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any
 
 import pandas as pd
 import pytest
 from playwright.sync_api import Page, expect
+from shown_pages import state
 
 from grashof.synth import Result
 from grashof.synth.designs.table import NAMES
 
 Open = Callable[..., Page]
-
-
-def state(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = page.evaluate("grashof.state()")
-    return found
 
 
 def test_columns_are_sorted(opened: Open, few: Result) -> None:

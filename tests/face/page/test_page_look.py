@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import combinations
-from typing import Any
 
 import pytest
 from playwright.sync_api import Page
+from shown_pages import state
 
 Open = Callable[..., Page]
-
-
-def state(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = page.evaluate("grashof.state()")
-    return found
 
 
 def open_all(page: Page) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from playwright.sync_api import Page
+from shown_pages import state
 
 from grashof.sweep import Sweep, load_study, sweep
 from grashof.sweep.page import sweep_page
@@ -56,11 +57,6 @@ def shown(window: Page, done: tuple[Sweep, Path]) -> Iterator[Page]:
     for event, listener in listeners.items():
         window.remove_listener(event, listener)
     assert complaints == []
-
-
-def state(page: Page) -> dict[str, Any]:
-    found: dict[str, Any] = page.evaluate("grashof.state()")
-    return found
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from section_facts import facts, in_both_units
 
 from grashof.analysis import inverse_dynamics, size_flywheel
 from grashof.problems import (
@@ -26,12 +27,9 @@ from grashof.survey import Asked, Section, report_on
 
 Sections = Callable[..., dict[str, Section]]
 JACK = load_linkage_spec("pumpjack")
+BARE = replace(JACK, dynamics=None)
 ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 HEAVY = DynamicsSpec(2.0, gravity=(0, -9.81))
-
-
-def facts(section: Section) -> dict[str, Any]:
-    return {fact.key: fact.value for fact in section.facts}
 
 
 def weighted(spec: LinkageSpec, row: Any, links: tuple[int, ...]) -> LinkageSpec:
@@ -87,25 +85,13 @@ def test_counterweights_of_slider_kinds(sections: Sections) -> None:
 
 @pytest.mark.slow
 def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:
-    linkage, inch = JACK.linkage, 0.0254
-    small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
     heavy = DynamicsSpec(300.0, speed_rpm=20, gravity=(0, -9.8))
     metres, inches = (
-        sections(spec, balance=True, flywheel=0.1)
-        for spec in (
-            LinkageSpec(linkage, "it", length_unit="m", dynamics=heavy),
-            LinkageSpec(small, "it", length_unit="in", dynamics=replace(heavy, mass_per_length=300 * inch)),
-        )
+        sections(spec, balance=True, flywheel=0.1) for spec in in_both_units(JACK.linkage, heavy)
     )
     one, two = (each["balancing"].tables["balancing"] for each in (metres, inches))
-    for name in (
-        "mass_2",
-        "mass_4",
-        "shaking_force_peak",
-        "shaking_moment_peak",
-        "torque_peak",
-        "torque_rms",
-    ):
+    peaks = "shaking_force_peak", "shaking_moment_peak", "torque_peak"
+    for name in ("mass_2", "mass_4", *peaks, "torque_rms"):
         np.testing.assert_allclose(one[name], two[name], rtol=1e-7, atol=1e-5)
     for key, value in facts(metres["flywheel"]).items():
         assert facts(inches["flywheel"])[key] == pytest.approx(value, rel=1e-7, abs=1e-6)
@@ -141,12 +127,8 @@ def test_the_flywheel_is_that_of_the_analysis(sections: Sections) -> None:
 @pytest.mark.parametrize(
     ("spec", "asked", "message"),
     [
-        (replace(JACK, dynamics=None), {"balance": True}, "balance needs masses; [dynamics] states none"),
-        (
-            replace(JACK, dynamics=None),
-            {"flywheel": 0.1},
-            "flywheel needs masses or loads; the file states none",
-        ),
+        (BARE, {"balance": True}, "balance needs masses; [dynamics] states none"),
+        (BARE, {"flywheel": 0.1}, "flywheel needs masses or loads; the file states none"),
         (JACK, {"flywheel": 0.0}, "flywheel is 0; it must be from 1e-06 to 1"),
         (JACK, {"flywheel": np.nan}, "flywheel is nan; it must be a finite number"),
         (

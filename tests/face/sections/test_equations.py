@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from section_facts import INCH, in_inches
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
 
@@ -27,15 +29,12 @@ def test_the_table_solves_to_the_forces_of_the_analysis(sections: Any) -> None:
 
 def test_arms_are_in_metres_and_forces_in_newtons_in_every_unit(sections: Any) -> None:
     """The pumpjack in inches has the same equations."""
-    spec, inch = load_linkage_spec("pumpjack"), 0.0254
-    bar, given = spec.linkage, spec.dynamics
+    spec = load_linkage_spec("pumpjack")
+    given = spec.dynamics
     assert given is not None
     assert given.inertias is not None
-    small = FourBar(bar.o2 / inch, bar.o4 / inch, bar.r2 / inch, bar.r3 / inch, bar.r4 / inch)
-    inertias = [inertia / inch**2 for inertia in given.inertias]
-    dynamics = DynamicsSpec(
-        masses=given.masses, inertias=inertias, speed_rpm=given.speed_rpm, gravity=given.gravity
-    )
+    dynamics = replace(given, inertias=tuple(inertia / INCH**2 for inertia in given.inertias))
+    small = in_inches(spec.linkage)
     tables = [
         sections(each, sections=ONLY, at_deg=(75,))["equations"].tables["equations"]
         for each in (spec, LinkageSpec(small, "small", length_unit="in", dynamics=dynamics))

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from scipy.interpolate import CubicSpline
+from section_facts import facts, in_both_units
 
 from grashof.analysis import balance_force, stated_masses
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
@@ -26,10 +27,6 @@ SMALL = LinkageSpec(
     length_unit="m",
     dynamics=DynamicsSpec(2.0, gravity=(0, -9.81)),
 )
-
-
-def facts(section: Section) -> dict[str, Any]:
-    return {fact.key: fact.value for fact in section.facts}
 
 
 def test_it_swings_about_its_equilibrium_with_its_frequency(sections: Sections) -> None:
@@ -61,16 +58,12 @@ def test_the_way_of_a_swinging_driver_is_told_beside_its_net_turn(sections: Sect
 
 @pytest.mark.slow
 def test_frequencies_and_energies_in_every_unit(sections: Sections) -> None:
-    linkage, inch = SMALL.linkage, 0.0254
-    small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
     assert SMALL.dynamics is not None
-    heavy = replace(SMALL.dynamics, mass_per_length=2.0 * inch)
-    inches = sections(
-        LinkageSpec(small, "it", length_unit="in", dynamics=heavy), release_deg=30.0, seconds=1.0
+    metres, inches = (
+        sections(spec, release_deg=30.0, seconds=1.0) for spec in in_both_units(SMALL.linkage, SMALL.dynamics)
     )
-    metres = sections(SMALL, release_deg=30.0, seconds=1.0)
-    for key, name in (("equilibrium", "equilibrium"), ("release", "release")):
-        one, two = inches[key].tables[name], metres[key].tables[name]
+    for key in ("equilibrium", "release"):
+        one, two = inches[key].tables[key], metres[key].tables[key]
         for column in set(one) - {"p_x", "p_y", "time"}:
             np.testing.assert_allclose(one[column], two[column], rtol=1e-8, atol=1e-9)
 
@@ -122,9 +115,7 @@ def test_a_driver_that_swings_ends_in_a_dead_position(sections: Sections) -> Non
             "release: the links have no inertia, so no torque gives them a motion",
         ),
         (
-            replace(
-                SMALL, dynamics=DynamicsSpec(1.0, loads=(LoadSpec(2, values=((0, 1), (9, 1)), over="time"),))
-            ),
+            replace(SMALL, dynamics=DynamicsSpec(1.0, loads=(TIMED,))),
             {"release_deg": 1.0},
             "release does not go with a load over time; it may be over theta2 or theta4",
         ),

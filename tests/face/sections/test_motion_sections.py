@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from section_facts import facts, in_both_units
 
 from grashof.analysis import dwell, mechanical_energy, solve_kinematics
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
@@ -78,15 +79,10 @@ def test_the_energy_table_adds_up(sections: Sections) -> None:
     number = np.fft.fftfreq(360, 1 / 360)
     rate = np.fft.ifft(1j * number * spread).real * 20 * np.pi / 30
     np.testing.assert_allclose(table["drive_power"].to_numpy()[:-1], rate, atol=1e-6)
-    inch = 0.0254
-    small = FourBar(
-        JACK.linkage.o2 / inch, JACK.linkage.o4 / inch, *(JACK.linkage.lengths[1:] / inch)
-    )  # fmt: skip
     heavy = DynamicsSpec(300.0, speed_rpm=20, gravity=(0, -9.8))
-    metres = sections(replace(JACK, dynamics=heavy))["energies"].tables["energies"]
-    inches = sections(
-        LinkageSpec(small, "jack", length_unit="in", dynamics=replace(heavy, mass_per_length=300 * inch))
-    )["energies"].tables["energies"]
+    metres, inches = (
+        sections(spec)["energies"].tables["energies"] for spec in in_both_units(JACK.linkage, heavy)
+    )
     np.testing.assert_allclose(inches["energy"], metres["energy"], rtol=1e-9)
     np.testing.assert_allclose(inches["drive_power"], metres["drive_power"], rtol=1e-9, atol=1e-6)
 
@@ -114,15 +110,15 @@ def test_the_powers_of_loads_springs_and_friction_are_the_rate_of_the_energy(sec
 @pytest.mark.parametrize("linkage", [JACK.linkage, FourBar((0, 0), (4, 0), 3, 1, 3)])
 def test_the_dwell_keeps_to_its_band(sections: Sections, linkage: FourBar) -> None:
     found = sections(LinkageSpec(linkage, "it"), dwell_deg=3.0, speed_rpm=10.0)["dwell"]
-    facts = {fact.key: fact.value for fact in found.facts}
-    mark = "" if len([key for key in facts if key.endswith("_from_deg")]) == 1 else "_1"
-    start, end = facts[f"dwell{mark}_from_deg"], facts[f"dwell{mark}_to_deg"]
+    given = facts(found)
+    mark = "" if len([key for key in given if key.endswith("_from_deg")]) == 1 else "_1"
+    start, end = given[f"dwell{mark}_from_deg"], given[f"dwell{mark}_to_deg"]
     state = solve_kinematics(linkage, np.radians(np.linspace(start, end, 400)[1:-1]))
     assert np.ptp(np.unwrap(state.theta4)) <= np.radians(3.0) * (1 + 1e-9)
-    assert facts[f"dwell{mark}_seconds"] == pytest.approx((end - start) / 60)
+    assert given[f"dwell{mark}_seconds"] == pytest.approx((end - start) / 60)
     if linkage is JACK.linkage:
         whole = dwell(linkage, lambda each: each.theta4, np.radians(3.0), period=2 * np.pi)
-        assert facts["dwell_deg"] == pytest.approx(np.degrees(whole.duration))
+        assert given["dwell_deg"] == pytest.approx(np.degrees(whole.duration))
 
 
 def test_a_band_that_is_none_is_refused(sections: Sections) -> None:
@@ -133,5 +129,4 @@ def test_a_band_that_is_none_is_refused(sections: Sections) -> None:
 
 def test_what_is_constant_is_largest_nowhere(sections: Sections) -> None:
     """P is A: its jerk has one size all around."""
-    facts = {fact.key for fact in sections(load_linkage_spec("lufkin-c912d"))["hodographs"].facts}
-    assert facts == {"p_jerk_largest"}
+    assert [*facts(sections(load_linkage_spec("lufkin-c912d"))["hodographs"])] == ["p_jerk_largest"]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from section_facts import facts, in_both_units
 
 from grashof.analysis import inverse_dynamics, motor_torque, solve_kinematics
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
@@ -19,10 +20,6 @@ from grashof.survey import Asked, Section, report_on
 Sections = Callable[..., dict[str, Section]]
 JACK = load_linkage_spec("pumpjack")
 GEAR = MotorSpec(gear_ratio=30, gear_efficiency=0.9, inertia=0.05)
-
-
-def facts(section: Section) -> dict[str, Any]:
-    return {fact.key: fact.value for fact in section.facts}
 
 
 def jack(motor: MotorSpec | None, **given: Any) -> LinkageSpec:
@@ -101,15 +98,7 @@ def test_a_driver_that_swings_and_inches(sections: Sections) -> None:
         rocker, "it", length_unit="m", dynamics=DynamicsSpec(2.0, gravity=(0, -9.8), motor=GEAR)
     )
     assert facts(sections(swings)["motor"]) == {}
-    linkage, inch = JACK.linkage, 0.0254
-    small = FourBar(linkage.o2 / inch, linkage.o4 / inch, *(linkage.lengths[1:] / inch))
     heavy = DynamicsSpec(300.0, speed_rpm=20, gravity=(0, -9.8), motor=GEAR)
-    metres, inches = (
-        facts(sections(LinkageSpec(bar, "it", length_unit=unit, dynamics=dynamics))["motor"])
-        for bar, unit, dynamics in (
-            (linkage, "m", heavy),
-            (small, "in", replace(heavy, mass_per_length=300 * inch)),
-        )
-    )
+    metres, inches = (facts(sections(spec)["motor"]) for spec in in_both_units(JACK.linkage, heavy))
     for key, value in metres.items():
         assert inches[key] == pytest.approx(value, rel=1e-7, abs=1e-7), key

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from section_facts import facts
 
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, LinkageSpec, load_linkage
@@ -20,9 +21,9 @@ def test_both_ways_agree(sections: Any, name: str) -> None:
     exact = solve_position(load_linkage(name), np.radians(table["theta2_deg"]))
     np.testing.assert_allclose(table["theta3_deg"], np.degrees(exact.theta3), rtol=0, atol=1e-9)
     np.testing.assert_allclose(table["theta4_difference_deg"], 0, atol=1e-9)
-    facts = {fact.key: fact.value for fact in section.facts}
-    assert facts["newton_difference_max_deg"] < 1e-10
-    assert facts["newton_steps_max"] == table["steps"].max() <= 8
+    given = facts(section)
+    assert given["newton_difference_max_deg"] < 1e-10
+    assert given["newton_steps_max"] == table["steps"].max() <= 8
     assert section.notes == ()
     assert np.abs(np.diff(section.plots[0].series["theta4"])).max() < 40
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from section_facts import INCH, facts
 
 from grashof.problems import DynamicsSpec, ProblemError, load_linkage_spec
 from grashof.problems.values.dynamics.acting import LoadSpec
@@ -16,13 +17,8 @@ from grashof.survey import Section, report_on
 
 Sections = Callable[..., dict[str, Section]]
 LUFKIN = load_linkage_spec("lufkin-c912d")
-INCH = 0.0254
 # Polished-rod loads with rounded corners: 20 kN up, 9 kN down.
 ROD = [(0, 9e3), (20, 9e3), (35, 20e3), (165, 20e3), (195, 9e3), (360, 9e3)]
-
-
-def facts(section: Section) -> dict[str, float]:
-    return {fact.key: fact.value for fact in section.facts}  # type: ignore[misc]
 
 
 def test_the_figures_of_the_maker(sections: Sections) -> None:

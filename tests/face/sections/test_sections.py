@@ -1,13 +1,26 @@
-"""Every section on request, on linkages that are hard to analyse."""
+"""What all sections have in common, on every kind of four-bar and on those that are hard to analyse."""
 
 from __future__ import annotations
 
+import re
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage
+from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage, load_linkage_spec
+from grashof.problems.values.dynamics.acting import (
+    DamperSpec,
+    FrictionSpec,
+    LoadSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.study.asked import ON_REQUEST
 from grashof.study.section import Section
@@ -35,6 +48,33 @@ DYNAMICS = {
     "at rest": ("in", DynamicsSpec(mass_per_length=2.0, speed_rpm=0.0)),
     "payload alone": ("m", DynamicsSpec(payload=3.0)),
 }  # fmt: skip
+CLASSES = {
+    "crank-rocker": FourBar((1, 2), (4, 3), 0.9, 3, 2.5, (1, 1)),
+    "double-crank": FourBar((0, 0), (1, 0), 3, 2.5, 3, (1, 1), assembly=-1),
+    "double-rocker": FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1)),
+    "rocker-crank": FourBar((0, 0), (4, 0), 3, 4, 1, (0.5, 1)),
+    "triple-rocker": FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1), assembly=-1),
+    "parallelogram": FourBar((0, 0), (3, 0), 2, 3, 2, (1, 1)),
+    "deltoid": FourBar((0, 0), (3, 0), 3, 2, 2),
+}
+HEAVY = DynamicsSpec(2.0, payload=0.5, speed_rpm=-30, gravity=(0, -9.81))
+LOADED = DynamicsSpec(
+    300.0,
+    speed_rpm=-10,
+    gravity=(0, -9.81),
+    loads=(
+        LoadSpec(4, at=(-4, 0), values=((0, 0, -9e3), (90, 0, -2e4), (200, 0, -1e4), (360, 0, -9e3))),
+        LoadSpec(3, moment=50.0),
+        LoadSpec(4, values=((0, 10.0), (3, -20.0), (7, 5.0)), over="time"),
+    ),
+    springs=(SpringSpec((Place(1, (0, 2)), Place(4, (1, 0))), 500.0, 1.2),),
+    dampers=(DamperSpec((Place(1, (0, 2)), Place(4, (1, 0))), 30.0),),
+    torsion_springs=(TorsionSpringSpec((2, 3), 40.0, 20.0),),
+    friction=FrictionSpec(coulomb=0.1, pin_radius=0.05, viscous=2.0),
+    motor=MotorSpec(profile="trapezoid", gear_ratio=30, gear_efficiency=0.9, inertia=0.02),
+)
+ASKED: dict[str, Any] = {"dwell_deg": 2.0, "sections": ON_REQUEST, "tolerance": 0.01}
+MOVED: dict[str, Any] = {"balance": True, "flywheel": 0.1, "release_deg": 20.0, "seconds": 0.2}
 
 
 @pytest.mark.quick("crank-rocker-none", "minute-none")
@@ -52,21 +92,75 @@ def test_all_is_finite_or_empty_and_nothing_warns(sections: Any, name: str, dyna
     for asked in ({"seconds": 0.1}, {"seconds": 3.0}, some):
         found = sections(spec, sections=ON_REQUEST, **asked)
         assert len(found) > 4
-        check([section for section in found.values() if section.key in OWN])
+        check(section for section in found.values() if section.key in OWN)
+        check_finite(section for section in found.values() if section.key in OWN)
 
 
-def check(sections: list[Section]) -> None:
-    plots = [plot for section in sections for plot in section.plots]
-    assert len({plot.key for plot in plots}) == len(plots)
-    for table in (table for section in sections for table in section.tables.values()):
-        assert not np.isinf(table.select_dtypes("number").to_numpy(dtype=float)).any()
+def check(made: Iterable[Section]) -> None:
+    """Keys are names of files and met once, plots are lines of numbers."""
+    every = list(made)
+    plots = [plot for section in every for plot in section.plots]
+    facts = [fact for section in every for fact in section.facts]
+    tables = [(name, table) for section in every for name, table in section.tables.items()]
+    for keys, allowed in (
+        ([name for name, _ in tables], "[a-z0-9-]+"),
+        ([plot.key for plot in plots], "[a-z0-9-]+"),
+        ([fact.key for fact in facts], "[a-z0-9_]+"),
+    ):
+        assert [key for key, count in Counter(keys).items() if count > 1] == []
+        assert all(re.fullmatch(allowed, key) for key in keys)
     for plot in plots:
+        assert plot.series, plot.key
         for label, values in plot.series.items():
             assert not np.isinf(values).any(), (plot.key, label)
-            assert plot.places is None or len(values) == len(plot.places)
-            assert plot.places is not None or values.shape[1:] == (2,)
-    for fact in (fact for section in sections for fact in section.facts):
-        assert not isinstance(fact.value, float) or np.isfinite(fact.value), fact
+            assert values.shape == ((len(values), 2) if plot.places is None else plot.places.shape), plot.key
+            assert plot.angles is None or len(plot.angles) == len(values), plot.key
+
+
+def check_known(made: Iterable[Section]) -> None:
+    """Facts and points of plots are known, tables are full."""
+    for section in made:
+        assert section.title
+        assert not any(note.endswith(".") for note in section.notes)
+        for points in (points for plot in section.plots for points in plot.points.values()):
+            assert points.ndim == 2, section.key
+            assert np.isfinite(points).all(), section.key
+        for fact in section.facts:
+            assert not isinstance(fact.value, float) or not np.isnan(fact.value), fact.key
+        for name, table in section.tables.items():
+            assert len(table), name
+            if len(table) > 100:  # over the motion, not of extremes
+                assert not np.isinf(table.select_dtypes("number").to_numpy(dtype=float)).any(), name
+
+
+def check_finite(made: Iterable[Section]) -> None:
+    """No fact and no entry of any table is infinite."""
+    for section in made:
+        for table in section.tables.values():
+            assert not np.isinf(table.select_dtypes("number").to_numpy(dtype=float)).any(), section.key
+        for fact in section.facts:
+            assert not isinstance(fact.value, float) or np.isfinite(fact.value), fact
+
+
+@pytest.mark.parametrize("name", [*CLASSES, "pumpjack", "lufkin-c912d", "still", "loaded"])
+def test_every_section_is_sound(sections: Any, name: str) -> None:
+    if name in CLASSES:
+        spec = LinkageSpec(CLASSES[name], name, length_unit="mm", dynamics=HEAVY)
+        turns = name in ("crank-rocker", "double-crank")
+        made = sections(spec, **ASKED, **(MOVED if turns else {"balance": True}))
+    elif name == "loaded":
+        made = sections(replace(load_linkage_spec("pumpjack"), dynamics=LOADED), **ASKED)
+    elif name == "still":
+        made = sections("pumpjack", speed_rpm=0.0, **ASKED)
+    else:
+        made = sections(name, **ASKED)
+    check(made.values())
+    check_known(made.values())
+
+
+def test_without_masses_there_are_no_forces(sections: Any) -> None:
+    bare = replace(load_linkage_spec("pumpjack"), dynamics=None)
+    assert not {"pin-forces", "energies"} & set(sections(bare))
 
 
 def test_tables_of_masses(sections: Any) -> None:
@@ -97,9 +191,7 @@ def test_volumes_of_bars_of_stated_density(sections: Any) -> None:
 
 @pytest.mark.study
 def test_names_on_the_command_line(grashof: Any, tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    import grashof.figures.files as files
-
-    monkeypatch.setattr(files, "save", lambda _, paths: [path.touch() for path in paths])
+    monkeypatch.setattr("grashof.figures.files.save", lambda _, paths: [path.touch() for path in paths])
     asked = ("--all", "--seconds", "1", "--at", " 0, -90 ", "--fit-from-deg", "0", "--fit-to-deg", "90")
     done = grashof("analyse", "pumpjack", *asked)
     assert done.exit_code == 0, done.output

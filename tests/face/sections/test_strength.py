@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from section_facts import facts
 
 from grashof.analysis import Structure, solve_kinematics, strength_at
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
@@ -47,7 +48,7 @@ def test_forces_without_a_section_stresses_with_one_safety_with_strengths() -> N
     assert "safety" not in cut.tables
     assert len(strong.tables["safety"]) == 3 * 3 + 4 * 2
     least = strong.tables["safety"]["safety_factor"].min()
-    assert {fact.key: fact.value for fact in strong.facts}["safety_factor"] == least
+    assert facts(strong)["safety_factor"] == least
 
 
 def test_it_is_the_analysis_and_its_peaks_hold_the_table() -> None:

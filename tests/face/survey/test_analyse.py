@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from section_facts import facts, in_both_units
 
 import grashof.figures.files
 from grashof.analysis import (
@@ -31,10 +32,6 @@ Grashof = Callable[..., Any]
 GOLDEN = json.loads((Path(__file__).parents[2] / "data" / "golden.json").read_text(encoding="utf-8"))
 DOUBLE_ROCKER = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
 ONE_RANGE = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
-
-
-def facts(report: LinkageReport) -> dict[str, Any]:
-    return {fact.key: fact.value for fact in report.facts}
 
 
 def extremes(report: LinkageReport) -> pd.DataFrame:
@@ -90,18 +87,10 @@ def test_torque_and_forces_of_the_pumpjack_are_the_reference_figures() -> None:
 
 @pytest.mark.slow
 def test_forces_are_newtons_in_every_length_unit() -> None:
-    def heavy(density: float) -> DynamicsSpec:
-        return DynamicsSpec(density, payload=50, speed_rpm=12, gravity=(0, -9.8))
-
-    linkage, inch = load_linkage_spec("pumpjack").linkage, 0.0254
-    small = FourBar(
-        linkage.o2 / inch, linkage.o4 / inch, linkage.r2 / inch, linkage.r3 / inch, linkage.r4 / inch,
-        linkage.coupler_point / inch,
-    )  # fmt: skip
-    metres, inches = (
-        report_on(LinkageSpec(bar, "bar", length_unit=unit, dynamics=heavy(density)))
-        for bar, unit, density in ((linkage, "m", 300.0), (small, "in", 300.0 * inch))
-    )
+    linkage = load_linkage_spec("pumpjack").linkage
+    assert isinstance(linkage, FourBar)
+    heavy = DynamicsSpec(300.0, payload=50, speed_rpm=12, gravity=(0, -9.8))
+    metres, inches = map(report_on, in_both_units(linkage, heavy))
     for name in ("torque", "f12", "f43", "shaking_force", "shaking_moment", "power"):
         np.testing.assert_allclose(
             inches.tables["dynamics"][name], metres.tables["dynamics"][name], rtol=1e-9, atol=1e-6
@@ -413,7 +402,7 @@ def test_one_angle_is_counted_alike_everywhere() -> None:
     for turned in (0.0, np.pi - np.radians(low + high) / 2):
         report = rocker(turned)
         low, high = extremes(report).loc["theta4_deg", ["min", "max"]]
-        found = facts(report) | {fact.key: fact.value for part in report.sections for fact in part.facts}
+        found = {key: value for part in (report, *report.sections) for key, value in facts(part).items()}
         toggles = sorted(found[f"toggle_{name}_theta4_deg"] for name in ("folded", "stretched"))
         np.testing.assert_allclose(toggles, [low, high], atol=1e-6)
         assert low - 1e-6 <= found["dwell_low_theta4_deg"] < found["dwell_high_theta4_deg"] <= high + 1e-6

@@ -54,10 +54,7 @@ def test_errors_of_rounding_are_equal() -> None:
     assert order(LEAST_SQUARES, design(1, 0.0, 11.8), design(2, 1e-6, 40.2)) == [2, 1]
     assert order(LEAST_SQUARES, design(1, 0.0, 11.8), design(2, 1.01e-6, 40.2)) == [1, 2]
     assert order(LEAST_SQUARES, design(1, 0.01, 11.8), design(2, 0.010001, 40.2)) == [1, 2]
-
-
-def test_errors_alike_to_rounding_are_equal_at_any_size() -> None:
-    """As of cognates, which trace the same curve."""
+    # At any size, as of cognates, which trace the same curve.
     assert order(LEAST_SQUARES, design(1, 0.02, 11.8), design(2, 0.02 * (1 + 1e-13), 40.2)) == [2, 1]
 
 
@@ -78,12 +75,9 @@ def test_exact_designs_are_ranked_by_the_objective() -> None:
 
 
 def test_of_equal_objectives_the_smaller_design_comes_first() -> None:
+    designs = design(1, 0, 40, 3), design(2, 0, 40, 2), design(3, 0, 40 + 1e-9, 4)
     for problem in (EXACT, LEAST_SQUARES):
-        assert order(problem, design(1, 0, 40, 3), design(2, 0, 40, 2), design(3, 0, 40 + 1e-9, 4)) == [
-            2,
-            1,
-            3,
-        ]
+        assert order(problem, *designs) == [2, 1, 3]
 
 
 figures = st.tuples(

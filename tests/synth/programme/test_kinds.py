@@ -1,15 +1,15 @@
 """Kinds of linkage in the search against the analysis, which shares no formula with them."""
 
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from as_found import as_found
 
 from grashof.analysis import output_stroke, solve_position, transmission_angle, verify
 from grashof.analysis.judge.planted import RANDOM
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, PathTask, Problem, SliderCrank
+from grashof.problems import Linkage, PathTask, Problem
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.scaled_problem import ScaledProblem
@@ -18,17 +18,6 @@ from grashof.synth.programme.start import Start
 
 EVERY = tuple(KINDS)
 SLIDERS = EVERY[1:]
-
-
-def as_found(linkage: Linkage) -> Linkage:
-    """The same linkage as a search has it: a slide, or a rod, taken the way on which B lies ahead of A."""
-    if linkage.assembly > 0 or isinstance(linkage, FourBar):
-        return linkage
-    if isinstance(linkage, SliderCrank):
-        return replace(linkage, slide_angle=linkage.slide_angle + np.pi, offset=-linkage.offset, assembly=1)
-    assert isinstance(linkage, InvertedSliderCrank)
-    turned = {"coupler_point": -linkage.coupler_point, "body_angle": linkage.body_angle + np.pi}
-    return replace(linkage, offset=-linkage.offset, assembly=1, **turned)
 
 
 def scaled_of(mechanism: str) -> ScaledProblem:

@@ -1,33 +1,22 @@
 """Soundness: linkages that meet a problem are in its pieces, and no bound is below what they transmit."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from luggage_limits import STAIRS, luggage, with_links
+from piece_descent import JUST_BELOW, Descent, descent
 
 from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.pairs import rows_left
 from grashof.synth.starts.dyad_pairs import judged_pairs, screen
 from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
-
-JUST_BELOW = 1e-7  # rad
-NOWHERE = -1
-
-
-def luggage(**requirements: object) -> Problem:
-    problem = load("luggage")
-    wanted = {"transmission_min_deg": 0.0, **requirements}
-    return replace(problem, requirements=replace(problem.requirements, **wanted))
-
-
-def with_links(longest: float, **requirements: object) -> Problem:
-    return luggage(link_length=(0.3, longest), coupler_arms=(0.3, longest), **requirements)
 
 
 def random_poses(seed: int, **requirements: object) -> Problem:
@@ -36,7 +25,6 @@ def random_poses(seed: int, **requirements: object) -> Problem:
     return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
 
 
-STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=np.float64)
 WITHIN = {"o2": Box((-4, 4), (-5, 5)), "b": Box((-3, 9), (-8, 8)), "a_on_body": Box((-6, 6), (-6, 6))}
 TURNED = {"driver_sense": "ccw", "driver_rotation_deg": (20, 120), "ground_angle_deg": (-60, 90)}
 
@@ -78,63 +66,17 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0) -> Designs:
     return Designs(*(points[good] - body for points in dyads), judged.transmission[good])
 
 
-def holds(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> BoolArray:
-    """Whether pieces hold dyads, entry by entry: by the definition of tubes alone."""
-    tubes, centres = table.pieces.tubes[which], table.pieces.centres[which]
-    moved = (z - tubes.middle) * tubes.direction.conj()
-    s = moved.real / np.maximum(tubes.half, 1e-300)
-    off = np.abs(moved.imag - tubes.tilt * s - tubes.bow * (s * s - 0.5))
-    inside = (np.abs(s) <= 1 + 1e-9) & (off <= tubes.rest + 1e-13)
-    apart = np.abs(c - centres.middle - centres.along * np.clip(s, -1, 1))
-    return inside & (apart <= centres.rest + 1e-12 * (1 + np.abs(c)))
-
-
-def pieces_of(table: Table, z: ComplexArray, c: ComplexArray, role: BoolArray) -> IntArray:
-    """The first piece of a cover that holds each dyad; `NOWHERE` where none does."""
-    found = np.full(len(z), NOWHERE)
-    for piece in np.flatnonzero(role)[::-1]:
-        found[holds(table, np.full(len(z), piece), z, c)] = piece
-    return found
-
-
-def halves_of(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> IntArray:
-    """The half of each piece that holds each dyad."""
-    halves, found = table.halve(which), np.full(len(z), NOWHERE)
-    for half in halves.T:
-        rows = np.flatnonzero(half >= 0)
-        inside = rows[holds(table, half[rows], z[rows], c[rows])]
-        found[inside] = half[inside]
-    return found
-
-
-@dataclass(frozen=True)
-class Descent:
-    """What became of designs: how many were in no piece, or excluded, and how near a bound came, rad."""
-
-    lost: int
-    excluded: int
-    nearest: float
-
-
 def followed(problem: Problem, designs: Designs, levels: int = 8) -> Descent:
     """Follow designs down halves of pieces, each with its own transmission angle as the threshold."""
     asked = Asked.of(ScaledProblem.of(problem))
     table = Table.covering(asked)
-    a, o2, b, o4, least = designs.a, designs.o2, designs.b, designs.o4, designs.transmission
-    driver = pieces_of(table, a, o2, table.pieces.driver)
-    driven = pieces_of(table, b, o4, table.pieces.driven)
-    lost = excluded = 0
-    nearest = np.inf
-    for _ in range(levels):
-        there = (driver >= 0) & (driven >= 0)
-        lost += int((~there).sum())
-        a, o2, b, o4, least = (each[there] for each in (a, o2, b, o4, least))
-        driver, driven = driver[there], driven[there]
-        rows, bound = rows_left(asked, table.pieces, driver, driven, least - JUST_BELOW)
-        excluded += len(driver) - len(rows)
-        nearest = min(nearest, float((bound - least[rows]).min(initial=np.inf)))
-        driver, driven = halves_of(table, driver, a, o2), halves_of(table, driven, b, o4)
-    return Descent(lost, excluded, nearest)
+    roles = table.pieces.driver, table.pieces.driven
+    dyads = [(roles[0], designs.a, designs.o2), (roles[1], designs.b, designs.o4)]
+
+    def left(pieces: list[IntArray], least: FloatArray) -> tuple[IntArray, FloatArray]:
+        return rows_left(asked, table.pieces, *pieces, least)
+
+    return descent(table, dyads, designs.transmission, left, levels, (1e-9, 1e-13, 1e-12))
 
 
 CASES = {

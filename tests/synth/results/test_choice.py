@@ -8,15 +8,7 @@ import pytest
 
 from grashof import synthesize
 from grashof.analysis import verify
-from grashof.problems import (
-    DynamicsSpec,
-    FourBar,
-    MotionTask,
-    Objective,
-    PathTask,
-    Problem,
-    Requirements,
-)
+from grashof.problems import DynamicsSpec, FourBar, MotionTask, Objective, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from batched_search import GENEROUS, differences, points_along
 
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, Problem, Requirements
@@ -15,12 +16,6 @@ from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.loop_search import PULL, Placed, draw, fitting, improve
 from grashof.synth.starts.loop_search import place as place_batch
 
-GENEROUS: dict[str, Any] = {
-    "link_length": (1e-7, 1e7),
-    "link_ratio_max": 1e6,
-    "coupler_arms": (0.0, 1e7),
-    "rotatability_margin": 0.0,
-}
 # Rotatability, order, same_branch, timed.
 KINDS = [
     (rotatability, order, branch, timed)
@@ -35,8 +30,7 @@ def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **w
     """Points at random along a curve, none of them special, with weights."""
     rotatability, order, branch, timed = kind
     rng = np.random.default_rng([5, seed])
-    along = np.linspace(0, 4, n)
-    points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (n, 2)) @ np.array([1, 1j])
+    points = points_along(np.linspace(0, 4, n), rng)
     timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else np.zeros(n)
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch} | wanted
     free = np.zeros(n)
@@ -150,19 +144,6 @@ def test_no_other_place_or_coupler_point_fits_better(kind: tuple[str, bool, bool
         least = (target.weights * np.abs(fit - target.points) ** 2).sum()
         assert placed.error[i] == pytest.approx(least, rel=1e-7)
         np.testing.assert_allclose(placed.p[i], fit, atol=1e-6)
-
-
-def moved(batch: Batch, change: FloatArray) -> Batch:
-    return replace(batch, unknowns=batch.unknowns + change)
-
-
-def differences(target: SearchTargets, batch: Batch, of: int) -> FloatArray:
-    """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
-    step, columns = 1e-6, []
-    for change in step * np.eye(batch.unknowns.shape[1]):
-        ahead, behind = (fitting(target)(moved(batch, s * change))[of] for s in (1, -1))
-        columns.append((ahead - behind) / (2 * step))
-    return np.stack(columns, axis=-1)
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.05])

@@ -1,10 +1,10 @@
 """The batched search for poses: angles of the body among the residuals, and planted motions."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from batched_search import GENEROUS, differences, points_along
 from scipy.optimize import minimize_scalar
 
 from grashof.analysis.judge.planted import planted_motion
@@ -16,12 +16,6 @@ from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_tu
 from grashof.synth.starts.coupler_search import FOUND
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 
-GENEROUS: dict[str, Any] = {
-    "link_length": (1e-7, 1e7),
-    "link_ratio_max": 1e6,
-    "coupler_arms": (0.0, 1e7),
-    "rotatability_margin": 0.0,
-}
 KINDS = [
     (rotatability, order, branch)
     for rotatability in ("full-crank", "double-crank", "any")
@@ -35,7 +29,7 @@ def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> SearchT
     rotatability, order, branch = kind
     rng = np.random.default_rng([51, seed])
     along = np.linspace(0, 4, N)
-    points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (N, 2)) @ np.array([1, 1j])
+    points = points_along(along, rng)
     weights, turn_weights = rng.uniform(0.5, 2, N), rng.uniform(0.2, 2, N)
     if free in ("angles", "both"):
         turn_weights[[1, 4]] = 0
@@ -136,19 +130,6 @@ def test_the_weighted_mean_is_taken_across_the_half_turn() -> None:
     np.testing.assert_allclose(np.exp(1j * body_angle[0]), -np.exp(1j * mean), atol=1e-12)
     expected = np.sqrt(weights) * (0.02 * np.arange(N) - mean)
     np.testing.assert_allclose(residual[0], expected, atol=1e-12)
-
-
-def moved(batch: Batch, change: FloatArray) -> Batch:
-    return replace(batch, unknowns=batch.unknowns + change)
-
-
-def differences(target: SearchTargets, batch: Batch, of: int) -> FloatArray:
-    """Central differences of part `of` of the linearisation by every unknown, unknowns last."""
-    step, columns = 1e-6, []
-    for change in step * np.eye(batch.unknowns.shape[1]):
-        ahead, behind = (fitting(target)(moved(batch, s * change))[of] for s in (1, -1))
-        columns.append((ahead - behind) / (2 * step))
-    return np.stack(columns, axis=-1)
 
 
 @pytest.mark.parametrize("free", FREE)

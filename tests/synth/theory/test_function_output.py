@@ -1,5 +1,7 @@
 """Function generators of all kinds against the judge's positions, differences, samples and planted pairs."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -52,6 +54,13 @@ def several(mechanism: str, seed: int, span: float) -> Generators:
     return made.changed(shape)
 
 
+def differences(made: Generators, of: Callable[[Generators], FloatArray]) -> FloatArray:
+    """Central differences by every unknown, unknowns last."""
+    steps = 1e-6 * np.eye(made.UNKNOWNS)
+    ways = [[made.changed(made.shape + sign * step) for sign in (1, -1)] for step in steps]
+    return np.stack([(of(ahead) - of(behind)) / 2e-6 for ahead, behind in ways], axis=-1)
+
+
 @EVERY
 def test_output_is_that_of_the_judge(mechanism: str) -> None:
     rng = np.random.default_rng(1)
@@ -68,44 +77,31 @@ def test_output_is_that_of_the_judge(mechanism: str) -> None:
 @EVERY
 def test_slopes_are_those_of_differences(mechanism: str) -> None:
     made, turned, _ = planted(np.random.default_rng(2), 8, mechanism)
-    slopes, step = made.slopes(turned), 1e-6
-    for k in range(made.UNKNOWNS):
-        moved = np.zeros(made.UNKNOWNS)
-        moved[k] = step
-        ahead, behind = (made.changed(made.shape + sign * moved).outputs(turned) for sign in (1, -1))
-        assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-6
+    slopes = made.slopes(turned)
+    assert np.abs(differences(made, lambda each: each.outputs(turned)) - slopes).max() < 1e-6
 
 
 @EVERY
 @pytest.mark.parametrize("full", [False, True])
 def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -> None:
-    made, step = several(mechanism, 0, 1.0), 1e-6
+    made = several(mechanism, 0, 1.0)
     count = made.lengths.shape[1]
     limits = ShapeLimits(
         2.5 if full else 1.0, caps=np.full((count, count), 3.0), transmission=0.5, over_cycle=full,
         margin=0.01 if full else None, offset=offset_rows([(0.5, 2.0)] * count, (-0.3, 0.7)),
     )  # fmt: skip
     slopes = limits.of(made).slope
-    for k in range(made.UNKNOWNS):
-        moved = np.zeros(made.UNKNOWNS)
-        moved[k] = step
-        ahead, behind = (limits.of(made.changed(made.shape + sign * moved)).value for sign in (1, -1))
-        off = np.abs((ahead - behind) / (2 * step) - slopes[..., k]) / (1 + np.abs(slopes[..., k]))
-        assert off.max() < 1e-6
+    off = np.abs(differences(made, lambda each: limits.of(each).value) - slopes) / (1 + np.abs(slopes))
+    assert off.max() < 1e-6
 
 
 def test_slopes_of_the_stroke_are_those_of_differences() -> None:
-    kind, step = KINDS["slider-crank"].generators, 1e-6
-    made = kind.cranks(np.random.default_rng(0), 100, None, 0)
+    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100, None, 0)
     made = made[made.worst_cosine(2 * np.pi) < 0.95]
     limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
     rows = limits.of(made)
     values, slopes = rows.value, rows.slope
-    for k in range(4):
-        moved = np.zeros(4)
-        moved[k] = step
-        ahead, behind = (limits.of(made.changed(made.shape + sign * moved)).value for sign in (1, -1))
-        assert np.abs((ahead - behind) / (2 * step) - slopes[..., k]).max() < 1e-5
+    assert np.abs(differences(made, lambda each: limits.of(each).value) - slopes).max() < 1e-5
     dense = made.outputs(np.linspace(0, 2 * np.pi, 20001))
     assert np.abs(values[:, -2] - (np.ptp(dense, axis=1) - 0.5) / 0.5).max() < 1e-5
 

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
+from stroke_figures import SLIDES
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.mechanism.mobility import grashof_class
@@ -12,7 +13,6 @@ from grashof.problems import FourBar, Requirements, SliderCrank, StrokeTask
 from grashof.synth.theory.limit_positions import (
     best_of,
     best_transmission,
-    crank_rockers,
     families_of,
     greatest_time_ratio,
     lag_of,
@@ -64,6 +64,7 @@ def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing) -> 
     angles = [optimum(swing, 1.0, ratio_of_links(most))[1] for most in (10, 100, 10_000)]
     assert angles == sorted(angles)
     assert above - 0.02 < angles[-1] < above
+    assert np.isnan(best_transmission(np.radians(80), 10 / 9, ratio_of_links(1.5)))  # none fits
 
 
 @pytest.mark.parametrize("lag", [12, 36, 60])
@@ -78,17 +79,6 @@ def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside)
 @pytest.mark.slow
 def test_a_time_ratio_of_one_and_a_half_leaves_32_deg() -> None:
     assert max(optimum(swing, 1.5)[1] for swing in range(2, 178, 2)) == pytest.approx(31.861, abs=1e-3)
-
-
-SLIDES = [  # time ratio, best worst mu in deg, r2, r3, offset
-    (1.05, 67.641, 0.49088, 2.53044, 0.47171),
-    (1.1, 58.852, 0.48302, 1.79519, 0.44555),
-    (1.2, 47.201, 0.47047, 1.27911, 0.39859),
-    (1.25, 42.808, 0.46554, 1.14896, 0.37738),
-    (1.5, 27.458, 0.45074, 0.83284, 0.28828),
-    (2, 11.211, 0.45078, 0.62481, 0.16211),
-    (2.5, 3.214, 0.47051, 0.54314, 0.07177),
-]
 
 
 @pytest.mark.parametrize(("ratio", "angle", "r2", "r3", "offset"), SLIDES)
@@ -251,16 +241,6 @@ def test_a_window_narrower_than_the_grid_is_found() -> None:
     assert high - low < 1e-6
 
 
-def test_without_a_ratio_of_links_that_fits_there_is_none() -> None:
-    assert np.isnan(best_transmission(np.radians(80), 10 / 9, ratio_of_links(1.5)))
-
-
-def test_shapes() -> None:
-    members = crank_rockers(1.0, 0.2, np.linspace(0.1, 0.9, 5))
-    assert members.lengths.shape == (5, 4)
-    assert members.margin.shape == members.transmission.shape == (5,)
-
-
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize(("swing", "ratio"), [(80, 10 / 9), (40, 1.0), (30, 1.5)])
@@ -304,7 +284,10 @@ def test_crank_rockers_of_a_swing_as_a_batch() -> None:
     task = StrokeTask.from_degrees(swing_deg=80, time_ratio=10 / 9)
     family = families_of(task.swing, task.time_ratio)[0]
     (low, high), *_ = stretches(family)
-    batch = linkages_of(task, family(np.linspace(low, high, 9)[1:-1]))
+    members = family(np.linspace(low, high, 9)[1:-1])
+    assert members.lengths.shape == (7, 4)
+    assert members.margin.shape == members.transmission.shape == (7,)
+    batch = linkages_of(task, members)
     stroke = output_stroke(batch)
     np.testing.assert_allclose(np.degrees(stroke.swing), 80, atol=1e-9)
     np.testing.assert_allclose(stroke.time_ratio, 10 / 9, atol=1e-9)

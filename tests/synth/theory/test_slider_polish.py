@@ -4,27 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from as_found import as_found
 
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import InvertedSliderCrank, Linkage, Problem, SliderCrank
+from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.theory.polish import Wish, _linearised, _spread, polish_path
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")
-
-
-def as_found(linkage: Linkage) -> Linkage:
-    """The same linkage as a search has it: a slide, or a rod, taken the way on which B lies ahead of A."""
-    if linkage.assembly > 0:
-        return linkage
-    if isinstance(linkage, SliderCrank):
-        return replace(linkage, slide_angle=linkage.slide_angle + np.pi, offset=-linkage.offset, assembly=1)
-    assert isinstance(linkage, InvertedSliderCrank)
-    turned = {"coupler_point": -linkage.coupler_point, "body_angle": linkage.body_angle + np.pi}
-    return replace(linkage, offset=-linkage.offset, assembly=1, **turned)
 
 
 def planted(mechanism: str, seed: int, count: int = 5) -> tuple[FloatArray, FloatArray, float, Wish]:

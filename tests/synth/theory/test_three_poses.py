@@ -37,46 +37,31 @@ def radius_scatter(positions: ComplexArray, angles: FloatArray, dyads: Dyads) ->
 
 @bounded
 @given(seeds)
-def test_three_positions_lie_on_the_circle(seed: int) -> None:
-    where, moving = poses(seed, 3), points(seed)
+def test_three_positions_lie_on_the_circle_from_either_pivot(seed: int) -> None:
+    where, some = poses(seed, 3), points(seed)
     motion = Displacements.from_poses(*where)
-    dyads = circle_dyads(motion, moving)
-    assert dyads.moving.tobytes() == moving.tobytes()
-    assert radius_scatter(*where, dyads).max() < 1e-9
+    dyads, of_ground = circle_dyads(motion, some), circle_dyads_of_ground(motion, some)
+    assert dyads.moving.tobytes() == of_ground.ground.tobytes() == some.tobytes()
+    for each in (dyads, of_ground):
+        assert radius_scatter(*where, each).max() < 1e-9
     back = circle_dyads_of_ground(motion, dyads.ground)
     near = np.abs(dyads.ground) < 100
-    np.testing.assert_allclose(back.moving[near], moving[near], atol=1e-6)
-
-
-@bounded
-@given(seeds)
-def test_three_positions_seen_from_the_ground(seed: int) -> None:
-    where, ground = poses(seed, 3), points(seed)
-    dyads = circle_dyads_of_ground(Displacements.from_poses(*where), ground)
-    assert dyads.ground.tobytes() == ground.tobytes()
-    assert radius_scatter(*where, dyads).max() < 1e-9
+    np.testing.assert_allclose(back.moving[near], some[near], atol=1e-6)
 
 
 @bounded
 @given(seeds, st.floats(-20, 20))
-def test_two_positions_have_a_bisector(seed: int, offset: float) -> None:
-    where, moving = poses(seed, 2), points(seed)
-    motion = Displacements.from_poses(*where)
-    dyads = bisector_dyads(motion, moving, np.full(len(moving), offset))
-    assert radius_scatter(*where, dyads).max() < 1e-12
-    places = motion.apply(moving)
+def test_two_positions_have_a_bisector_from_either_pivot(seed: int, offset: float) -> None:
+    where, some = poses(seed, 2), points(seed)
+    motion, offsets = Displacements.from_poses(*where), np.full(len(some), offset)
+    dyads, of_ground = bisector_dyads(motion, some, offsets), bisector_dyads_of_ground(motion, some, offsets)
+    assert of_ground.ground.tobytes() == some.tobytes()
+    for each in (dyads, of_ground):
+        assert radius_scatter(*where, each).max() < 1e-12
+    places = motion.apply(some)
     chord = places[:, 1] - places[:, 0]
     left = ((dyads.ground - places[:, 0]) * chord.conj()).imag / np.abs(chord)
     np.testing.assert_allclose(left, offset, atol=1e-9)
-
-
-@bounded
-@given(seeds, st.floats(-20, 20))
-def test_two_positions_seen_from_the_ground(seed: int, offset: float) -> None:
-    where, ground = poses(seed, 2), points(seed)
-    dyads = bisector_dyads_of_ground(Displacements.from_poses(*where), ground, np.full(len(ground), offset))
-    assert dyads.ground.tobytes() == ground.tobytes()
-    assert radius_scatter(*where, dyads).max() < 1e-12
 
 
 def test_a_point_that_goes_straight_has_no_centre() -> None:
@@ -128,16 +113,12 @@ def test_scale_does_not_matter() -> None:
         np.testing.assert_allclose(scaled / scale, usual, rtol=1e-9)
 
 
-def test_other_numbers_of_poses_are_refused() -> None:
+def test_other_numbers_of_poses_are_refused_and_no_points_have_no_dyads() -> None:
     two, three = (Displacements.from_poses(*poses(1, count)) for count in (2, 3))
+    assert len(circle_dyads(three, np.empty(0, np.complex128))) == 0
     for dyads in (circle_dyads, circle_dyads_of_ground):
         with pytest.raises(ValueError, match="three"):
             dyads(two, points(1))
     for bisectors in (bisector_dyads, bisector_dyads_of_ground):
         with pytest.raises(ValueError, match="two"):
             bisectors(three, points(1), np.zeros(50))
-
-
-def test_no_points() -> None:
-    three = Displacements.from_poses(*poses(1, 3))
-    assert len(circle_dyads(three, np.empty(0, np.complex128))) == 0

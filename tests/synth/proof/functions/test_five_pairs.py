@@ -22,19 +22,15 @@ def random_function(seed: int) -> Problem:
     return function(turned - turned[0], output - output[0])
 
 
-@pytest.mark.parametrize("seed", range(8))
+MORE = [pytest.param(seed, marks=pytest.mark.study) for seed in range(8, 100)]
+
+
+@pytest.mark.parametrize("seed", [*range(8), *MORE])
 def test_every_coupler_of_random_functions_is_known(seed: int) -> None:
     made = certified_functions(FunctionAims.of(random_function(seed)))
     assert made is not None
     assert (made.complete, made.why) == (True, "")
     assert 1 <= made.within <= 3
-
-
-@pytest.mark.study
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8, 100))
-def test_every_coupler_of_many_functions_is_known(seed: int) -> None:
-    test_every_coupler_of_random_functions_is_known(seed)
 
 
 def test_a_planted_function_is_listed_and_all_are_proven() -> None:

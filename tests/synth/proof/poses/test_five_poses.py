@@ -39,7 +39,10 @@ def off_circles(problem: Problem, z: ComplexArray, c: ComplexArray) -> FloatArra
     return np.ptp(radius, axis=1)
 
 
-@pytest.mark.parametrize("seed", range(12))
+MORE = [pytest.param(seed, marks=pytest.mark.study) for seed in range(12, 200)]
+
+
+@pytest.mark.parametrize("seed", [*range(12), *MORE])
 def test_every_dyad_is_counted_once(seed: int) -> None:
     problem = random_poses(seed)
     made = certified(problem)
@@ -52,13 +55,6 @@ def test_every_dyad_is_counted_once(seed: int) -> None:
     reach = REACH / problem.task.size
     within = (arm <= reach) & (np.abs(known.moving - known.ground) <= reach)
     assert made.within == within.sum()
-
-
-@pytest.mark.study
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12, 200))
-def test_every_dyad_of_many_sets_is_counted(seed: int) -> None:
-    test_every_dyad_is_counted_once(seed)
 
 
 def test_boxes_hold_one_zero_each() -> None:

@@ -4,21 +4,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from piece_descent import Descent, descent
 from scipy.optimize import least_squares
 
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements, SliderCrank
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.cranks import Cranks
 from grashof.synth.theory.burmester import Displacements, trace_four_pose_curves
-
-JUST_BELOW = 1e-7  # rad
-NOWHERE = -1
 
 
 def motion_of(problem: Problem) -> Displacements:
@@ -108,63 +106,18 @@ def cranks_of(problem: Problem) -> Cranks:
     return Cranks.of(scaled, slide)
 
 
-def holds(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> BoolArray:
-    """Whether pieces hold dyads, entry by entry: by the definition of tubes alone."""
-    tubes, centres = table.pieces.tubes[which], table.pieces.centres[which]
-    moved = (z - tubes.middle) * tubes.direction.conj()
-    s = moved.real / np.maximum(tubes.half, 1e-300)
-    off = np.abs(moved.imag - tubes.tilt * s - tubes.bow * (s * s - 0.5))
-    inside = (np.abs(s) <= 1 + 1e-8) & (off <= tubes.rest + 1e-11)
-    apart = np.abs(c - centres.middle - centres.along * np.clip(s, -1, 1))
-    return inside & (apart <= centres.rest + 1e-9 * (1 + np.abs(c)))
-
-
-def pieces_of(table: Table, z: ComplexArray, c: ComplexArray) -> IntArray:
-    """The first piece of a cover that holds each crank; `NOWHERE` where none does."""
-    found = np.full(len(z), NOWHERE)
-    for piece in np.flatnonzero(table.pieces.driver)[::-1]:
-        found[holds(table, np.full(len(z), piece), z, c)] = piece
-    return found
-
-
-def halves_of(table: Table, which: IntArray, z: ComplexArray, c: ComplexArray) -> IntArray:
-    """The half of each piece that holds each crank."""
-    halves, found = table.halve(which), np.full(len(z), NOWHERE)
-    for half in halves.T:
-        rows = np.flatnonzero(half >= 0)
-        inside = rows[holds(table, half[rows], z[rows], c[rows])]
-        found[inside] = half[inside]
-    return found
-
-
-@dataclass(frozen=True)
-class Descent:
-    """How many designs were in no piece, or excluded, and how near a bound came, rad."""
-
-    lost: int
-    excluded: int
-    nearest: float
-
-
 def followed(problem: Problem, designs: Designs, levels: int = 10) -> Descent:
     """Follow designs down halves of pieces, each with its own transmission angle as the threshold."""
     cranks = cranks_of(problem)
     assert cranks.may_slide
     table = Table.covering(cranks.asked)
-    a, o2, least = designs.a, designs.o2, designs.transmission
-    piece = pieces_of(table, a, o2)
-    lost = excluded = 0
-    nearest = np.inf
-    for _ in range(levels):
-        there = piece >= 0
-        lost += int((~there).sum())
-        a, o2, least, piece = (each[there] for each in (a, o2, least, piece))
-        some = table.pieces[piece]
-        rows, bound = cranks.rows_left(some.tubes.span, some.centres.span, some.sense, least - JUST_BELOW)
-        excluded += len(piece) - len(rows)
-        nearest = min(nearest, float((bound - least[rows]).min(initial=np.inf)))
-        piece = halves_of(table, piece, a, o2)
-    return Descent(lost, excluded, nearest)
+
+    def left(pieces: list[IntArray], least: FloatArray) -> tuple[IntArray, FloatArray]:
+        some = table.pieces[pieces[0]]
+        return cranks.rows_left(some.tubes.span, some.centres.span, some.sense, least)
+
+    dyads = [(table.pieces.driver, designs.a, designs.o2)]
+    return descent(table, dyads, designs.transmission, left, levels, (1e-8, 1e-11, 1e-9))
 
 
 def planted(seed: int, **requirements: object) -> Problem:

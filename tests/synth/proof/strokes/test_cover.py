@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from stroke_figures import SLIDES
 
 from grashof.analysis.mechanism.mobility import rotatability
 from grashof.analysis.mechanism.stroke import output_stroke
@@ -25,15 +26,6 @@ Floats = NDArray[np.float64]
 GAP, FLOOR = float(np.radians(0.01)), float(np.radians(0.001))
 ANY = dict.fromkeys(("r1", "r2", "r3", "r4"), (0.0, np.inf))
 TWENTY = StrokeLimits(ANY, ratio=20.0, margin=0.0)
-SLIDES = [
-    (1.05, 67.641),
-    (1.1, 58.852),
-    (1.2, 47.201),
-    (1.25, 42.808),
-    (1.5, 27.458),
-    (2, 11.211),
-    (2.5, 3.214),
-]
 
 
 def rockers(swing: float, ratio: float, limits: StrokeLimits = TWENTY) -> list[Family]:
@@ -47,7 +39,7 @@ def proven(families: list[Family], gap: float = GAP) -> Cover:
     return found
 
 
-@pytest.mark.parametrize(("ratio", "best"), SLIDES)
+@pytest.mark.parametrize(("ratio", "best"), [each[:2] for each in SLIDES])
 def test_the_table_of_slides_is_proven(ratio: float, best: float) -> None:
     found = proven([slider_cranks(1.0, ratio, TWENTY)])
     assert np.degrees(found.lower) <= best + 6e-4

@@ -1,0 +1,20 @@
+"""Shared by tests of pages in a browser: what a page says of itself, and waiting for it."""
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+
+def state(page: Page) -> dict[str, Any]:
+    found: dict[str, Any] = page.evaluate("grashof.state()")
+    return found
+
+
+def wait_until(page: Page, condition: str) -> None:
+    """As `page.wait_for_function`, which the page's own security policy forbids."""
+    for _ in range(200):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(20)
+    pytest.fail(f"never true: {condition}")
