@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.specs.problem import Problem
 from grashof.problems.values.tasks.function_task import FunctionTask
@@ -24,7 +24,7 @@ def problem_toml(problem: Problem) -> str:
     Angles are in degrees there: what a file stated comes back to the last bit, other radians to rounding.
     """
     kinds = problem.mechanism
-    asked = {} if kinds == (FOUR_BAR,) else {"mechanism": kinds[0] if len(kinds) == 1 else kinds}
+    asked = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
     head = {"kind": problem.task.kind, **asked, **{key: getattr(problem, key) for key in _WORDS}}
     lines = [f"{key} = {_value(value)}" for key, value in head.items()]
     for name, given in _tables(problem):

@@ -11,8 +11,8 @@ from grashof.problems import Linkage
 
 # As counted when they were last lowered: they may only fall.
 LIMITS = {
-    "asks": {"problems": 6, "analysis": 2, "synth": 22, "src/grashof": 0, "scripts": 5},
-    "closures": {"problems": 0, "analysis": 7, "synth": 20, "src/grashof": 6, "scripts": 7},
+    "asks": {"problems": 6, "analysis": 2, "synth": 14, "src/grashof": 0, "scripts": 5},
+    "closures": {"problems": 0, "analysis": 7, "synth": 6, "src/grashof": 6, "scripts": 7},
     "suspects": {"problems": 0, "analysis": 4, "synth": 11, "src/grashof": 0, "scripts": 1},
     "circles": {"files": 0, "rooms": 0},
     "large": {"full": 10, "long": 15},
