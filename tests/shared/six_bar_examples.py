@@ -27,5 +27,6 @@ SIX_BARS = {
     "watt-2 on the driver": _pins((1.0, 0.8), (-4, 1), 5, 3, 2, 1, point_link=2),
     "watt-2 on the output": _pins((2, 1), (8, 1), 4, 2.5, 4, 1),
     "press of a stephenson-3": _press((2, 1.5), 4, 0.2, -0.5, 3, 1),
+    "slide on the driver of a watt-2": _press((-1.2, 0.4), 4, 2.8, 0.3, 2, 1),
     "press of a watt-2": _press((3.5, 0.5), 5, 3.2, 1, 4, 1, coupler_point=(0.5, 0.3), point_link=6),
 }

@@ -215,6 +215,7 @@ MECHANISMS = (
     Mechanism("watt-2", (_PINS, Dyad(_RRR, (2, 1))), carries=5),
     Mechanism("watt-2", (_PINS, Dyad(_RRR, (4, 1))), carries=5),
     Mechanism("stephenson-3", (_PINS, Dyad(_RRP, (3, 1))), carries=5),
+    Mechanism("watt-2", (_PINS, Dyad(_RRP, (2, 1))), carries=5),
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (4, 1))), carries=5),
 )
 # Kinds of one loop by their words: problems may ask for these. The first is meant where none is named.

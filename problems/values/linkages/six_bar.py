@@ -50,7 +50,7 @@ class SixBar(Linkage):
         Orientation of the guided body minus that of `point_link`.
     hosts : pair of int
         The links that carry C and D: Stephenson III (3, 1), Stephenson I (2, 4), Watt I (2, 3) or (3, 4),
-        Watt II (2, 1) or (4, 1); with a slide (3, 1) or (4, 1).
+        Watt II (2, 1) or (4, 1); with a slide (3, 1), (2, 1) or (4, 1).
     point_link : int
         The link that carries P, 2 to 6.
 
