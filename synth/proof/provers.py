@@ -20,12 +20,7 @@ _PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_c
 def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
     """Bounds of the best design; None where no proof is for the problem, or it would take minutes.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    proving : Proving
-    at_least : float, deg, optional
-        Only decide whether a design has that much.
+    With `at_least`, deg, it only decides whether a design has that much.
     """
     found = (prover(scaled, proving, at_least) for prover in _PROVERS)
     return next((bounds for bounds in found if bounds is not None), None)

@@ -60,36 +60,12 @@ class Dyads:
 
 
 def circle_points_on_lines(motion: Displacements, origin: ComplexArray, along: complex) -> ComplexArray:
-    """Every circle point of four poses on each of a family of parallel lines.
+    """Every circle point (k,) of four poses on the lines `along` through `origin` (m,); up to three a line.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of four poses.
-    origin : ndarray of complex, shape (m,), length
-        A point of each line.
-    along : complex
-        Direction of the lines.
-
-    Returns
-    -------
-    ndarray of complex, shape (k,), length
-        Up to three points a line, all of them.
-
-    Notes
-    -----
-    The centre c of the circle through the positions z_j of z satisfies Re(conj(c) (z_j - z_1)) =
-    (|z_j|^2 - |z_1|^2) / 2, both sides linear in z; three such equations in two unknowns ask for a
-    vanishing determinant, a cubic on every line (Burmester 1888; McCarthy & Soh, *Geometric Design
-    of Linkages*, 2011, ch. 5).
-
-    Examples
-    --------
-    >>> quarter_turns = np.radians([0, 40, 80, 150])
-    >>> motion = Displacements.from_poses(np.array([0, 1 + 2j, 3 + 2j, 5]), quarter_turns)
-    >>> points = circle_points_on_lines(motion, np.array([0.5 + 0j]), 1j)
-    >>> bool(radius_error(motion, Dyads(points, centre_points(motion, points))).max() < 1e-9)
-    True
+    The centre c of the circle through the positions z_j of z satisfies Re(conj(c) (z_j - z_1))
+    = (|z_j|^2 - |z_1|^2) / 2, both sides linear in z; three such equations in two unknowns ask for a
+    vanishing determinant, a cubic on every line (Burmester 1888; McCarthy & Soh, *Geometric Design of
+    Linkages*, 2011, ch. 5).
     """
     turned, shift = motion.rotation[1:], motion.shift[1:]
     at_origin = (turned - 1) * origin[:, None] + shift
@@ -104,18 +80,9 @@ def circle_points_on_lines(motion: Displacements, origin: ComplexArray, along: c
 
 
 def centre_points(motion: Displacements, moving: ComplexArray) -> ComplexArray:
-    """Centre of the circle that best carries each moving point through the poses.
+    """Centre (n,) of the circle that best carries each moving point (n,) through N >= 3 poses.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of N >= 3 poses.
-    moving : ndarray of complex, shape (n,), length
-
-    Returns
-    -------
-    ndarray of complex, shape (n,), length
-        Least squares over the N - 1 bisector equations; infinite for points on a straight line.
+    Least squares over the N - 1 bisector equations; infinite for points on a straight line.
     """
     positions = motion.apply(moving)
     chord = positions[:, 1:] - positions[:, :1]

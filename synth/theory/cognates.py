@@ -43,17 +43,7 @@ def cognate_points(points: ComplexArray, timed: bool) -> list[ComplexArray]:
 
 
 def driven_at_o4(points: ComplexArray) -> ComplexArray:
-    """The same four-bar, its other link at ground driving.
-
-    Parameters
-    ----------
-    points : ndarray of complex, shape (5, ...)
-        O2, O4, and A, B, P at one position.
-
-    Returns
-    -------
-    ndarray of complex, shape (5, ...)
-    """
+    """The same four-bar, its other link at ground driving: O2, O4, and A, B, P at one position, (5, ...)."""
     swapped: ComplexArray = points[[1, 0, 3, 2, 4]]
     return swapped
 
@@ -61,20 +51,9 @@ def driven_at_o4(points: ComplexArray) -> ComplexArray:
 def slider_crank_cognate(points: ComplexArray) -> ComplexArray:
     """The other slider-crank whose coupler point traces the same curve; its crank turns as the coupler does.
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (5,)
-        O2, a point on the slide's line ahead of B, and A, B, P at one position.
-
-    Returns
-    -------
-    ndarray of complex, shape (5,)
-
-    Notes
-    -----
-    With k = (P - A) / (B - A) its A' completes the parallelogram O2-A-P, and its B' = O2 + k (B - O2) runs
-    along the slide's line, turned and scaled by k about O2 (E. A. Dijksman, *Motion Geometry of Mechanisms*,
-    1976).
+    `points` (5,) are O2, a point on the slide's line ahead of B, and A, B, P at one position. With
+    k = (P - A) / (B - A) its A' completes the parallelogram O2-A-P, and its B' = O2 + k (B - O2) runs along
+    the slide's line, turned and scaled by k about O2 (E. A. Dijksman, *Motion Geometry of Mechanisms*, 1976).
     """
     o2, ahead, a, b, p = points
     k = (p - a) / (b - a)
@@ -84,25 +63,12 @@ def slider_crank_cognate(points: ComplexArray) -> ComplexArray:
 
 
 def same_curve(signature: FloatArray, timed: bool) -> FloatArray:
-    """Signatures of the linkages that trace the same coupler curve, the given one first.
+    """Signatures (k, 9) of the linkages that trace the same coupler curve, the given one (9,) first.
 
-    Parameters
-    ----------
-    signature : ndarray, shape (9,), length
-        See `grashof.synth.theory.distinct.signature`.
-    timed : bool
-        Only those in which P moves with the driver as before.
-
-    Returns
-    -------
-    ndarray, shape (k, 9), length
-        Three linkages, either link at ground driving: six, or two when timed; fewer where P lies on
-        A or B.
-
-    Notes
-    -----
-    With k = P / AB in the coupler's frame the cognate at O4 has the ground line (O6, O4), O6 = O2 +
-    k (O4 - O2); its links are r2, r4, r3 times abs(1 - k), and its coupler point is k / (k - 1).
+    See `distinct.signature`. Three linkages, either link at ground driving: six, or the two in which P moves
+    with the driver as before if `timed`; fewer where P lies on A or B. With k = P / AB in the coupler's frame
+    the cognate at O4 has the ground line (O6, O4), O6 = O2 + k (O4 - O2); its links are r2, r4, r3 times
+    abs(1 - k), and its coupler point is k / (k - 1).
     """
     (o2, o4), (r2, r3, r4) = signature[:4].view(np.complex128), signature[4:7]
     first = (o2, o4, r2, r3, r4, complex(*signature[7:]) / r3)

@@ -12,35 +12,15 @@ TINY = 1e-15  # stands in for a coefficient that vanishes
 
 
 def conic_intersections(first: FloatArray, second: FloatArray) -> ComplexArray:
-    """The four points common to each pair of conics.
+    """The four points (m, 4, 3) common to each pair of conics p^T Q p = 0, Q symmetric, (m, 3, 3).
 
-    Parameters
-    ----------
-    first, second : ndarray, shape (m, 3, 3)
-        Symmetric matrices; a point p of the conic has p^T Q p = 0.
+    Unit vectors; points where the conics touch are there as often as they count, near each other to the
+    square root of rounding. Without meaning where the conics share a line or are one.
 
-    Returns
-    -------
-    ndarray of complex, shape (m, 4, 3)
-        Unit vectors. Points where the conics touch are there as often as they count, near each other
-        to the square root of rounding. Without meaning where the conics share a line or are one.
-
-    Notes
-    -----
-    Of the pencil of conics that the two span, one has no x^2 and so gives x as a quotient of
-    polynomials in y; another then asks for a root of a quartic in y. Newton's method on the two conics
-    makes the points exact. Coordinates are turned first, by a fixed rotation, so that no special place
-    (y = infinity, two points with one y) is likely; where four different points are not found, by
-    another.
-
-    Examples
-    --------
-    The unit circle and the hyperbola x y = 1/4:
-
-    >>> circle, hyperbola = np.diag([1.0, 1.0, -1.0]), np.array([[0, 2.0, 0], [2, 0, 0], [0, 0, -1]])
-    >>> points = conic_intersections(circle[None], hyperbola[None])[0]
-    >>> np.sort((points[:, 0] / points[:, 2]).real.round(6))
-    array([-0.965926, -0.258819,  0.258819,  0.965926])
+    Of the pencil of conics that the two span, one has no x^2 and so gives x as a quotient of polynomials in
+    y; another then asks for a root of a quartic in y. Newton's method on the two conics makes the points
+    exact. Coordinates are turned first, by a fixed rotation, so that no special place (y = infinity, two
+    points with one y) is likely; where four different points are not found, by another.
     """
     points = np.empty((len(first), 4, 3), np.complex128)
     pending = np.arange(len(first))
@@ -55,21 +35,10 @@ def conic_intersections(first: FloatArray, second: FloatArray) -> ComplexArray:
 
 
 def nearest_real(points: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """Real points next to complex ones, and how far from real those are.
+    """Real points (..., 3) next to complex unit vectors (..., 3), and how far from real those are, (...).
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (..., 3)
-        Unit vectors.
+    The latter is the norm of the imaginary part after the common phase that makes it least, 0 to sqrt(1/2).
 
-    Returns
-    -------
-    points : ndarray, shape (..., 3)
-    imaginary : ndarray, shape (...)
-        Norm of the imaginary part after the common phase that makes it least; 0 to sqrt(1/2).
-
-    Examples
-    --------
     >>> nearest_real(np.array([[0.6j, 0.8j, 0.0], [0.6, 0.8j, 0.0]]))[1].round(12)
     array([0. , 0.6])
     """

@@ -45,17 +45,9 @@ EQUAL = 1e-9  # share of merits by which those differ at most that tie
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:
-    """Largest difference between signatures as a share of their largest absolute value.
+    """Largest difference between signatures as a share of their largest absolute value, (..., n).
 
-    Parameters
-    ----------
-    one : ndarray, shape (..., 9)
-    others : ndarray, shape (n, 9)
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        Above `DISTINCT` for distinct designs.
+    Of `one` (..., 9) and `others` (n, 9); above `DISTINCT` for distinct designs.
     """
     one = one[..., None, :]
     scale = np.maximum(np.abs(one).max(axis=-1), np.abs(others).max(axis=-1))
@@ -70,23 +62,10 @@ def pick_apart(
     most: int,
     between: Callable[[], None] = lambda: None,
 ) -> IntArray:
-    """Indices of the best entries that are pairwise more than `least` apart, best first.
+    """Indices of the `most` best entries that are pairwise more than `least` apart (see `apart`), best first.
 
-    Parameters
-    ----------
-    signatures : ndarray, shape (n, 9)
-    merit : ndarray, shape (n,)
-        Greater is better.
-    least : float
-        See `apart`.
-    most : int
-        Stop after so many.
-    between : callable
-        Called before each is picked; it may raise, such as `leave_off`.
-
-    Returns
-    -------
-    ndarray of int, shape (k,)
+    Of `signatures` (n, 9), with greater `merit` (n,) better. `between` is called before each is picked; it
+    may raise, as `leave_off` does.
     """
     left = best_first(merit)
     picked: list[int] = []
@@ -105,8 +84,6 @@ def best_first(merit: FloatArray) -> IntArray:
 
     Merits tie that are no further apart than `EQUAL` of themselves, one after the other.
 
-    Examples
-    --------
     >>> best_first(np.array([0.5, 1.0 - 1e-12, 1.0, 2.0])).tolist()
     [3, 1, 2, 0]
     """

@@ -34,59 +34,22 @@ AnyLinkage = TypeVar("AnyLinkage", SliderCrank, InvertedSliderCrank)
 
 @dataclass(frozen=True, slots=True)
 class Through(Generic[AnyLinkage]):
-    """Linkages that pass eight points, in any order and branch.
+    """Linkages that pass eight points, in any order and branch."""
 
-    Parameters
-    ----------
-    linkages : SliderCrank or InvertedSliderCrank, shape (n,)
-        Their directions are such that B lies ahead of A at the first point.
-    theta2 : ndarray, shape (n, 8), rad
-        The driver at each point.
-    assembly : ndarray, shape (n, 8)
-        +1 or -1 at each point.
-    solutions : int
-        Complex ones that were found, cognates as one.
-    """
-
-    linkages: AnyLinkage
-    theta2: FloatArray
-    assembly: FloatArray
-    solutions: int
+    linkages: AnyLinkage  # (n,); their directions are such that B lies ahead of A at the first point
+    theta2: FloatArray  # (n, 8), rad: the driver at each point
+    assembly: FloatArray  # (n, 8), +1 or -1 at each point
+    solutions: int  # complex ones that were found, cognates as one
 
 
 def slider_cranks_through(
     points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
 ) -> Through[SliderCrank]:
-    """All slider-cranks through eight points, each followed by its cognate.
+    """All slider-cranks through eight distinct points (8,), each followed by its cognate.
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (8,)
-        Distinct.
-    rng : numpy.random.Generator
-        Turns the paths from the known solutions, so that they meet no singular point.
-    runs : int
-        At most so many times all paths are followed.
-
-    Returns
-    -------
-    Through
-        All of them, except that now and then a path is lost.
-
-    Notes
-    -----
-    The cognate has the same O2, A' = O2 + P - A and B' = O2 + k (B - O2) with k = w / r3: its crank
-    turns with the coupler.
-
-    Examples
-    --------
-    >>> theta2 = np.radians([0, 30, 80, 120, 170, 230, 260, 310])
-    >>> a, sine = np.exp(1j * theta2), (0.2 - np.sin(theta2)) / 3
-    >>> points = a + (1 + 0.5j) * (np.sqrt(1 - sine**2) + 1j * sine)  # r2 = 1, r3 = 3, offset = 0.2
-    >>> through = slider_cranks_through(points, np.random.default_rng(0), runs=1)
-    >>> engine = np.abs([*through.linkages.o2.T, through.linkages.r3 - 3]).max(axis=0).argmin()
-    >>> float(through.linkages.offset[engine].round(9)), through.assembly[engine].tolist()
-    (0.2, [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+    All but a path that is lost now and then, after at most `runs` times following all. `rng` turns the paths
+    from the known solutions, so that they meet no singular point. The cognate has the same O2,
+    A' = O2 + P - A and B' = O2 + k (B - O2) with k = w / r3: its crank turns with the coupler.
     """
     unknowns, turns, found = _real_solutions(SLIDER_CRANKS, points, rng, runs)
     r, _, o2, _, _, bs, s = unknowns.T
@@ -102,22 +65,7 @@ def slider_cranks_through(
 def inverted_slider_cranks_through(
     points: ComplexArray, rng: np.random.Generator, runs: int = RUNS
 ) -> Through[InvertedSliderCrank]:
-    """All inverted slider-cranks through eight points.
-
-    Parameters
-    ----------
-    points : ndarray of complex, shape (8,)
-        Distinct.
-    rng : numpy.random.Generator
-        Turns the paths from the known solutions, so that they meet no singular point.
-    runs : int
-        At most so many times all paths are followed.
-
-    Returns
-    -------
-    Through
-        All of them, except that now and then a path is lost.
-    """
+    """All inverted slider-cranks through eight distinct points (8,), found as by `slider_cranks_through`."""
     unknowns, turns, found = _real_solutions(INVERTED_SLIDER_CRANKS, points, rng, runs)
     r, _, o2, _, o4, _, s = unknowns.T
     places = np.stack([o2, o2 + r, o4, -1j * s**-0.5], axis=1)
@@ -127,21 +75,11 @@ def inverted_slider_cranks_through(
 def solutions_at(
     family: Family, displacements: ComplexArray, rng: np.random.Generator, runs: int = RUNS
 ) -> ComplexArray:
-    """Solutions for the displacements of real points, complex ones and all.
+    """Solutions (m, 7) for the displacements (14,) of real points, complex ones and all.
 
-    Parameters
-    ----------
-    family : Family
-    displacements : ndarray of complex, shape (14,)
-        The latter half conjugate to the former: so the mirror image of a solution is one, too, and finds
-        it where its own path was lost.
-    rng : numpy.random.Generator
-    runs : int
-        At most so many times all paths are followed, on ways of their own: what one has lost another finds.
-
-    Returns
-    -------
-    ndarray of complex, shape (m, 7)
+    The latter half of the displacements is conjugate to the former: so the mirror image of a solution is one,
+    too, and finds it where its own path was lost. All paths are followed at most `runs` times, on ways of
+    their own: what one has lost another finds.
     """
     start, known = family.known()
     found = known[:0]
@@ -188,13 +126,8 @@ def _slider_cranks(
 ) -> Through[SliderCrank]:
     """Those that close.
 
-    Parameters
-    ----------
-    places : ndarray of complex, shape (n, 4)
-        O2, A, B at the first point, in sizes from it, and the slide's direction.
-    turns : ndarray of complex, shape (n, 8)
-    points : ndarray of complex, shape (8,)
-    found : int
+    `places` (n, 4) are O2, A, B at the first point, in sizes from it, and the slide's direction; `turns` are
+    (n, 8), `points` (8,).
     """
     o2, a, b, along = places.T
     rod = b - a
@@ -228,13 +161,8 @@ def _inverted_slider_cranks(
 ) -> Through[InvertedSliderCrank]:
     """Those that close.
 
-    Parameters
-    ----------
-    places : ndarray of complex, shape (n, 4)
-        O2, A, O4 at the first point, in sizes from it, and the rod's direction there.
-    turns : ndarray of complex, shape (n, 8)
-    points : ndarray of complex, shape (8,)
-    found : int
+    `places` (n, 4) are O2, A, O4 at the first point, in sizes from it, and the rod's direction there; `turns`
+    are (n, 8), `points` (8,).
     """
     o2, a, o4, along = places.T
     along = along * np.where((along.conj() * (o4 - a)).real < 0, -1, 1)

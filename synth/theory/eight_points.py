@@ -24,52 +24,26 @@ SAME = 1e-6  # relative difference of two solutions
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """A kind of linkage through eight points.
+    """A kind of linkage through eight points."""
 
-    Parameters
-    ----------
-    name : str
-        Its kind, and its data file.
-    count : int
-        Of its solutions for general points, cognates as one.
-    cognates : int
-        So many solutions are one coupler curve.
-    dyad : callable
-        Of unknowns 4 to 6, d and ds: the second dyad.
-    slopes : callable
-        The same, and slopes by the dyad's coefficients: slopes by unknowns 4 to 6, d and ds.
-    weights : tuple
-        Powers of the factors (of vectors, of conjugates) by which unknowns 4 to 6 grow with the points.
-    mirror : callable
-        Unknowns 4 to 6: what they are of the linkage whose vectors are the conjugates of this one's.
-    """
-
-    name: str
-    count: int
-    cognates: int
-    dyad: Callable[[Columns, ComplexArray, ComplexArray], Dyad]
+    name: str  # of the kind, and of its data file
+    count: int  # of its solutions for general points, cognates as one
+    cognates: int  # so many solutions are one coupler curve
+    dyad: Callable[[Columns, ComplexArray, ComplexArray], Dyad]  # unknowns 4 to 6, d and ds: the second dyad
+    # The same, and slopes by the dyad's coefficients: slopes by unknowns 4 to 6, d and ds
     slopes: Callable[[Columns, ComplexArray, ComplexArray, Dyad], tuple[ComplexArray, ...]]
+    # Powers of the factors (of vectors, of conjugates) by which unknowns 4 to 6 grow with the points
     weights: tuple[tuple[int, int], ...]
+    # Unknowns 4 to 6: those of the linkage whose vectors are this one's conjugates
     mirror: Callable[[Columns], tuple[ComplexArray, ...]]
 
     def system(
         self, unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """The eight-point problem, as `homotopy.System`.
+        """The eight-point problem, as `homotopy.System` with K = 7 and M = 14.
 
-        Parameters
-        ----------
-        unknowns : ndarray of complex, shape (n, 7)
-            A - O2, O2, each with its conjugate, at the first point and from it, and three of the second dyad.
-        displacements : ndarray of complex, shape (n, 14)
-            From the first point to the seven others, then their conjugates.
-        change : ndarray of complex, shape (n, 14)
-
-        Returns
-        -------
-        residual : ndarray of complex, shape (n, 7)
-        jacobian : ndarray of complex, shape (n, 7, 7)
-        change : ndarray of complex, shape (n, 7)
+        The unknowns are A - O2, O2, each with its conjugate, at the first point and from it, and three of the
+        second dyad; the displacements are from the first point to the seven others, then their conjugates.
         """
         first, second, d, ds = _parts(unknowns, displacements)
         residual, by_one, by_two = without_turn(crank(first, d, ds), self.dyad(second, d, ds))
@@ -83,18 +57,8 @@ class Family:
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """The same with the coupler's turns as unknowns: twice as many, but linkages are better conditioned.
 
-        Parameters
-        ----------
-        unknowns : ndarray of complex, shape (n, 14)
-            Those of `system`, and the turns from the first point to the seven others.
-        displacements : ndarray of complex, shape (n, 14)
-
-        Returns
-        -------
-        residual : ndarray of complex, shape (n, 14)
-        jacobian : ndarray of complex, shape (n, 14, 14)
-        change : ndarray of complex, shape (n, 14)
-            Zero: no path is followed here.
+        The turns from the first point to the seven others follow the unknowns of `system`: K = 14. The change
+        is zero: no path is followed here.
         """
         first, second, d, ds = _parts(unknowns, displacements)
         turns, one_each = unknowns[:, 7:], np.eye(7)
@@ -113,18 +77,10 @@ class Family:
         return residual, np.concatenate(slopes, axis=1), np.zeros_like(residual)
 
     def turns(self, unknowns: ComplexArray, displacements: ComplexArray) -> tuple[ComplexArray, BoolArray]:
-        """Turns of the coupler from the first point to the others.
+        """Turns (n, 7) of the coupler from the first point to the others; whether they are determined (n,).
 
-        Parameters
-        ----------
-        unknowns : ndarray of complex, shape (n, 7)
-        displacements : ndarray of complex, shape (14,)
-
-        Returns
-        -------
-        turns : ndarray of complex, shape (n, 7)
-        determined : ndarray of bool, shape (n,)
-            Not so in solutions that are no linkages, but where both dyads hold one joint.
+        Of `unknowns` (n, 7) and `displacements` (14,). Not determined in solutions that are no linkages, but
+        where both dyads hold one joint.
         """
         first, second, d, ds = _parts(unknowns, displacements[None])
         forth, back = turn(crank(first, d, ds), self.dyad(second, d, ds))
@@ -133,33 +89,14 @@ class Family:
         return forth, determined
 
     def invariants(self, unknowns: ComplexArray) -> ComplexArray:
-        """Numbers that tell solutions apart, and are those of a cognate, too.
-
-        Parameters
-        ----------
-        unknowns : ndarray of complex, shape (n, 7)
-
-        Returns
-        -------
-        ndarray of complex, shape (n, 4)
-        """
+        """Numbers (n, 4) that tell solutions (n, 7) apart, and are those of a cognate, too."""
         r, rs, a, as_ = unknowns[:, :4].T
         if self.cognates == 2:  # whose A is O2 - A, from the first point
             r, rs = r * (a + r), rs * (as_ + rs)
         return np.stack([r, rs, a, as_], axis=1)
 
     def turned(self, unknowns: ComplexArray, factors: ComplexArray) -> ComplexArray:
-        """Solutions after all vectors, and all conjugates, were multiplied by numbers of their own.
-
-        Parameters
-        ----------
-        unknowns : ndarray of complex, shape (n, 7)
-        factors : ndarray of complex, shape (2,)
-
-        Returns
-        -------
-        ndarray of complex, shape (n, 7)
-        """
+        """Solutions (n, 7), all vectors multiplied by one of `factors` (2,), conjugates by the other."""
         powers = np.array([(1, 0), (0, 1), (1, 0), (0, 1), *self.weights])
         turned: ComplexArray = unknowns * (factors**powers).prod(axis=1)
         return turned
@@ -268,25 +205,7 @@ FAMILIES = {family.name: family for family in (SLIDER_CRANKS, INVERTED_SLIDER_CR
 
 
 def general_problem(family: Family, rng: np.random.Generator) -> tuple[ComplexArray, ComplexArray]:
-    """Random complex displacements and one solution for them.
-
-    Parameters
-    ----------
-    family : Family
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    displacements : ndarray of complex, shape (14,)
-    solutions : ndarray of complex, shape (1, 7)
-
-    Examples
-    --------
-    >>> displacements, solutions = general_problem(SLIDER_CRANKS, np.random.default_rng(0))
-    >>> residual, *_ = SLIDER_CRANKS.system(solutions, displacements[None], 0 * displacements[None])
-    >>> bool(np.abs(residual).max() < 1e-10)
-    True
-    """
+    """Random complex displacements (14,) and one solution (1, 7) for them."""
     unknowns = (rng.normal(size=7) + 1j * rng.normal(size=7)) / np.sqrt(2)
     r, rs, a, as_, *others = unknowns
     x, xs = a + r, as_ + rs

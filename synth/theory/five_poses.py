@@ -25,102 +25,42 @@ SAME = 1e-6  # share of the coordinates by which two dyads differ
 
 @dataclass(frozen=True, slots=True)
 class Guides:
-    """Dyads with one pivot at infinity: a joint that keeps to a straight guide.
+    """Dyads with one pivot at infinity: a joint that keeps to a straight guide; arrays (n,)."""
 
-    Parameters
-    ----------
-    pivot : ndarray of complex, shape (n,), length
-        The joint: a moving point, where it is at the first pose, or a ground point.
-    along : ndarray of complex, shape (n,)
-        Unit direction of the guide, either way, at the first pose. The guide passes through the joint.
-    in_body : ndarray of bool, shape (n,)
-        The guide is cut into the body and the joint fixed to the ground; otherwise the reverse.
-    """
-
-    pivot: ComplexArray
-    along: ComplexArray
-    in_body: BoolArray
+    pivot: ComplexArray  # length: the joint, a moving point, where it is at the first pose, or a ground point
+    along: ComplexArray  # unit direction of the guide through the joint, either way, at the first pose
+    in_body: BoolArray  # the guide is cut into the body, the joint fixed to the ground; otherwise the reverse
 
     def __len__(self) -> int:
         return len(self.pivot)
 
 
 def five_pose_dyads(motion: Displacements, reach: float = FAR) -> Dyads:
-    """All dyads that carry a body exactly through five poses.
+    """All dyads, up to four, that carry a body exactly through five poses.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of five poses.
-    reach : float, length
-        Pivots farther from the origin are at infinity: see `five_pose_guides`.
-
-    Returns
-    -------
-    Dyads
-        Up to four, in no particular order; one that the poses determine twice is there once. None
-        where a whole family of dyads does it: two equal poses (a curve of them, see
-        `trace_four_pose_curves`), pure translation, pure rotation. Not reliable where a family of
-        guides does it (the motion of a trammel, all of whose circle is guided).
-
-    Raises
-    ------
-    ValueError
-        There are not five poses.
-
-    See Also
-    --------
-    five_pose_dyads_of_sets : the method; for many sets of poses.
-
-    Examples
-    --------
-    >>> angles = np.array([-0.9, 0.7, 2.8, -2.0, -2.1])
-    >>> positions = np.array([18.8 + 12.1j, 6.3 + 19.8j, -2.7 + 10.3j, 0.2 + 1.7j, 7.8 - 4.9j])
-    >>> dyads = five_pose_dyads(Displacements.from_poses(positions, angles))
-    >>> np.sort_complex(dyads.ground).round(6)
-    array([1.211447+11.336576j, 4.616941+12.279734j])
+    In no particular order; one that the poses determine twice is there once. Pivots farther than `reach` from
+    the origin are at infinity: see `five_pose_guides`. None where a whole family of dyads does it: two equal
+    poses (a curve of them, see `trace_four_pose_curves`), pure translation, pure rotation. Not reliable where
+    a family of guides does it (the motion of a trammel, all of whose circle is guided). The method is that of
+    `five_pose_dyads_of_sets`. ValueError where there are not five poses.
     """
     batch = five_pose_dyads_of_sets(motion.rotation[None], motion.shift[None], reach)
     return Dyads(batch.moving[0], batch.ground[0])[np.isfinite(batch.moving[0])]
 
 
 def five_pose_dyads_of_sets(rotation: ComplexArray, shift: ComplexArray, reach: float = FAR) -> Dyads:
-    """All dyads of many sets of five poses.
+    """All dyads, with pivots (m, 4), of many sets of five displacements from the first pose, (m, 5).
 
-    Parameters
-    ----------
-    rotation, shift : ndarray of complex, shape (m, 5)
-        Displacements from the first pose of every set, as in `Displacements`.
-    reach : float, length
-        Pivots farther from the origin are at infinity.
+    NaN for dyads that are not real or have a pivot farther than `reach` from the origin, for all four of a
+    set that does not settle them, and of one with numbers that are not finite. ValueError where the sets are
+    not of five poses.
 
-    Returns
-    -------
-    Dyads
-        Moving and ground pivots of shape (m, 4); NaN for dyads that are not real or not within reach,
-        for all four of a set that does not settle them, and of one with numbers that are not finite.
-
-    Raises
-    ------
-    ValueError
-        The sets are not of five poses.
-
-    Notes
-    -----
-    |r_j z + s_j - c|^2 = |z - c|^2 is linear in w = conj(c) z, z, c and a number h = 1: four equations
-    in seven real numbers leave a projective plane of them, in which w h = conj(c) z are two conics.
-    They meet in four points, each a dyad (Burmester 1888; the linear form: McCarthy & Soh, *Geometric
-    Design of Linkages*, 2011, ch. 5), h = 0 for one that has a pivot at infinity. A root is
-    real when Newton's method finds a real dyad beside it that meets the equations to rounding; so roots
-    that are double but for rounding count as real, and once.
-
-    Examples
-    --------
-    >>> rng = np.random.default_rng(0)
-    >>> rotation = np.exp(1j * rng.uniform(-np.pi, np.pi, (3, 5)) * [0, 1, 1, 1, 1])
-    >>> shift = rng.normal(size=(3, 5, 2)) @ [1, 1j] * [0, 1, 1, 1, 1]
-    >>> np.isfinite(five_pose_dyads_of_sets(rotation, shift).moving).sum(axis=1)
-    array([2, 2, 2])
+    |r_j z + s_j - c|^2 = |z - c|^2 is linear in w = conj(c) z, z, c and a number h = 1: four equations in
+    seven real numbers leave a projective plane of them, in which w h = conj(c) z are two conics. They meet in
+    four points, each a dyad (Burmester 1888; the linear form: McCarthy & Soh, *Geometric Design of Linkages*,
+    2011, ch. 5), h = 0 for one that has a pivot at infinity. A root is real when Newton's method finds a real
+    dyad beside it that meets the equations to rounding; so roots that are double but for rounding count as
+    real, and once.
     """
     frames = _Frames.of(rotation, shift)
     return frames.outward(_exact(frames, frames.real_roots(), reach / frames.length))
@@ -129,33 +69,8 @@ def five_pose_dyads_of_sets(rotation: ComplexArray, shift: ComplexArray, reach: 
 def five_pose_guides(motion: Displacements, reach: float = FAR) -> Guides:
     """Joints that keep to a straight guide through five poses: dyads with one pivot at infinity.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of five poses.
-    reach : float, length
-        A pivot farther from the origin than this is at infinity.
-
-    Returns
-    -------
-    Guides
-        None for most poses. The joint leaves its guide by no more than the sagitta of an arc of
-        radius `reach`.
-
-    Raises
-    ------
-    ValueError
-        There are not five poses.
-
-    Examples
-    --------
-    A slider-crank, of which the joint B, at first at 3 + cos 0, keeps to the x axis:
-
-    >>> crank = np.exp(1j * np.array([0, 1.1, 2.0, 3.5, 5.0]))
-    >>> motion = Displacements.from_poses(crank, -np.arcsin(crank.imag / 3))
-    >>> guides = five_pose_guides(motion)
-    >>> abs(guides.pivot - 4).round(9), abs(guides.along.real).round(9)
-    (array([0.]), array([1.]))
+    None for most poses; ValueError where there are not five. A pivot farther than `reach` from the origin is
+    at infinity: the joint leaves its guide by no more than the sagitta of an arc of that radius.
     """
     frames = _Frames.of(motion.rotation[None], motion.shift[None])
     roots, limit = frames.real_roots()[0], reach / frames.length[0]
@@ -177,20 +92,12 @@ def five_pose_guides(motion: Displacements, reach: float = FAR) -> Guides:
 
 @dataclass(frozen=True, slots=True)
 class _Frames:
-    """Sets of displacements, each about the point that moves least and scaled to how much that moves.
+    """Sets of displacements, each about the point that moves least and scaled to how much that moves."""
 
-    Attributes
-    ----------
-    origin : ndarray of complex, shape (m,), length
-    length : ndarray, shape (m,), length
-    rotation, shift : ndarray of complex, shape (m, 5)
-        The shift in this origin and length.
-    """
-
-    origin: ComplexArray
-    length: FloatArray
-    rotation: ComplexArray
-    shift: ComplexArray
+    origin: ComplexArray  # (m,), length
+    length: FloatArray  # (m,), length
+    rotation: ComplexArray  # (m, 5)
+    shift: ComplexArray  # (m, 5), in this origin and length
 
     @classmethod
     def of(cls, rotation: ComplexArray, shift: ComplexArray) -> _Frames:

@@ -24,21 +24,11 @@ _TINY = 1e-30
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a generator has to put out.
+    """What a generator has to put out."""
 
-    Parameters
-    ----------
-    turned : ndarray, shape (N,), rad
-        Driver rotations from the first, growing from zero.
-    output : ndarray, shape (N,)
-        Outputs there, but for a constant: angles in rad, or travel.
-    weights : ndarray, shape (N,)
-        Of the squared errors.
-    """
-
-    turned: FloatArray
-    output: FloatArray
-    weights: FloatArray
+    turned: FloatArray  # (N,), rad: driver rotations from the first, growing from zero
+    output: FloatArray  # (N,): outputs there, but for a constant: angles in rad, or travel
+    weights: FloatArray  # (N,), of the squared errors
 
     def errors(self, made: Generators) -> FloatArray:
         """Output less what is wanted, with the best zero of least squares, shape (M, N); NaN: open."""
@@ -66,33 +56,13 @@ def fitted(
     held: bool = False,
     steps: int = STEPS,
 ) -> tuple[Generators, FloatArray]:
-    """The best of many starts moved to least squares, best first.
+    """The best of many starts moved to least squares, best first, and their weighted sums of squares.
 
-    Parameters
-    ----------
-    wanted : Wanted
-    starts : Generators
-        Those that are open somewhere are left out.
-    limits : callable, optional
-        As `ShapeLimits.of`; what is below zero counts as an error of `pull` times as much.
-    pull : float
-        In rad, or in units of the travel.
-    held : bool
-        The first driver angle stays.
-    steps : int
-        At most so many.
-
-    Returns
-    -------
-    Generators
-        Fewer than there were: of very many only the most promising go on.
-    square : ndarray
-        Weighted sums of squares, pulls included.
-
-    Notes
-    -----
-    Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable
-    projection, Golub & Pereyra 1973).
+    Those open somewhere are left out, and of very many only the most promising go on, for `steps` steps at
+    most. What is below zero of `limits` (as `ShapeLimits.of`) counts as an error of `pull` times as much, in
+    rad or in units of the travel, and in the sums. The first driver angle stays if `held`.
+    Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable projection,
+    Golub & Pereyra 1973).
     """
     model = _Model(wanted, limits, pull, held)
     made = starts.finite
@@ -131,22 +101,10 @@ def _fewer(
 
 
 def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
-    """Of generators that are alike the best, best first.
+    """Indices (K,) of the best, those of least `square` (M,), among generators that are alike; best first.
 
-    Parameters
-    ----------
-    made : Generators
-    square : ndarray, shape (M,)
-        Less is better.
-    cell : float
-        Those that share a cell of this size, in logarithms of lengths and in rad, are alike.
+    Those that share a cell of size `cell`, in logarithms of lengths and in rad, are alike.
 
-    Returns
-    -------
-    ndarray of int, shape (K,)
-
-    Examples
-    --------
     >>> shape = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.01]])
     >>> from grashof.synth.theory.function_four_bar import FourBars
     >>> best_apart(FourBars(shape, np.ones(3)), np.array([2.0, 3.0, 1.0]), 0.1).tolist()

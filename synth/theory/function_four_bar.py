@@ -26,18 +26,6 @@ class FourBars(Generators):
 
     The shape has the logarithms of r2, r3, r4, each over r1, and the first driver angle; the assembly is the
     sign of sin(theta4 - theta3).
-
-    Examples
-    --------
-    >>> one = FourBars(np.array([[0.0, np.log(2), np.log(1.5), 0.3]]), np.array([1.0]))
-    >>> one.lengths.round(9).tolist(), len(one)
-    ([[1.0, 1.0, 2.0, 1.5]], 1)
-
-    A parallelogram turns its output as its driver:
-
-    >>> one = FourBars(np.array([[0.0, 0.0, 0.0, 1.0]]), np.array([1.0]))
-    >>> one.outputs(np.array([0.0, 0.5, 1.0])).round(9).tolist()
-    [[1.0, 1.5, 2.0]]
     """
 
     UNKNOWNS = 4
@@ -70,18 +58,9 @@ class FourBars(Generators):
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
         """All four-bars through five pairs, both start angles free: one or three of most sets.
 
-        Notes
-        -----
         Function generation is motion generation: seen from link 4, link 2 moves through known poses, and the
         unknown coupler is an RR dyad of that motion (Erdman & Sandor; families of five poses: Burmester). One
         of its roots is the ground link itself, which is left out: what remains is a cubic.
-
-        Examples
-        --------
-        >>> turned = np.radians([[0, 20, 45, 70, 90]])
-        >>> made, which = FourBars.through(turned, 0.5 * turned**1.2)
-        >>> len(made) in (1, 3)
-        True
         """
         rotation = np.exp(1j * (turned - output))
         shift = 1.0 - np.exp(-1j * output)
@@ -96,20 +75,10 @@ class FourBars(Generators):
     def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
         """Those through three pairs, where Freudenstein's equation gives a negative length by half a turn.
 
-        Notes
-        -----
         K1 cos psi - K2 cos phi + K3 = cos(phi - psi) with K1 = r1 / r2, K2 = r1 / r4 and
         K3 = (r1^2 + r2^2 - r3^2 + r4^2) / (2 r2 r4) (Freudenstein, *Trans. ASME* 77, 1955) is linear in K.
         Its residual over its derivative by psi is the error of the output (structural instead of design
         error), by which more than three pairs are weighted in a second step.
-
-        Examples
-        --------
-        y = 1/x, Chebyshev spacing, ranges of 90 deg, from 30 and 240 deg on (Shigley & Uicker):
-
-        >>> phi, psi = np.radians([36.03, 75, 113.97]), np.radians([251.30, 300, 326.88])
-        >>> FourBars.at_starts(phi - phi[0], psi - psi[0], phi[:1], psi[:1]).lengths.round(2).tolist()
-        [[1.0, 2.47, 0.91, 2.47]]
         """
         phi, psi = driver[:, None] + turned, place[:, None] + output
         rows = np.stack([np.cos(psi), -np.cos(phi), np.ones_like(phi)], axis=-1)
@@ -138,8 +107,6 @@ class FourBars(Generators):
         With r1 = 1, r3 + r4 = 1 + r2 + exp(b) and r3 - r4 = abs(1 - r2) tanh(c), r2 below or above 1, any b
         and c give a full crank, and there is none besides.
 
-        Examples
-        --------
         >>> r1, r2, r3, r4 = FourBars.cranks(np.random.default_rng(0), 100).lengths.T
         >>> bool((r3 + r4 > r1 + r2).all() and (abs(r1 - r2) > abs(r3 - r4)).all())
         True
@@ -159,8 +126,6 @@ class FourBars(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """Lengths from 0.05 to 20.
 
-        Examples
-        --------
         >>> made = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
         >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
         True

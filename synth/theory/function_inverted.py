@@ -25,14 +25,6 @@ class InvertedSliderCranks(Generators):
 
     The shape has the logarithm of r2 and the offset, each over r1, and the first driver angle. B always lies
     ahead of A along the rod: the other assembly is the opposite offset.
-
-    Examples
-    --------
-    The block points from A to O4, where there is no offset:
-
-    >>> shaper = InvertedSliderCranks(np.array([[np.log(0.5), 0.0, np.pi / 2]]), np.ones(1))
-    >>> np.degrees(shaper.outputs(np.array([0.0, np.pi]))).round(6).tolist()
-    [[-26.565051, 26.565051]]
     """
 
     UNKNOWNS = 3
@@ -56,17 +48,9 @@ class InvertedSliderCranks(Generators):
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
         """The inverted slider-crank through four pairs: one of most sets.
 
-        Notes
-        -----
         With c = e^(i psi0) and w = r2 e^(i (phi0 - psi0)) of the start angles, O4 lies beside the rod's line
         by offset = Im(e^(i psi) c + e^(i (phi - psi)) w): four equations, linear in five numbers, of which
         the scale is free.
-
-        Examples
-        --------
-        >>> turned = np.radians([[0, 20, 45, 90]])
-        >>> len(InvertedSliderCranks.through(turned, 0.5 * turned**1.2)[0])
-        1
         """
         swung, seen = np.exp(1j * output), np.exp(1j * (turned - output))
         rows = np.stack([swung.imag, swung.real, seen.imag, seen.real, -np.ones_like(turned)], axis=-1)
@@ -78,17 +62,7 @@ class InvertedSliderCranks(Generators):
 
     @classmethod
     def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
-        """Offset - r2 sin(theta2 - theta3) = sin(theta3) is linear in r2 and the offset.
-
-        Examples
-        --------
-        >>> shaper = InvertedSliderCranks(np.array([[np.log(0.5), 0.1, 0.3]]), np.ones(1))
-        >>> turned = np.array([0.0, 0.5, 1.0])
-        >>> theta3 = shaper.outputs(turned)[0]
-        >>> found = InvertedSliderCranks.at_starts(turned, theta3 - theta3[0], np.array([0.3]), theta3[:1])
-        >>> bool(np.abs(found.shape - shaper.shape).max() < 1e-9)
-        True
-        """
+        """Offset - r2 sin(theta2 - theta3) = sin(theta3) is linear in r2 and the offset."""
         theta2, theta3 = driver[:, None] + turned, place[:, None] + output
         rows = np.stack([-np.sin(theta2 - theta3), np.ones_like(theta2)], axis=-1)
         found = _solved_by_two(rows, np.sin(theta3))
@@ -118,8 +92,6 @@ class InvertedSliderCranks(Generators):
     ) -> Self:
         """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
 
-        Examples
-        --------
         >>> made = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
         >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
         True
@@ -134,8 +106,6 @@ class InvertedSliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 from 0.05 to 20, the offset up to the longer of r1 and r2.
 
-        Examples
-        --------
         >>> made = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
         >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
         True

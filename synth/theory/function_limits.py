@@ -16,44 +16,19 @@ LEAST_ANGLE = float(np.radians(0.3))  # so near to a dead position no generator 
 
 @dataclass(frozen=True, slots=True)
 class ShapeLimits:
-    """Limits of a generator, zero or positive where they are kept.
+    """Limits of a generator, zero or positive where they are kept."""
 
-    Parameters
-    ----------
-    span : float, rad
-        Rotation of the driver from its first angle.
-    caps : ndarray, shape (n, n)
-        Greatest logarithm of length j over length k, of `Generators.lengths`.
-    transmission : float, rad
-        Least min(mu, pi - mu).
-    over_cycle : bool
-        Over the whole turn, not only over the rotation.
-    margin : float, optional
-        The driver turns fully, and the shares that `rotatability` tells are this or more.
-    shortest : int
-        +1 where r1 has to be longer than r2, -1 where it has to be shorter, 0 for either.
-    offset : ndarray, shape (k, n + 1)
-        Sums of the lengths and the offset that have to be zero or positive; see `offset_rows`.
-    stroke : tuple of float
-        Limits of the travel over a whole turn, in units of the lengths.
-
-    Examples
-    --------
-    >>> from grashof.synth.theory.function_four_bar import FourBars
-    >>> limits = ShapeLimits(1.0, transmission=0.5)
-    >>> rows = limits.of(FourBars(np.array([[0.1, 0.2, 0.3, 0.4]]), np.array([1.0])))
-    >>> rows.value.shape, rows.slope.shape
-    ((1, 20), (1, 20, 4))
-    """
-
-    span: float
+    span: float  # rad, rotation of the driver from its first angle
+    # (n, n): greatest logarithm of length j over length k, of `Generators.lengths`
     caps: FloatArray = field(default_factory=lambda: np.full((4, 4), np.log(20.0)))
-    transmission: float = 0.0
-    over_cycle: bool = False
+    transmission: float = 0.0  # rad, least min(mu, pi - mu)
+    over_cycle: bool = False  # over the whole turn, not only over the rotation
+    # The driver turns fully, and the shares that `rotatability` tells are this or more
     margin: float | None = None
-    shortest: int = 0
+    shortest: int = 0  # +1 where r1 has to be longer than r2, -1 where shorter, 0 for either
+    # (k, n + 1): sums of the lengths and the offset that have to be zero or positive; see `offset_rows`
     offset: FloatArray | None = None
-    stroke: Limits = (-np.inf, np.inf)
+    stroke: Limits = (-np.inf, np.inf)  # of the travel over a whole turn, in units of the lengths
 
     def of(self, made: Limited) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
@@ -109,10 +84,7 @@ def places_met(
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Where the transmission may be worst: at both ends, and at two angles if the motion passes there.
 
-    Returns
-    -------
-    places, met, moving : ndarray, shape (M, n), (M, n) and (n,)
-        Driver angles, whether each of them counts, and 1 where it moves with the first angle.
+    Driver angles (M, n) in rad, whether each counts (M, n), and 1 where it moves with the first angle (n,).
     """
     turns = np.tile(np.array(along), (len(first), 1))
     if over_cycle:
@@ -130,28 +102,11 @@ def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
 
 
 def offset_rows(sizes: list[Limits], offset: Limits) -> FloatArray:
-    """Sums of lengths and offset that are not negative where some scale brings all within their limits.
+    """Sums (k, n + 1) of lengths and offset, not negative where some scale brings all within their limits.
 
-    Parameters
-    ----------
-    sizes : list of tuple of float
-        Of n lengths.
-    offset : tuple of float
-        Of the signed offset.
-
-    Returns
-    -------
-    ndarray, shape (k, n + 1)
-
-    Notes
-    -----
-    With the scale 1 / t limits are low t <= q <= high t: bounds of t, of which each lower one has to be
-    below each upper one (elimination by Fourier and Motzkin). Bounds by two lengths are left out: they
-    are those of `ShapeLimits.caps`.
-
-    Examples
-    --------
-    An offset of at most 2 where r1 is at least 1: 2 r1 - offset >= 0.
+    With the scale 1 / t limits are low t <= q <= high t: bounds of t, of which each lower one has to be below
+    each upper one (elimination by Fourier and Motzkin). Bounds by two lengths are left out: they are those of
+    `ShapeLimits.caps`. An offset of at most 2 where r1 is at least 1, 2 r1 - offset >= 0:
 
     >>> offset_rows([(1.0, np.inf)], (-np.inf, 2.0))
     array([[ 1. , -0.5]])

@@ -20,48 +20,23 @@ _HEAVY = 1e4  # of the slack in a step of least squares
 
 @dataclass(frozen=True, slots=True)
 class Optimum:
-    """Where a refinement ended.
-
-    Parameters
-    ----------
-    made : Generators
-        One.
-    error : float
-        What was made small: root mean square or greatest error at the samples.
-    missed : float
-        By how much the worst limit is missed; zero where all are kept.
-    steps : int
-    """
+    """Where the refinement of one generator ended."""
 
     made: Generators
-    error: float
-    missed: float
+    error: float  # what was made small: root mean square or greatest error at the samples
+    missed: float  # by how much the worst limit is missed; zero where all are kept
     steps: int
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """What is made small, and under which limits.
+    """What is made small, and under which limits."""
 
-    Parameters
-    ----------
-    wanted : Wanted
-        What the generator has to put out; of the greatest error the samples.
-    limits : callable
-        As `ShapeLimits.of`.
-    greatest : bool
-        The greatest error is made small, or else the (weighted) mean square.
-    held : bool
-        The first driver angle stays.
-    band : float
-        Greatest error that is allowed at any sample.
-    """
-
-    wanted: Wanted
-    limits: Limits
-    greatest: bool = False
-    held: bool = False
-    band: float = np.inf
+    wanted: Wanted  # for the greatest error, the samples
+    limits: Limits  # as `ShapeLimits.of`
+    greatest: bool = False  # the greatest error is made small, or else the (weighted) mean square
+    held: bool = False  # the first driver angle stays
+    band: float = np.inf  # greatest error that is allowed at any sample
 
     def errors(self, made: Generators) -> FloatArray:
         """Output less what is wanted at the samples, about the best zero, shape (N,); NaN: open."""
@@ -94,20 +69,8 @@ class Aim:
 
 
 def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
-    """The optimum near one start.
+    """The optimum near one start, closed at all samples; it may miss limits.
 
-    Parameters
-    ----------
-    aim : Aim
-    start : Generators
-        One, closed at all samples; it may miss limits.
-
-    Returns
-    -------
-    Optimum
-
-    Notes
-    -----
     Errors and limits are linearised about the best shape so far; within a trust region, what is left is a
     linear programme for the greatest error or linear least squares under inequalities for the mean square
     (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
@@ -251,30 +214,10 @@ class _Linear:
 def under_inequalities(
     matrix: FloatArray, side: FloatArray, rows: FloatArray, least: FloatArray
 ) -> FloatArray:
-    """Least squares of ``matrix @ z - side`` under ``rows @ z >= least``.
+    """Least squares (n,) of ``matrix @ z - side`` under ``rows @ z >= least``; zeros where these contradict.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (m, n)
-        Of full column rank.
-    side : ndarray, shape (m,)
-    rows : ndarray, shape (k, n)
-    least : ndarray, shape (k,)
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Zeros where the inequalities contradict each other.
-
-    Notes
-    -----
-    Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 23: LSI as least distance, and that as
-    non-negative least squares.
-
-    Examples
-    --------
-    >>> under_inequalities(np.eye(2), np.array([0.0, 0.0]), np.array([[1.0, 1.0]]), np.array([2.0]))
-    array([1., 1.])
+    `matrix` (m, n) has full column rank; `rows` are (k, n). LSI as least distance, and that as non-negative
+    least squares (Lawson & Hanson, *Solving Least Squares Problems*, 1974, ch. 23).
     """
     from scipy.optimize import nnls  # here: few problems need it
 

@@ -30,14 +30,7 @@ from grashof.synth.theory.function_limits import (
 
 @dataclass(frozen=True, slots=True)
 class Generators(ABC):
-    """Linkages of one kind with the driver angle at which they begin.
-
-    Parameters
-    ----------
-    shape : ndarray, shape (M, K)
-        Logarithms of lengths, the offset of a slide, and last the first driver angle, rad.
-    assembly : ndarray, shape (M,)
-    """
+    """Linkages of one kind with the driver angle at which they begin."""
 
     UNKNOWNS: ClassVar[int]  # K
     EXACT: ClassVar[int]  # through so many pairs go one or a few
@@ -50,8 +43,9 @@ class Generators(ABC):
     ground: ClassVar[Vector] = Vector(1.0, 0.0)  # as `ClosingDyad.closed` takes it
     theta1: ClassVar[float] = 0.0  # its direction, rad
 
+    # (M, K): logarithms of lengths, the offset of a slide, and last the first driver angle, rad
     shape: FloatArray
-    assembly: FloatArray
+    assembly: FloatArray  # (M,)
 
     def __len__(self) -> int:
         return len(self.shape)
@@ -119,12 +113,9 @@ class Generators(ABC):
         return crank, self.dyad.closed(self.ground, crank, r3, r4, self.assembly[:, None])
 
     def outputs(self, turned: FloatArray) -> FloatArray:
-        """Angle of link 4 or place of the slide, shape (M, N); NaN where the loop is open.
+        """Angle of link 4 (rad) or place of the slide, shape (M, N); NaN where the loop is open.
 
-        Parameters
-        ----------
-        turned : ndarray, shape (N,), rad
-            Driver rotations from the first angle, growing.
+        `turned` (N,), rad, are growing driver rotations from the first angle.
         """
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             crank, loop = self._closed(turned)
@@ -201,14 +192,10 @@ class Generators(ABC):
     @classmethod
     @abstractmethod
     def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
-        """Those through `LINEAR` pairs at given starts, or nearly through more.
+        """Those (M,) through `LINEAR` pairs at given starts, or nearly through more.
 
-        Parameters
-        ----------
-        turned, output : ndarray, shape (N,)
-            From the first pair, zero there.
-        driver, place : ndarray, shape (M,)
-            Driver angle and output at the first pair; the driver may come out turned by half a turn.
+        Rotations and outputs (N,) count from the first pair, zero there; `driver` and `place` (M,) are driver
+        angle and output at the first pair. The driver may come out turned by half a turn.
         """
 
     @classmethod
@@ -254,13 +241,7 @@ class Generators(ABC):
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> Linkage:
         """The first of them as a linkage, placed and scaled as resolved requirements have it.
 
-        Parameters
-        ----------
-        wanted : Requirements
-        unit : float, length
-            Of outputs that are travel.
-        driver : int
-            Sense of the driver; -1 is the mirror image.
+        `unit` is the length of outputs that are travel; `driver` the driver's sense, -1 for the mirror image.
         """
 
     @abstractmethod

@@ -28,12 +28,6 @@ class SliderCranks(Generators):
 
     The shape has the logarithms of r2 and r3, offset / r3, and the first driver angle; the assembly is +1
     where B lies ahead of A.
-
-    Examples
-    --------
-    >>> engine = SliderCranks(np.array([[np.log(1.0), np.log(3.0), 0.0, 0.0]]), np.array([1.0]))
-    >>> engine.outputs(np.array([0.0, np.pi])).round(9).tolist()
-    [[4.0, 2.0]]
     """
 
     UNKNOWNS = 4
@@ -81,18 +75,8 @@ class SliderCranks(Generators):
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
         """All slider-cranks through five pairs: one or three of most sets.
 
-        Notes
-        -----
         Seen from the slide link 2 turns by the driver's angles and moves by less the travel, and the rod is
         an RR dyad of that motion. One of its roots lies at infinity: the joint O2, on a line along the slide.
-
-        Examples
-        --------
-        >>> turned = np.radians([[0, 20, 45, 70, 90]])
-        >>> made, _ = SliderCranks.through(turned, 0.5 * turned**1.2)
-        >>> found = made.outputs(turned[0])
-        >>> len(made) in (1, 3)
-        True
         """
         dyads = five_pose_dyads_of_sets(np.exp(1j * turned), (-output).astype(np.complex128))
         a, b = dyads.moving, dyads.ground
@@ -104,18 +88,8 @@ class SliderCranks(Generators):
     def at_starts(cls, turned: FloatArray, output: FloatArray, driver: FloatArray, place: FloatArray) -> Self:
         """Those through three pairs, where a negative length is half a turn.
 
-        Notes
-        -----
         s^2 = K1 s cos phi + K2 sin phi + K3 with K1 = 2 r2, K2 = 2 r2 offset and K3 = r3^2 - r2^2 - offset^2
         (Freudenstein's equation of a slider-crank) is linear in K.
-
-        Examples
-        --------
-        >>> s = np.array([4.0, 10**0.5 + 0.5, 8**0.5])  # of r2 = 1 and r3 = 3
-        >>> turned = np.radians([0, 60, 90])
-        >>> made = SliderCranks.at_starts(turned, s - 4, np.zeros(1), np.full(1, 4.0))
-        >>> made.lengths.shape
-        (1, 3)
         """
         phi, s = driver[:, None] + turned, place[:, None] + output
         rows = np.stack([s * np.cos(phi), np.sin(phi), np.ones_like(phi)], axis=-1)
@@ -138,8 +112,6 @@ class SliderCranks(Generators):
     ) -> Self:
         """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
 
-        Examples
-        --------
         >>> made = SliderCranks.cranks(np.random.default_rng(0), 100)
         >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
         True
@@ -154,8 +126,6 @@ class SliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 / r3 from 0.05 to 20, r3 = 1.
 
-        Examples
-        --------
         >>> made = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
         >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
         True

@@ -28,41 +28,15 @@ def follow(
     tolerance: float = 1e-6,
     steps: int = STEPS,
 ) -> tuple[ComplexArray, BoolArray]:
-    """Follow solutions from one set of parameters along a straight line to another.
+    """Follow solutions (n, K) along a straight line from the parameters `start` to `target`, (M,).
 
-    Parameters
-    ----------
-    system : callable
-        See `System`.
-    solutions : ndarray of complex, shape (n, K)
-        At `start`.
-    start, target : ndarray of complex, shape (M,)
-    tolerance : float
-        Largest last Newton correction of a step, relative to the largest unknown; larger ones halve
-        the step. Too large a one lets paths jump to their neighbours.
-    steps : int
-        Of a path at most.
+    Solutions at `target`, and whether each was reached, (n,): not where a path went to infinity, ended at a
+    singular point or took more than `steps` steps. `tolerance` is the largest last Newton correction of a
+    step, relative to the largest unknown; larger ones halve the step. Too large a one lets paths jump to
+    their neighbours.
 
-    Returns
-    -------
-    solutions : ndarray of complex, shape (n, K)
-        At `target`.
-    reached : ndarray of bool, shape (n,)
-        False where a path went to infinity or ended at a singular point.
-
-    Notes
-    -----
-    Runge-Kutta prediction of Davidenko's equation, Newton correction, each path with a step of its
-    own (Sommese & Wampler, *The Numerical Solution of Systems of Polynomials*, 2005, ch. 2).
-
-    Examples
-    --------
-    >>> def square(s, q, dq):  # s**2 = q
-    ...     return s**2 - q, 2 * s[..., None], -dq
-    >>> ones, one, target = np.array([[1], [-1]]) + 0j, np.array([1 + 0j]), np.array([-4 + 1j])
-    >>> roots, reached = follow(square, ones, one, target)
-    >>> bool(np.allclose(roots**2, -4 + 1j)), reached.tolist()
-    (True, [True, True])
+    Runge-Kutta prediction of Davidenko's equation, Newton correction, each path with a step of its own
+    (Sommese & Wampler, *The Numerical Solution of Systems of Polynomials*, 2005, ch. 2).
     """
     solutions = solutions.copy()
     way = target - start
@@ -118,19 +92,7 @@ def _stepped(
 def corrected(
     system: System, solutions: ComplexArray, parameters: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """One Newton step on every solution, and its greatest component; NaN where singular.
-
-    Parameters
-    ----------
-    system : callable
-    solutions : ndarray of complex, shape (n, K)
-    parameters : ndarray of complex, shape (n, M)
-
-    Returns
-    -------
-    solutions : ndarray of complex, shape (n, K)
-    correction : ndarray, shape (n,)
-    """
+    """One Newton step on every solution (n, K), and its greatest component (n,); NaN where singular."""
     residual, jacobian, _ = system(solutions, parameters, np.zeros_like(parameters))
     change = _solved(jacobian, residual)
     return solutions - change, np.abs(change).max(axis=1)

@@ -30,28 +30,15 @@ _ROUNDING = 1e-12  # margins down to that are zero
 
 @dataclass(frozen=True, slots=True)
 class Members:
-    """Members of a family.
+    """Members of a family; arrays (n,), angles in rad."""
 
-    Parameters
-    ----------
-    share : ndarray, shape (n,)
-        r2 / r3.
-    lengths : ndarray, shape (n, k)
-        r1 (1), r2, r3, r4 of crank-rockers; r2, r3 and offset, in strokes, of slider-cranks.
-    transmission : ndarray, shape (n,), rad
-        Worst min(mu, pi - mu) over the turn.
-    margin : ndarray, shape (n,)
-        Positive where the driver turns fully and both limit positions lie on one assembly.
-    first, last : ndarray, shape (n,), rad
-        Driver angles from O2O4, or from the slide's direction, at which the slow stroke begins and ends when
-        the driver turns counter-clockwise; the other way round when it turns clockwise.
-    assembly : ndarray, shape (n,)
-    """
-
-    share: FloatArray
+    share: FloatArray  # r2 / r3
+    # (n, k): r1 (1), r2, r3, r4 of crank-rockers; r2, r3, offset, in strokes, of slider-cranks
     lengths: FloatArray
-    transmission: FloatArray
-    margin: FloatArray
+    transmission: FloatArray  # worst min(mu, pi - mu) over the turn
+    margin: FloatArray  # positive where the driver turns fully and both limit positions lie on one assembly
+    # `first` and `last` are driver angles from O2O4, or from the slide's direction, at which the slow stroke
+    # begins and ends when the driver turns counter-clockwise; the other way round when it turns clockwise
     first: FloatArray
     last: FloatArray
     assembly: FloatArray
@@ -82,8 +69,6 @@ Allowed: TypeAlias = Callable[[Members], FloatArray]
 def lag_of(time_ratio: float) -> float:
     """By how much the driver turns more than half a turn in the slow stroke, rad.
 
-    Examples
-    --------
     >>> round(float(np.degrees(lag_of(1.5))), 12)
     36.0
     """
@@ -91,34 +76,18 @@ def lag_of(time_ratio: float) -> float:
 
 
 def crank_rockers(swing: float, lag: float, share: FloatArray) -> Members:
-    """The crank-rockers with a swing and a time ratio, O2O4 = 1.
+    """The crank-rockers with a swing of link 4 (rad, below pi) and a time ratio, O2O4 = 1.
 
-    Parameters
-    ----------
-    swing : float, rad
-        Of link 4, below pi.
-    lag : float, rad
-        See `lag_of`; negative where link 4 swings the other way while driver and coupler go from stretched
-        to folded.
-    share : ndarray, shape (n,)
-        r2 / r3, between 0 and 1.
-
-    Notes
-    -----
-    In the triangles O2-B1-B2 and O4-B1-B2 of the two limit positions, O2B1 = r3 + r2, O2B2 = r3 - r2, the
-    angles at O2 and O4 are lag and swing (Alt's problem):
+    `lag`, rad (see `lag_of`), is negative where link 4 swings the other way while driver and coupler go from
+    stretched to folded; `share` (n,) is r2 / r3, between 0 and 1. In the triangles O2-B1-B2 and O4-B1-B2 of
+    the two limit positions, O2B1 = r3 + r2, O2B2 = r3 - r2, the angles at O2 and O4 are lag and swing (Alt's
+    problem):
 
         r4² sin²(swing/2) = r2² cos²(lag/2) + r3² sin²(lag/2)
         r1² sin²(swing/2) = r2² cos²((swing − lag)/2) + r3² sin²((swing − lag)/2)
 
     These hold for any two points B; both are on one assembly where they lie on the same side of their
     coupler's line, O2B, as seen from O4.
-
-    Examples
-    --------
-    >>> found = crank_rockers(np.radians(80), lag_of(10 / 9), np.array([0.401785]))
-    >>> (120 * found.lengths).round(2).tolist(), np.degrees(found.transmission).round(3).tolist()
-    ([[120.0, 46.67, 116.16, 73.88]], [37.733])
     """
     r2, r3, sine = share, np.ones_like(share), np.sin(swing / 2)
     r4 = np.hypot(r2 * np.cos(lag / 2), r3 * np.sin(lag / 2)) / sine
@@ -151,27 +120,14 @@ def _worst(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> Fl
 def slider_cranks(lag: float, share: FloatArray) -> Members:
     """The slider-cranks with a time ratio, of stroke 1.
 
-    Parameters
-    ----------
-    lag : float, rad
-        See `lag_of`; negative where the slide lies to the right of O2.
-    share : ndarray, shape (n,)
-        r2 / r3, between 0 and 1.
-
-    Notes
-    -----
-    In the triangle O2-B1-B2 of the two limit positions with the sides r3 + r2, r3 - r2 and the stroke S:
+    `lag`, rad (see `lag_of`), is negative where the slide lies to the right of O2; `share` (n,) is r2 / r3,
+    between 0 and 1. In the triangle O2-B1-B2 of the two limit positions with the sides r3 + r2, r3 - r2 and
+    the stroke S:
 
         S² = (r3 + r2)² + (r3 − r2)² − 2 (r3² − r2²) cos lag        offset = (r3² − r2²) sin(lag) / S
 
     Both are on one assembly where B1 and B2 lie on one side of the foot of O2 on the slide, that is where the
     angle at B2 is obtuse. The worst transmission angle has cos mu = (r2 + |offset|) / r3.
-
-    Examples
-    --------
-    >>> found = slider_cranks(lag_of(1.2), np.array([0.36781]))
-    >>> found.lengths.round(4).tolist(), np.degrees(found.transmission).round(3).tolist()
-    ([[0.4705, 1.2791, 0.3986]], [47.201])
     """
     r3 = 0.5 / np.hypot(np.sin(lag / 2), share * np.cos(lag / 2))
     r2 = share * r3
@@ -193,18 +149,10 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
 def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
     """The inverted slider-cranks whose block swings by so much, O2O4 = 1; their time ratio follows from it.
 
-    Parameters
-    ----------
-    swing : float, rad
-        Of the block, below pi.
-    side : float
-        Sign of the offset.
-    share : ndarray, shape (n,)
-        Between 0 and 1, what the offset has of the most that a full turn allows; the least of the grid counts
-        as none. The lengths are r1 (1), r2 and the offset.
+    The swing, rad, is below pi; `side` is the sign of the offset. `share` (n,), between 0 and 1, is what the
+    offset has of the most that a full turn allows; the least of the grid counts as none. The lengths are r1
+    (1), r2 and the offset.
 
-    Notes
-    -----
     The crank stands square to the rod in both limit positions, in which the rod has the directions
     -asin(r2 − offset) and asin(r2 + offset) from the ground line. With p between 0 and 90° − swing/2
 
@@ -212,8 +160,6 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
 
     The slow stroke turns the crank by 180° + swing; at worst cos mu = |offset| / (1 − r2).
 
-    Examples
-    --------
     >>> found = crank_shapers(np.radians(60), 1, np.array([0.0, 0.5]))
     >>> found.lengths.round(4).tolist(), np.degrees(found.transmission).round(3).tolist()
     ([[1.0, 0.5, 0.0], [1.0, 0.433, 0.433]], [90.0, 40.208])
@@ -235,8 +181,6 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
 def linkages_of(task: StrokeTask, members: Members) -> FourBar | SliderCrank:
     """Members as a batch of linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
 
-    Examples
-    --------
     >>> task = StrokeTask(stroke=100.0, time_ratio=1.2)
     >>> slides = linkages_of(task, slider_cranks(lag_of(1.2), np.array([0.36781])))
     >>> slides.offset.round(2).tolist()
@@ -253,11 +197,9 @@ def linkages_of(task: StrokeTask, members: Members) -> FourBar | SliderCrank:
 def greatest_time_ratio(swing: float) -> float:
     """Below which crank-rockers with a swing (rad) have their time ratios.
 
-    Their limit positions are on one assembly and the driver turns fully only where the driver's angle
-    between them lies between 90 deg + swing/2 and 270 deg + swing/2.
+    Their limit positions are on one assembly and the driver turns fully only where the driver's angle between
+    them lies between 90 deg + swing/2 and 270 deg + swing/2.
 
-    Examples
-    --------
     >>> round(greatest_time_ratio(np.radians(80)), 3)
     6.2
     """
@@ -288,10 +230,8 @@ def _margin(family: Family, allowed: Allowed) -> Callable[[FloatArray], FloatArr
 def stretches(family: Family, allowed: Allowed = everywhere) -> list[tuple[float, float]]:
     """Where members of a family are usable and allowed: stretches of r2 / r3, ends included.
 
-    Notes
-    -----
-    Between neighbours of a grid the ends are found by halving; stretches too narrow for the grid
-    where the margin is greatest between its points.
+    Between neighbours of a grid the ends are found by halving; stretches too narrow for the grid where the
+    margin is greatest between its points.
     """
     margin = _margin(family, allowed)
     at_grid = margin(_GRID)
@@ -359,15 +299,7 @@ def best_of(family: Family, within: list[tuple[float, float]]) -> list[float]:
 
 
 def best_transmission(swing: float | None, time_ratio: float, allowed: Allowed = everywhere) -> float:
-    """The best worst transmission angle over the turn for a swing (None: a slide), rad; NaN without any.
-
-    Examples
-    --------
-    >>> round(float(np.degrees(best_transmission(np.radians(80), 10 / 9))), 3)
-    37.733
-    >>> round(float(np.degrees(best_transmission(None, 2.0))), 3)
-    11.211
-    """
+    """The best worst transmission angle over the turn for a swing (None: a slide), rad; NaN without any."""
     found = [
         family(np.array(best_of(family, within))).transmission.max()
         for family in families_of(swing, time_ratio)

@@ -22,24 +22,7 @@ CAREFUL = 1e-8
 
 
 def general_problem(rng: np.random.Generator) -> tuple[ComplexArray, ComplexArray]:
-    """Random complex displacements and one solution for them.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    displacements : ndarray of complex, shape (16,)
-    solutions : ndarray of complex, shape (1, 8)
-
-    Examples
-    --------
-    >>> displacements, solutions = general_problem(np.random.default_rng(0))
-    >>> residual, _, _ = nine_point_system(solutions, displacements[None], np.zeros((1, 16), dtype=complex))
-    >>> bool(np.abs(residual).max() < 1e-10)
-    True
-    """
+    """Random complex displacements (16,) and one solution (1, 8) for them."""
     unknowns = _general(rng, 8)
     x, xs, a, as_, y, ys, b, bs = unknowns
     turn = np.exp(rng.normal(0, 0.3, 8) + 1j * rng.uniform(0, 2 * np.pi, 8))
@@ -62,28 +45,10 @@ def collect(
     system: System = nine_point_system,
     distinct: Callable[[ComplexArray], ComplexArray] = distinct_triplets,
 ) -> ComplexArray:
-    """Solutions that loops through random problems lead to, one of every triplet.
+    """Solutions (m, K), one of every triplet, that loops through random problems lead to from known ones.
 
-    Parameters
-    ----------
-    displacements : ndarray of complex, shape (M,)
-    solutions : ndarray of complex, shape (n, K)
-        Known ones.
-    rng : numpy.random.Generator
-    most : int
-        Stop when so many are known.
-    patience : int
-        Stop after so many loops on end without a new one.
-    progress : callable, optional
-        Called with the number of known solutions after every loop.
-    system : System
-        The nine-point problem, if no other.
-    distinct : callable
-        Solutions without those that came earlier, or are cognates of such.
-
-    Returns
-    -------
-    ndarray of complex, shape (m, K)
+    It stops when `most` are known, or after `patience` loops on end without a new one; `progress` is called
+    with their number after every loop. `distinct` leaves out those known earlier and their cognates.
     """
     idle = 0
     while len(solutions) < most and idle < patience:

@@ -28,27 +28,13 @@ RUNS = 3  # with paths of their own, until all solutions are found
 def system(
     unknowns: ComplexArray, displacements: ComplexArray, change: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """The nine-point problem, as `homotopy.System`.
+    """The nine-point problem, as `homotopy.System` with K = 8 and M = 16.
 
-    Parameters
-    ----------
-    unknowns : ndarray of complex, shape (n, 8)
-        A, A*, O2, O2*, B, B*, O4, O4* from the first point, A and B as they are there.
-    displacements : ndarray of complex, shape (n, 16)
-        From the first point to the eight others, then their conjugates.
-    change : ndarray of complex, shape (n, 16)
-
-    Returns
-    -------
-    residual : ndarray of complex, shape (n, 8)
-    jacobian : ndarray of complex, shape (n, 8, 8)
-    change : ndarray of complex, shape (n, 8)
-
-    Notes
-    -----
-    That link O2A keeps its length while the coupler moves by d and turns by t = exp(i phi) is
-    e t + f / t + g = 0; of the two dyads together, with t eliminated, there remains
-    n1 n2 = (e1 f2 - e2 f1)**2 (Wampler, Morgan & Sommese 1992, eqs. 4-8).
+    The unknowns are A, A*, O2, O2*, B, B*, O4, O4* from the first point, A and B as they are there; the
+    displacements are from the first point to the eight others, then their conjugates. That link O2A keeps its
+    length while the coupler moves by d and turns by t = exp(i phi) is e t + f / t + g = 0; of the two dyads
+    together, with t eliminated, there remains n1 n2 = (e1 f2 - e2 f1)**2 (Wampler, Morgan & Sommese 1992,
+    eqs. 4-8).
     """
     d, ds = displacements[:, :8], displacements[:, 8:]
     x, xs, a, as_, y, ys, b, bs = (unknowns[:, i : i + 1] for i in range(8))
@@ -70,16 +56,7 @@ def system(
 
 
 def triplet_invariants(unknowns: ComplexArray) -> ComplexArray:
-    """Numbers that the six solutions of a triplet share: symmetric functions of its ground pivots.
-
-    Parameters
-    ----------
-    unknowns : ndarray of complex, shape (n, 8)
-
-    Returns
-    -------
-    ndarray of complex, shape (n, 4)
-    """
+    """Numbers (n, 4) that the six solutions of a triplet share: symmetric functions of its ground pivots."""
     invariants = []
     for a, o2, b, o4 in (unknowns[:, ::2].T, unknowns[:, 1::2].T):
         o6 = o2 + (o4 - o2) * a / (a - b)
@@ -90,22 +67,10 @@ def triplet_invariants(unknowns: ComplexArray) -> ComplexArray:
 def linkages_through(points: ComplexArray, rng: np.random.Generator) -> tuple[ComplexArray, int]:
     """One real linkage of every triplet of cognates that passes nine points, in any order and branch.
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (9,)
-        Distinct.
-    rng : numpy.random.Generator
-        Turns the paths from the known solutions, so that they meet no singular point.
+    Of distinct `points` (9,): O2, O4, and A, B, P at the first point, (n, 5), all but a path that is lost now
+    and then; and how many complex triplets were found, `TRIPLETS` where none is lost. `rng` turns the paths
+    from the known solutions, so that they meet no singular point.
 
-    Returns
-    -------
-    linkages : ndarray of complex, shape (n, 5)
-        O2, O4, and A, B, P at the first point. All of them, except that now and then a path is lost.
-    solutions : int
-        Complex triplets that were found: where none is lost, `TRIPLETS`.
-
-    Examples
-    --------
     >>> from grashof import load
     >>> points = load("nine-points").task.points @ [1, 1j]  # near a circle
     >>> found, solutions = linkages_through(points, np.random.default_rng(0))
@@ -160,18 +125,10 @@ def _precise(
 
 
 def coupler_turns(points: ComplexArray, targets: ComplexArray) -> ComplexArray:
-    """Turn exp(i phi) of the coupler from the first target to each, of linkages that meet them all.
+    """Turn exp(i phi) of the coupler from the first target to each (N,), of linkages that meet them all.
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (n, 5)
-        O2, O4, and A, B, P at the first target.
-    targets : ndarray of complex, shape (N,)
-
-    Returns
-    -------
-    ndarray of complex, shape (n, N)
-        Of absolute value 1 where a linkage meets the target.
+    `points` (n, 5) are O2, O4, and A, B, P at the first target. The turns (n, N) have the absolute value 1
+    where a linkage meets the target.
     """
     o2, o4, a, b, p = (column[:, None] for column in points.T)
     (e1, f1, g1), (e2, f2, g2) = (

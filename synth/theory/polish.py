@@ -17,70 +17,33 @@ MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 @dataclass(frozen=True, slots=True)
 class Wish:
-    """What has to be met exactly.
+    """What has to be met exactly, at N targets."""
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (N,), sizes
-    has_point : ndarray of bool, shape (N,)
-    turns : ndarray, shape (N,), rad
-        Angles of the body.
-    has_turn : ndarray of bool, shape (N,)
-    timed : bool
-        The driver angles move together.
-    closure : Closure
-        Of the kind of linkage.
-    """
-
-    points: ComplexArray
-    has_point: BoolArray
-    turns: FloatArray
-    has_turn: BoolArray
-    timed: bool
-    closure: Closure = FOUR_BAR_CLOSURE
+    points: ComplexArray  # (N,), sizes
+    has_point: BoolArray  # (N,)
+    turns: FloatArray  # (N,), rad: angles of the body
+    has_turn: BoolArray  # (N,)
+    timed: bool  # the driver angles move together
+    closure: Closure = FOUR_BAR_CLOSURE  # of the kind of linkage
 
 
 @dataclass(frozen=True, slots=True)
 class Polished:
-    """A design on its targets.
+    """A design on its targets."""
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (5,), sizes
-        O2, O4, and A, B, P at the first target.
-    theta2 : ndarray, shape (N,), rad
-    coupler : ndarray of complex, shape (N,), sizes
-        From A to B at each target.
-    body_angle : float, rad
-    error : float, sizes or rad
-        Greatest miss of a target; NaN where the loop does not close.
-    """
-
-    points: ComplexArray
-    theta2: FloatArray
-    coupler: ComplexArray
-    body_angle: float
-    error: float
+    points: ComplexArray  # (5,), sizes: O2, O4, and A, B, P at the first target
+    theta2: FloatArray  # (N,), rad
+    coupler: ComplexArray  # (N,), sizes: from A to B at each target
+    body_angle: float  # rad
+    error: float  # greatest miss of a target, sizes or rad; NaN where the loop does not close
 
 
 def polish_path(
     points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, wish: Wish
 ) -> Polished:
-    """Newton's method for the targets, each step of least norm.
+    """Newton's method for the targets, each step of least norm, from a design as `Polished` has it.
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (5,), sizes
-        O2, O4, and A, B, P at the first target.
-    theta2 : ndarray, shape (N,), rad
-        Driver angle at each target, the first one first.
-    body_angle : float, rad
-    assembly : ndarray, shape (N,)
-    wish : Wish
-
-    Returns
-    -------
-    Polished
+    `theta2` and `assembly` (N,) are those at each target, the first one first.
     """
     _, _, a, b, p = points
     arm = (p - a) * abs(b - a) / (b - a)

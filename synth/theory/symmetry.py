@@ -15,31 +15,15 @@ EVEN = 1e-3  # sizes, rad: targets that fall so near to others fall on them
 
 @dataclass(frozen=True, slots=True)
 class Symmetry:
-    """A rotation about the middle of a task, after a reflection in the x axis through it if `mirrored`.
+    """A rotation about the middle of a task, after a reflection in the x axis through it if `mirrored`."""
 
-    Parameters
-    ----------
-    turn : complex
-        Of absolute value 1.
-    mirrored : bool
-    """
-
-    turn: complex
+    turn: complex  # of absolute value 1
     mirrored: bool
 
     def of(self, signatures: FloatArray, signed: tuple[int, ...] = (8,)) -> FloatArray:
-        """What it makes of designs.
+        """What it makes of designs by their signatures (k, 9), pivots measured from the middle of the task.
 
-        Parameters
-        ----------
-        signatures : ndarray, shape (k, 9), length
-            With pivots measured from the middle of the task, see `grashof.synth.theory.distinct.signature`.
-        signed : tuple of int
-            Columns that change their sign in a mirror.
-
-        Returns
-        -------
-        ndarray, shape (k, 9), length
+        See `grashof.synth.theory.distinct.signature`; the `signed` columns change their sign in a mirror.
         """
         made = np.array(signatures)
         pivots = made[:, [0, 2]] + 1j * made[:, [1, 3]]
@@ -51,17 +35,9 @@ class Symmetry:
 
 
 def symmetries(task: Task) -> tuple[Symmetry, ...]:
-    """All that map the targets onto themselves, in their order or the reverse.
+    """All that map the targets onto themselves, in their order or the reverse; the first moves nothing.
 
-    The first one moves nothing. A closed path may begin at another point. Angles of poses, driver
-    rotations and weights have to agree as well.
-
-    Examples
-    --------
-    >>> from grashof.problems import PathTask
-    >>> line = PathTask([[0, 0], [1, 0], [2, 0]])
-    >>> [(each.turn.real, each.mirrored) for each in symmetries(line)]
-    [(1.0, False), (1.0, True), (-1.0, False), (-1.0, True)]
+    A closed path may begin at another point. Angles of poses, driver rotations and weights must agree, too.
     """
     if not task.has_position.any():
         return (Symmetry(1 + 0j, False),)

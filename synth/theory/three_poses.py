@@ -12,35 +12,11 @@ NO_PIVOT = complex(np.nan, np.nan)
 
 
 def circle_dyads(motion: Displacements, moving: ComplexArray) -> Dyads:
-    """Dyads of three poses with given moving pivots: the ground pivot is the centre of their circle.
+    """Dyads of three poses with given moving pivots (n,): the ground pivot is the centre of their circle.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of three poses.
-    moving : ndarray of complex, shape (n,), length
-        Moving pivots at the first pose.
-
-    Returns
-    -------
-    Dyads
-        Of n dyads, in the order of `moving`; the ground pivot is NaN where the three positions lie on
-        a straight line, or two of them on one point: then no circle, or many, would do.
-
-    Raises
-    ------
-    ValueError
-        There are not three poses.
-
-    Notes
-    -----
-    The circumcentre of 0, a and b is i (a |b|^2 - b |a|^2) / (2 Im(conj(a) b)).
-
-    Examples
-    --------
-    >>> motion = Displacements.from_poses(np.array([1, 1j, -1]), np.radians([0, 20, 70]))
-    >>> circle_dyads(motion, np.array([1.0 + 0j])).ground.round(12) + 0
-    array([0.+0.j])
+    Moving pivots are those at the first pose. NaN where the three positions lie on a straight line, or two of
+    them on one point: then no circle, or many, would do; ValueError where there are not three poses. The
+    circumcentre of 0, a and b is i (a |b|^2 - b |a|^2) / (2 Im(conj(a) b)).
     """
     if motion.rotation.shape != (3,):
         raise ValueError(f"{len(motion.rotation)} poses; a circle needs three")
@@ -48,68 +24,21 @@ def circle_dyads(motion: Displacements, moving: ComplexArray) -> Dyads:
 
 
 def circle_dyads_of_ground(motion: Displacements, ground: ComplexArray) -> Dyads:
-    """Dyads of three poses with given ground pivots: the reverse of `circle_dyads`.
+    """Dyads of three poses with given ground pivots (n,): the reverse of `circle_dyads`.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of three poses.
-    ground : ndarray of complex, shape (n,), length
-
-    Returns
-    -------
-    Dyads
-        Of n dyads, in the order of `ground`; the moving pivot is NaN where the ground pivot, as the
-        body sees it, lies on a straight line at the three poses, or twice on one point.
-
-    Raises
-    ------
-    ValueError
-        There are not three poses.
-
-    Examples
-    --------
-    >>> motion = Displacements.from_poses(np.array([1, 1j, -1]), np.radians([0, 20, 70]))
-    >>> circle_dyads_of_ground(motion, np.array([0j])).moving.round(12) + 0
-    array([1.+0.j])
+    The moving pivot is NaN where the ground pivot, as the body sees it, lies on a straight line at the three
+    poses, or twice on one point; ValueError where there are not three poses.
     """
     dyads = circle_dyads(motion.inverse(), ground)
     return Dyads(dyads.ground, dyads.moving)
 
 
 def bisector_dyads(motion: Displacements, moving: ComplexArray, offset: FloatArray) -> Dyads:
-    """Dyads of two poses with given moving pivots: the ground pivot lies on the bisector of the chord.
+    """Dyads of two poses with given moving pivots (n,): the ground pivot lies on the bisector of the chord.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of two poses.
-    moving : ndarray of complex, shape (n,), length
-        Moving pivots at the first pose.
-    offset : ndarray, shape (n,), length
-        How far left of the middle of the chord, seen from the first position to the second, the ground
-        pivot lies; negative to the right.
-
-    Returns
-    -------
-    Dyads
-        Of n dyads, in the order of `moving`; the ground pivot is NaN where the moving one does not
-        move.
-
-    Raises
-    ------
-    ValueError
-        There are not two poses.
-
-    See Also
-    --------
-    bisector_dyads_of_ground : with given ground pivots.
-
-    Examples
-    --------
-    >>> motion = Displacements.from_poses(np.array([0, 4]), np.radians([0, 30]))
-    >>> bisector_dyads(motion, np.array([0j, 0j]), np.array([1.5, -2])).ground
-    array([2.+1.5j, 2.-2.j ])
+    Moving pivots are those at the first pose. The ground pivot lies `offset` (n,) left of the middle of the
+    chord, seen from the first position to the second, or right where that is negative; NaN where the moving
+    pivot does not move. ValueError where there are not two poses.
     """
     if motion.rotation.shape != (2,):
         raise ValueError(f"{len(motion.rotation)} poses; a bisector needs two")
@@ -122,34 +51,11 @@ def bisector_dyads(motion: Displacements, moving: ComplexArray, offset: FloatArr
 
 
 def bisector_dyads_of_ground(motion: Displacements, ground: ComplexArray, offset: FloatArray) -> Dyads:
-    """Dyads of two poses with given ground pivots: the reverse of `bisector_dyads`.
+    """Dyads of two poses with given ground pivots (n,): the reverse of `bisector_dyads`.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of two poses.
-    ground : ndarray of complex, shape (n,), length
-    offset : ndarray, shape (n,), length
-        As in `bisector_dyads`, of the moving pivot from the chord along which the body, held at the
-        first pose, sees the ground pivot pass.
-
-    Returns
-    -------
-    Dyads
-        Of n dyads, in the order of `ground`; the moving pivot is NaN where the ground pivot is the
-        pole of the motion.
-
-    Raises
-    ------
-    ValueError
-        There are not two poses.
-
-    Examples
-    --------
-    >>> motion = Displacements.from_poses(np.array([0, 4]), np.radians([0, 90]))
-    >>> dyads = bisector_dyads_of_ground(motion, np.array([1j]), np.array([3.0]))
-    >>> np.ptp(np.abs(motion.apply(dyads.moving)[0] - dyads.ground)).round(12) + 0
-    np.float64(0.0)
+    `offset` (n,) is that of the moving pivot from the chord along which the body, held at the first pose,
+    sees the ground pivot pass; NaN where the ground pivot is the pole of the motion. ValueError where there
+    are not two poses.
     """
     dyads = bisector_dyads(motion.inverse(), ground, offset)
     return Dyads(dyads.ground, dyads.moving)

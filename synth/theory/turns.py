@@ -35,21 +35,9 @@ class Eliminated(NamedTuple):
 
 
 def crank(own: Columns, d: ComplexArray, ds: ComplexArray) -> Dyad:
-    """The link r from a ground pivot a to the joint a + r keeps its length.
+    """The link r from a ground pivot a to the joint a + r keeps its length; d and ds of shape (n, N).
 
-    Parameters
-    ----------
-    own : sequence of ndarray of complex, shape (n, 1)
-        r, r*, a, a* at the first point and from it.
-    d, ds : ndarray of complex, shape (n, N)
-
-    Returns
-    -------
-    Dyad
-
-    Notes
-    -----
-    From Wampler, Morgan & Sommese 1992, eqs. 4-8.
+    `own` are r, r*, a, a* at the first point and from it (Wampler, Morgan & Sommese 1992, eqs. 4-8).
     """
     r, rs, a, as_ = own
     return Dyad((a + r) * (ds - as_), (as_ + rs) * (d - a), r * ds + rs * d + d * ds)
@@ -72,21 +60,9 @@ def crank_slopes(own: Columns, d: ComplexArray, ds: ComplexArray, by: Dyad) -> t
 def without_turn(one: Dyad, two: Dyad) -> Eliminated:
     """Both dyads together, t and 1 / t eliminated.
 
-    Parameters
-    ----------
-    one, two : Dyad
+    With m = e1 f2 - e2 f1, n1 = h2 f1 - h1 f2, n2 = e2 h1 - e1 h2 the two equations give t - 1 = n1 / m and
+    1 / t - 1 = n2 / m. So there remains n1 n2 + m (n1 + n2) = 0.
 
-    Returns
-    -------
-    Eliminated
-
-    Notes
-    -----
-    With m = e1 f2 - e2 f1, n1 = h2 f1 - h1 f2, n2 = e2 h1 - e1 h2 the two equations give
-    t - 1 = n1 / m and 1 / t - 1 = n2 / m. So there remains n1 n2 + m (n1 + n2) = 0.
-
-    Examples
-    --------
     >>> t = np.exp(0.3j)  # e (t - 1) + f (1 / t - 1) + h = 0 with both
     >>> one, two = (Dyad(e, f, e * (1 - t) + f * (1 - 1 / t)) for e, f in ((1 + 1j, 2.0), (3.0, 1 - 2j)))
     >>> bool(abs(without_turn(one, two).residual) < 1e-12)

@@ -18,21 +18,11 @@ TOO_SMALL = "a dyad whose centre is open stays within pieces as small as roundin
 
 @dataclass(frozen=True, slots=True)
 class Proving:
-    """How far proofs go.
+    """How far proofs go."""
 
-    Parameters
-    ----------
-    gap : float, deg
-        Up to which bounds are brought together.
-    most_pairs : int
-        Budget of pairs of pieces: what a proof takes does not depend on the clock.
-    minutes : bool
-        Whether proofs that always take long are wanted.
-    """
-
-    gap: float = 0.01
-    most_pairs: int = 1_000_000
-    minutes: bool = False
+    gap: float = 0.01  # deg, up to which bounds are brought together
+    most_pairs: int = 1_000_000  # budget of pairs of pieces: what a proof takes does not depend on the clock
+    minutes: bool = False  # whether proofs that always take long are wanted
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gap", number_within(self.gap, 1e-4, 90.0, "gap"))
@@ -45,42 +35,21 @@ class Proving:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What is known of the greatest transmission angle of all linkages that meet what has forms.
+    """What is known of the greatest transmission angle of all linkages that meet what has forms."""
 
-    Parameters
-    ----------
-    lower : float, rad
-        Of a design that the judge accepts for that, or of a member of a stroke's families; 0 where none
-        is known.
-    upper : float, rad
-        No design has more.
-    closed : bool
-        Whether the bounds have met, or no design is left.
-    found : Candidate, optional
-        The design with `lower`.
-    pieces : tuple of int
-        Pieces of the curve to begin with: that may be drivers, and driven; of a stroke pieces of families.
-    pairs, levels : int
-    seconds : float, s
-    left_out : tuple of str
-        Requirements without a form, by their fields.
-    why : str
-        Why there are no bounds, or why they have not met; else empty.
-    refused : bool
-        Whether there is no proof for such a problem at all.
-    """
-
+    # In rad, of a design that the judge accepts for that, or of a stroke's member; 0 where none is known
     lower: float = 0.0
-    upper: float = np.pi / 2
-    closed: bool = False
-    found: Candidate | None = field(default=None, compare=False)
+    upper: float = np.pi / 2  # rad; no design has more
+    closed: bool = False  # whether the bounds have met, or no design is left
+    found: Candidate | None = field(default=None, compare=False)  # the design with `lower`
+    # Pieces of the curve to begin with, that may be drivers, and driven; of a stroke pieces of families
     pieces: tuple[int, int] = (0, 0)
     pairs: int = 0
     levels: int = 0
-    seconds: float = 0.0
-    left_out: tuple[str, ...] = ()
-    why: str = ""
-    refused: bool = False
+    seconds: float = 0.0  # s
+    left_out: tuple[str, ...] = ()  # requirements without a form, by their fields
+    why: str = ""  # why there are no bounds, or why they have not met; else empty
+    refused: bool = False  # whether there is no proof for such a problem at all
 
     @property
     def none(self) -> bool:

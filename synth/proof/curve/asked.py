@@ -39,65 +39,33 @@ ANY_LENGTH = (0.0, np.inf)
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """What is asked of one of the two dyads, in the frame of a `Curve`.
+    """What is asked of one of the two dyads, in the frame of a `Curve`, in sizes."""
 
-    Parameters
-    ----------
-    length, arm : tuple of float, sizes
-        Limits of the distance from its ground pivot to its moving pivot, and from there to P.
-    ground, moving, on_body : Box, sizes
-        Where the ground pivot may be; the moving one, at every pose; the same in the frame of the body.
-    keep_out : tuple of ndarray, shape (m, 2), sizes
-        Areas in which the ground pivot must not be.
-    """
-
-    length: Limits
-    arm: Limits
-    ground: Box
-    moving: Box
-    on_body: Box
-    keep_out: tuple[FloatArray, ...] = ()
+    length: Limits  # limits of the distance from its ground pivot to its moving pivot
+    arm: Limits  # limits of the distance from its moving pivot to P
+    ground: Box  # where the ground pivot may be
+    moving: Box  # where the moving pivot may be, at every pose
+    on_body: Box  # the same in the frame of the body
+    keep_out: tuple[FloatArray, ...] = ()  # areas (m, 2) in which the ground pivot must not be
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """All requirements that have forms, widened by the slack of the judge.
-
-    Parameters
-    ----------
-    curve : Curve
-    origin : complex, sizes
-        Of the frame of the curve, in the frame of the search.
-    first_turn : float, rad
-        Angle of the body in the first pose.
-    driver, driven : Dyad
-    loop : LoopLimits
-    ordered : bool
-    over_turn : bool
-        Whether the transmission angle counts over the whole turn.
-    sense : int
-        Of the driver; 0 for either.
-    rotation : tuple of float, rad
-        Of the driver from the first pose to the last.
-    theta2_start : float, rad, or None
-    ground_angle : tuple of float, rad, or None
-    floor : float, rad
-        Transmission angle below which no design counts.
-    """
+    """All requirements that have forms, widened by the slack of the judge."""
 
     curve: Curve
-    origin: complex
-    first_turn: float
+    origin: complex  # sizes, of the frame of the curve, in the frame of the search
+    first_turn: float  # rad, angle of the body in the first pose
     driver: Dyad
     driven: Dyad
     loop: LoopLimits
     ordered: bool
-    over_turn: bool
-    sense: int
-    rotation: Limits
-    theta2_start: float | None
-    ground_angle: Limits | None
-    floor: float
+    over_turn: bool  # whether the transmission angle counts over the whole turn
+    sense: int  # of the driver; 0 for either
+    rotation: Limits  # rad, of the driver from the first pose to the last
+    theta2_start: float | None  # rad
+    ground_angle: Limits | None  # rad
+    floor: float  # rad, transmission angle below which no design counts
 
     @classmethod
     def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
@@ -204,8 +172,6 @@ def left_out(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> tuple[str,
 
     `forms` are the fields that have some; of four-bars by default.
 
-    Examples
-    --------
     >>> from grashof import load
     >>> problem = load("luggage")
     >>> compact = replace(problem, requirements=replace(problem.requirements, size=(0, 13)))
@@ -257,8 +223,6 @@ def _transmits_nothing(scaled: ScaledProblem) -> str:
 def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
     """Why there is no proof of so many poses; empty where there can be one, None of other problems.
 
-    Examples
-    --------
     >>> from grashof import load
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
     ('', None)
@@ -311,8 +275,6 @@ def _degenerate(motion: Displacements) -> str:
 def enclosed(problem: Problem) -> str:
     """That the search of a problem encloses all linkages, or can, for those who read it; else empty.
 
-    Examples
-    --------
     >>> from grashof import load
     >>> print(enclosed(load("luggage")))
     all four-bars through four poses are enclosed: seed and effort change nothing where that finds enough

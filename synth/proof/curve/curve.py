@@ -20,23 +20,17 @@ _ROUNDING = 64 * np.finfo(float).eps  # of the magnitude of a sum of some thirty
 
 @dataclass(frozen=True, slots=True)
 class Taylor:
-    """The polynomial about some points q, in a frame turned by a direction t: f(q + t (x + iy)).
+    """The polynomial about some points q, in a frame turned by a direction t: f(q + t (x + iy)), arrays (n,).
 
-    Parameters
-    ----------
-    cubic, square, linear : ndarray of complex, shape (n,)
-    both : ndarray, shape (n,)
-        f = 2 Re(cubic w) |w|^2 + 2 Re(square w^2) + both |w|^2 + 2 Re(linear w) + value with w = x + iy.
-    value, error : ndarray, shape (n,)
-        At the point, and by how much rounding may have changed it.
+    f = 2 Re(cubic w) |w|^2 + 2 Re(square w^2) + both |w|^2 + 2 Re(linear w) + value with w = x + iy.
     """
 
     cubic: ComplexArray
     square: ComplexArray
     both: FloatArray
     linear: ComplexArray
-    value: FloatArray
-    error: FloatArray
+    value: FloatArray  # at the point
+    error: FloatArray  # by how much rounding may have changed `value`
 
     @property
     def along_twice(self) -> FloatArray:
@@ -64,40 +58,28 @@ class Taylor:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Circle points of four poses: where a cubic vanishes.
+    """Circle points of four poses: where a cubic vanishes."""
 
-    Parameters
-    ----------
-    rotation, shift : ndarray of complex, shape (4,)
-        Displacements from the first pose, 1 and 0 for itself.
-    cubic, square, linear : complex
-    both, constant : float
-        Of the polynomial about the origin, see `Taylor`; its largest coefficient is 1.
-    degenerate : bool
-        Whether the polynomial vanishes: every point of the plane is a circle point.
-    """
-
+    # `rotation` and `shift`, (4,), are displacements from the first pose, 1 and 0 for itself
     rotation: ComplexArray
     shift: ComplexArray
+    # `cubic` to `constant`: of the polynomial about the origin, see `Taylor`; its largest coefficient is 1
     cubic: complex
     square: complex
     both: float
     linear: complex
     constant: float
-    degenerate: bool
+    degenerate: bool  # whether the polynomial vanishes: every point of the plane is a circle point
 
     @classmethod
     def of(cls, motion: Displacements, point: complex) -> Curve:
         """The curve of four displacements of the body, seen from a point of it at the first pose.
 
-        Of three every point is a circle point.
-
-        Notes
-        -----
-        z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and (|z_j|^2 - |z|^2) / 2 = |d_j|^2 / 2 +
-        Re(conj(d_j) rho_j z): three equations Re(conj(c) (z_j - z)) = (|z_j|^2 - |z|^2) / 2 ask for the
-        determinant of these columns to vanish, which is i/2 times that of [z_j - z, its conjugate, half
-        the difference of squares] (Burmester 1888; McCarthy & Soh, *Geometric Design of Linkages*, ch. 5).
+        Of three every point is a circle point. z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and
+        (|z_j|^2 - |z|^2) / 2 = |d_j|^2 / 2 + Re(conj(d_j) rho_j z): three equations Re(conj(c) (z_j - z)) =
+        (|z_j|^2 - |z|^2) / 2 ask for the determinant of these columns to vanish, which is i/2 times that of
+        [z_j - z, its conjugate, half the difference of squares] (Burmester 1888; McCarthy & Soh, *Geometric
+        Design of Linkages*, ch. 5).
         """
         rotation = motion.rotation
         shift = motion.apply(np.array([point]))[0] - point

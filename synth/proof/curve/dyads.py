@@ -31,18 +31,11 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """What pieces may be, shape (n,).
-
-    Parameters
-    ----------
-    driver, driven : ndarray of bool
-    sense : ndarray of int
-        In which sense a driver meets the poses in order; 0 where that is open.
-    """
+    """What pieces may be, shape (n,)."""
 
     driver: BoolArray
     driven: BoolArray
-    sense: IntArray
+    sense: IntArray  # in which a driver meets the poses in order; 0 where that is open
 
 
 def possible_arms(asked: Asked, z: Span) -> BoolArray:

@@ -25,27 +25,14 @@ class Steps:
 
 @dataclass(frozen=True, slots=True)
 class At:
-    """Equations F = k - Re(conj(c) a) = 0 at dyads: the ground pivot is as far from two places of z.
+    """Equations F = k - Re(conj(c) a) = 0, (k, n), at dyads: c is as far from two places of z."""
 
-    Parameters
-    ----------
-    alpha, facing : ndarray of complex, shape (k, n)
-        Derivative of `chord` by z; that of k is Re(facing dz).
-    chord : ndarray of complex, shape (k, n)
-        a = alpha z + d, from one place to the other.
-    tilted : ndarray of complex, shape (k, n)
-        Derivative of F is Re(tilted dz).
-    value : ndarray, shape (k, n)
-    reach : ndarray, shape (k, n)
-        Magnitude of what `chord` is the difference of, but for z.
-    """
-
-    alpha: ComplexArray
-    facing: ComplexArray
-    chord: ComplexArray
-    tilted: ComplexArray
+    alpha: ComplexArray  # derivative of `chord` by z
+    facing: ComplexArray  # derivative of k is Re(facing dz)
+    chord: ComplexArray  # a = alpha z + d, from one place to the other
+    tilted: ComplexArray  # derivative of F is Re(tilted dz)
     value: FloatArray
-    reach: FloatArray
+    reach: FloatArray  # magnitude of what `chord` is the difference of, but for z
 
     @classmethod
     def of(cls, motion: Displacements, z: ComplexArray, c: ComplexArray, rows: IntArray | None = None) -> At:
@@ -114,31 +101,16 @@ def enclosed(
 ) -> tuple[Span, Span, BoolArray]:
     """Moving and ground pivots of all dyads in rectangles of two coordinates, as forms of these.
 
-    Parameters
-    ----------
-    motion : Displacements
-        Of three poses.
-    start : tuple of ndarray of complex, shape (n,)
-        z and c: in the middle of a rectangle, the other two coordinates about right.
-    free : Steps, shape (2, n)
-        From there to the ends of a rectangle; one of z, or of c, is along one axis of the other's plane.
-    bound : Steps, shape (2, n)
-        Unit directions of the other two coordinates; zero in the pivot that they do not move.
-    off : ndarray, shape (n,)
-        How far the other coordinates of a dyad can be from `start`; counts where they are of both pivots.
-    newton : int
-        Steps to the dyad in the middle; one is enough where the other coordinates are those of one pivot.
+    Of three poses: z and c, and where they are bounded, (n,); elsewhere they hold nothing. `start` holds z
+    and c (n,) in the middle of a rectangle, the other two coordinates about right; `free` (2, n) leads from
+    there to the ends of a rectangle, one of z, or of c, along one axis of the other's plane. `bound` (2, n)
+    are unit directions of the other two coordinates, zero in the pivot that they do not move, and `off` (n,)
+    is how far these can be from `start`: it counts where they are of both pivots. Of the `newton` steps to
+    the dyad in the middle one is enough where they are those of one pivot.
 
-    Returns
-    -------
-    tuple of Span, Span, ndarray of bool
-        z and c, and where they are bounded; elsewhere they hold nothing.
-
-    Notes
-    -----
-    As of pieces of a curve (see `centres_of`): both equations are bilinear in z and c, so that what is
-    left after the linear terms is a quadratic form of both parameters; over the norm of the inverse matrix
-    it bounds the disc.
+    As of pieces of a curve (see `centres_of`): both equations are bilinear in z and c, so that what is left
+    after the linear terms is a quadratic form of both parameters; over the norm of the inverse matrix it
+    bounds the disc.
     """
     z, c = start
     begun = z, c

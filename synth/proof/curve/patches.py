@@ -18,22 +18,12 @@ SQUARES = 64  # along each side of the plane
 
 @dataclass(frozen=True, slots=True)
 class Patches:
-    """Squares z = middle + half (s + i t) with ``|s|, |t| <= 1``.
-
-    Parameters
-    ----------
-    motion : Displacements
-        Of three poses.
-    longest : float
-        Of dyads that count: where the ground pivot is not bounded otherwise, it is so near.
-    middle : ndarray of complex, shape (n,)
-    half : ndarray, shape (n,)
-    """
+    """Squares z = middle + half (s + i t) with ``|s|, |t| <= 1``, of three poses."""
 
     motion: Displacements
-    longest: float
-    middle: ComplexArray
-    half: FloatArray
+    longest: float  # of dyads that count: where the ground pivot is not bounded otherwise, it is so near
+    middle: ComplexArray  # (n,)
+    half: FloatArray  # (n,)
 
     @classmethod
     def covering(cls, motion: Displacements, reach: float, longest: float) -> Patches:
@@ -64,8 +54,6 @@ class Patches:
     def may_meet(self, points: ComplexArray, radius: float | FloatArray) -> BoolArray:
         """Which squares may hold a dyad with its ground pivot within a distance of one of some points.
 
-        Notes
-        -----
         Each equation k - Re(conj(c) a) = 0 is bilinear in z and c, so that its change over both is known.
         """
         reach, z = np.sqrt(2) * self.half[:, None], self.middle[:, None]

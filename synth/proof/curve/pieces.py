@@ -22,11 +22,7 @@ _LEAST = 1e-300  # divisor in place of zero
 class Tubes:
     """Sets of points middle + direction (half s + i (tilt s + bow (s^2 - 1/2) + e)), |s| <= 1, |e| <= rest.
 
-    Parameters
-    ----------
-    middle, direction : ndarray of complex, shape (n,)
-        Sizes, and unit numbers.
-    half, tilt, bow, rest : ndarray, shape (n,), sizes
+    In sizes, arrays (n,); the directions are unit numbers.
     """
 
     middle: ComplexArray
@@ -118,8 +114,6 @@ def misses_curve(curve: Curve, tubes: Tubes) -> BoolArray:
 def contracted(curve: Curve, tubes: Tubes) -> tuple[Tubes, BoolArray]:
     """Tubes about the curve's points in some rectangles, and which of them may hold any.
 
-    Notes
-    -----
     In a frame along the tangent at a point of the curve, the polynomial is g y + q x^2 and terms that are
     bounded over the rectangle: so its zeros lie within their sum, over g, of the parabola y = -(q / g) x^2.
     What leaves the rectangle is cut off. Tubes that do not become slender this way stay as they are.

@@ -15,8 +15,6 @@ _PARALLEL = 1e-4  # between unit rotations: poles of such poses are far away
 def poles(motion: Displacements) -> tuple[IntArray, ComplexArray]:
     """Pairs of poses, shape (n, 2), and the points in one place at both, where they are at the first.
 
-    Examples
-    --------
     >>> motion = Displacements.from_poses(np.array([1, 1j, -1]), np.radians([0, 90, 90]))
     >>> pairs, places = poles(motion)
     >>> pairs.tolist(), bool(np.allclose(places, [0, -1j]))

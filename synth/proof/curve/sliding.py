@@ -17,38 +17,22 @@ _MOST_OFF = 1e-6  # sizes: a point, or a direction, that is known less closely b
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """The only point that can slide on a line through four poses, in the frame of a `Curve`.
+    """The only point that can slide on a line through four poses, in the frame of a `Curve`."""
 
-    Parameters
-    ----------
-    point : complex, sizes
-        At the first pose.
-    off : float, sizes
-        How far from there it may be.
-    along : complex
-        Unit number: one of the two directions of the line.
-    turned : float
-        How far from there the exact one may be.
-    """
-
-    point: complex
-    off: float
-    along: complex
-    turned: float
+    point: complex  # sizes, at the first pose
+    off: float  # sizes, how far from there it may be
+    along: complex  # unit number: one of the two directions of the line
+    turned: float  # how far from there the exact one may be
 
     @classmethod
     def of(cls, curve: Curve) -> Slide | None:
         """Of four poses; None where it is not known closely, or they leave a line of such points.
 
-        Notes
-        -----
         With a_j = (rho_j - 1) z + d_j from the first place to another, three cross products of two of them
         vanish. Each is linear in u = (|z|^2, Re z, Im z), so that where their matrix N has an inverse there
         is one u at most: Ball's point, for poses that are finitely apart. With an approximate inverse R and
         N u = m the exact u differs by |R (m - N u)| / (1 - |I - R N|) at most.
 
-        Examples
-        --------
         >>> from grashof.synth.theory.burmester import Displacements
         >>> turns = np.radians([0, 10, 30, 70])
         >>> motion = Displacements.from_poses(np.array([0, 1, 2, 5]) - np.exp(1j * turns), turns)

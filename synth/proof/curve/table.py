@@ -30,15 +30,7 @@ class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """Pieces with their centres and what pairs need of them; arrays of shape (n,) or (n, 4).
-
-    Parameters
-    ----------
-    tubes : Tubes
-    centres : Centres
-    driver, driven : ndarray of bool
-    sense : ndarray of int
-    """
+    """Pieces with their centres and what pairs need of them; arrays of shape (n,) or (n, 4)."""
 
     tubes: Tubes
     centres: Centres
@@ -106,22 +98,12 @@ def squares(asked: Asked) -> Tubes:
 
 @dataclass(slots=True)
 class Table:
-    """All pieces of a proof.
-
-    Parameters
-    ----------
-    asked : Asked
-    pieces : Pieces
-    rectangles : int
-        How many were looked at.
-    trail : Trail, optional
-        Where these are noted.
-    """
+    """All pieces of a proof."""
 
     asked: Asked
     pieces: Pieces
-    rectangles: int = 0
-    trail: Trail | None = None
+    rectangles: int = 0  # how many were looked at
+    trail: Trail | None = None  # where these are noted
     _children: IntArray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -131,12 +113,7 @@ class Table:
     def covering(cls, asked: Asked, trail: Trail | None = None) -> Table:
         """Pieces that hold all dyads that may meet what is asked of one.
 
-        Raises
-        ------
-        TooMany
-            They take more rectangles than a cover may have.
-        Stopped
-            Asked to stop.
+        TooMany where they take more rectangles than a cover may have; Stopped if asked to stop.
         """
         active = squares(asked)
         parents = np.full(len(active), ROOT)
@@ -182,17 +159,10 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """Dyads of some pieces as drivers, whose symbols come first, or as driven ones.
+    """Dyads of some pieces as drivers, whose symbols come first, or as driven ones."""
 
-    Parameters
-    ----------
-    moving, ground : Span
-        z and c, of the symbols of this side alone.
-    is_driver : bool
-    """
-
-    moving: Span
-    ground: Span
+    moving: Span  # z, of the symbols of this side alone
+    ground: Span  # c, likewise
     is_driver: bool
 
     @classmethod

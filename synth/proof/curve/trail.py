@@ -14,25 +14,15 @@ ROOT = -1  # parent of the rectangles that a cover begins with
 
 @dataclass(slots=True)
 class Trail:
-    """Rectangles by number, as they were looked at, and the pairs of pieces that were halved.
-
-    Parameters
-    ----------
-    rectangles : list of Tubes
-    parents : list of ndarray of int
-        Numbers of the rectangles that these are halves of.
-    pieces : ndarray of int
-        Number of the rectangle that each piece of the table is in.
-    first : int
-        How many of these pieces a proof begins with.
-    halved : list of tuple of ndarray
-        Driver and driven pieces of pairs, level by level.
-    """
+    """Rectangles by number, as they were looked at, and the pairs of pieces that were halved."""
 
     rectangles: list[Tubes] = field(default_factory=list)
+    # Numbers of the rectangles that these are halves of
     parents: list[IntArray] = field(default_factory=list)
+    # Number of the rectangle that each piece of the table is in
     pieces: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    first: int = 0
+    first: int = 0  # how many of these pieces a proof begins with
+    # Driver and driven pieces of pairs, level by level
     halved: list[tuple[IntArray, IntArray]] = field(default_factory=list)
 
     def look(self, rectangles: Tubes, parents: IntArray) -> IntArray:

@@ -19,18 +19,11 @@ ROUNDING = 1e-14  # share of the magnitude of a product: some 90 units of the la
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """Real forms.
+    """Real forms centre + slopes . s + [-rest, rest]."""
 
-    Parameters
-    ----------
-    centre, rest : ndarray, shape (n,)
-    slopes : ndarray, shape (k, n)
-        By symbol.
-    """
-
-    centre: FloatArray
-    slopes: FloatArray
-    rest: FloatArray
+    centre: FloatArray  # (n,)
+    slopes: FloatArray  # (k, n), by symbol
+    rest: FloatArray  # (n,)
 
     def __getitem__(self, index: IntArray | BoolArray) -> Form:
         return Form(self.centre[index], self.slopes[:, index], self.rest[index])
@@ -79,19 +72,11 @@ class Form:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Complex forms: a point middle + steps . s + disc(rest).
+    """Complex forms: a point middle + steps . s + disc(rest)."""
 
-    Parameters
-    ----------
-    middle : ndarray of complex, shape (n,)
-    steps : ndarray of complex, shape (k, n)
-        By symbol.
-    rest : ndarray, shape (n,)
-    """
-
-    middle: ComplexArray
-    steps: ComplexArray
-    rest: FloatArray
+    middle: ComplexArray  # (n,)
+    steps: ComplexArray  # (k, n), by symbol
+    rest: FloatArray  # (n,)
 
     def __len__(self) -> int:
         return len(self.middle)
@@ -131,8 +116,6 @@ class Span:
     def norm(self) -> Form:
         """The absolute value.
 
-        Notes
-        -----
         Of a vector with the component L along its middle and q across, L > 0, it lies between L and
         L + q^2 / (2 L). Where L may vanish, between zero and the greatest value.
         """
@@ -195,8 +178,6 @@ def _mixed(one: FloatArray | ComplexArray, other: FloatArray | ComplexArray) -> 
 def greatest_quotient(above: Form, below: Form) -> FloatArray:
     """Upper bound of above / below, with what they have in common; infinite where `below` may be 0 or less.
 
-    Notes
-    -----
     With q = above / below at the centre, above - q below has no centre, and above / below =
     q + (above - q below) / below.
     """

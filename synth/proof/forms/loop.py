@@ -15,28 +15,13 @@ Lengths = tuple[Form, ...]  # r1, r2, r3, r4
 
 @dataclass(frozen=True, slots=True)
 class LoopLimits:
-    """What is asked of a loop.
+    """What is asked of a loop."""
 
-    Parameters
-    ----------
-    lengths : tuple
-        Limits of r1, r2, r3, r4.
-    ratio : float
-        Longest to shortest link at most.
-    turns : bool
-        Whether the driver turns fully.
-    margin : float
-        Of full rotation, a share of the sum of lengths.
-    longer_ground : tuple of int
-        Signs of r1 - r2 that are allowed where the driver turns fully.
-    one_branch : bool
-    """
-
-    lengths: tuple[Limits, Limits, Limits, Limits]
-    ratio: float
-    turns: bool
-    margin: float
-    longer_ground: tuple[int, ...]
+    lengths: tuple[Limits, Limits, Limits, Limits]  # of r1, r2, r3, r4
+    ratio: float  # longest to shortest link at most
+    turns: bool  # whether the driver turns fully
+    margin: float  # of full rotation, a share of the sum of lengths
+    longer_ground: tuple[int, ...]  # signs of r1 - r2 that are allowed where the driver turns fully
     one_branch: bool
 
 
@@ -61,18 +46,10 @@ def transmission_bound(
     passed: tuple[BoolArray, BoolArray],
     least: FloatArray,
 ) -> tuple[FloatArray, list[Form]]:
-    """Upper bounds of the transmission angle, rad; and forms, positive where it exceeds `least`.
+    """Upper bounds of the transmission angle, rad; and forms, positive where it exceeds `least`, rad.
 
-    Parameters
-    ----------
-    limits : LoopLimits
-    lengths : tuple of Form
-        r1, r2, r3, r4.
-    arms : list of tuple of Span
-        From A to B and from O4 to B at each target, in any frame.
-    passed : tuple of ndarray of bool
-        Where A surely passes the ground line between O2 and O4, or beyond O2, while it counts.
-    least : ndarray, rad
+    `lengths` are r1, r2, r3, r4; `arms` are from A to B and from O4 to B at each target, in any frame;
+    `passed` tells where A surely passes the ground line between O2 and O4, or beyond O2, while it counts.
     """
     r1, r2, r3, r4 = lengths
     product = r3 * r4

@@ -57,18 +57,12 @@ class PlaneOfCouplers:
     With A at a pole of two pairs B is anywhere on a line; seen from there, B decides where A is. So squares
     of A hold all linkages but those with A near a pole and B near none of its own; squares of B hold these.
     Where both pivots are next to poles, they are in discs.
-
-    Parameters
-    ----------
-    of_a, of_b : Patches
-    poles, others : ndarray of complex
-        Of A, and of B.
     """
 
     of_a: Patches
     of_b: Patches
-    poles: ComplexArray
-    others: ComplexArray
+    poles: ComplexArray  # of A
+    others: ComplexArray  # of B
 
     @classmethod
     def of(cls, motion: Displacements, reach: float) -> PlaneOfCouplers:

@@ -171,26 +171,14 @@ class Sense:
 
 @dataclass(slots=True)
 class _Search:
-    """A branch and bound over pieces, of one sense after the other.
-
-    Parameters
-    ----------
-    aims : FunctionAims
-    gap : float, rad
-    most : int
-        Budget of pieces.
-    lower, upper : float, rad
-        Transmission angle of a design that is known, 0 where none is; no design has more than `upper`.
-    floor : float, rad
-        Designs that transmit less do not count.
-    """
+    """A branch and bound over pieces, of one sense after the other."""
 
     aims: FunctionAims
-    gap: float
-    most: int
-    lower: float = 0.0
-    upper: float = np.pi / 2
-    floor: float = LEAST
+    gap: float  # rad
+    most: int  # budget of pieces
+    lower: float = 0.0  # rad, transmission angle of a design that is known, 0 where none is
+    upper: float = np.pi / 2  # rad; no design has more
+    floor: float = LEAST  # rad; designs that transmit less do not count
     found: list[FoundFunction] = field(default_factory=list)
     begun: int = 0
     count: int = 0

@@ -20,8 +20,6 @@ _TRIVIAL = 1e-6  # of r1: the ground link itself is a dyad of every function
 def certified_functions(aims: FunctionAims) -> Certified | None:
     """All couplers of four-bars through five pairs, up to the ratio of link lengths; None of other functions.
 
-    Notes
-    -----
     Seen from link 4, link 2 moves through known poses, and the coupler is a dyad of that motion; with r1 = 1
     no length is greater than the ratio of lengths allows.
     """

@@ -17,26 +17,11 @@ _ROUNDING = 64 * np.finfo(float).eps  # of products of matrices
 def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Boxes about the zeros near some linkages, in each of which Krawczyk's test proves exactly one.
 
-    Parameters
-    ----------
-    passing : Passing
-    unknowns : ndarray, shape (n, K)
-        See `Passing.rows`.
+    Middles (n, K) and half the widths (n, K), NaN where the test proves nothing, as at a double zero;
+    `unknowns` (n, K) are those of `Passing.rows`. With Y near the inverse of the slopes J at the middle c,
+    and D a bound of how they vary in the box, a box of half-widths r holds exactly one zero of F where
+    |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk, *Computing* 4, 1969).
 
-    Returns
-    -------
-    middle : ndarray, shape (n, K)
-    radius : ndarray, shape (n, K)
-        Half the widths; NaN where the test proves nothing, as at a double zero.
-
-    Notes
-    -----
-    With Y near the inverse of the slopes J at the middle c, and D a bound of how they vary in the box, a
-    box of half-widths r holds exactly one zero of F where |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk,
-    *Computing* 4, 1969).
-
-    Examples
-    --------
     A double zero is not claimed: through equal points, any turn of the coupler will do.
 
     >>> middle, radius = boxes(Passing(np.zeros(9, dtype=complex), "four-bar"), np.ones((1, 16)))

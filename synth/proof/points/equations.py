@@ -21,41 +21,21 @@ _FINE = 32 * max(float(np.finfo(np.longdouble).eps), 1e-19)
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Equations at a place, and how they vary in a box about it.
+    """Equations at a place, and how they vary in a box about it."""
 
-    Parameters
-    ----------
-    value : ndarray, shape (n, E)
-    rounding : ndarray, shape (n, E)
-        How far the values may be off.
-    slopes : ndarray, shape (n, E, K)
-    spread : ndarray, shape (n, E, K)
-        How far slopes in the box may differ from these.
-    """
-
-    value: FloatArray
-    rounding: FloatArray
-    slopes: FloatArray
-    spread: FloatArray
+    value: FloatArray  # (n, E)
+    rounding: FloatArray  # (n, E): how far the values may be off
+    slopes: FloatArray  # (n, E, K)
+    spread: FloatArray  # (n, E, K): how far slopes in the box may differ from these
 
 
 @dataclass(frozen=True, slots=True)
 class Turned:
-    """Turns t = exp(i phi) of the coupler from the first of the points to the others.
+    """Turns t = exp(i phi) of the coupler from the first of the points to the others."""
 
-    Parameters
-    ----------
-    less : ndarray of complex, shape (n, M)
-        t - 1, as precise where t is near 1.
-    points : ndarray of complex, shape (M,), sizes
-        From the first.
-    radius : ndarray, shape (n, M), rad
-        By how much phi may differ.
-    """
-
-    less: ComplexArray
-    points: ComplexArray
-    radius: FloatArray
+    less: ComplexArray  # (n, M): t - 1, as precise where t is near 1
+    points: ComplexArray  # (M,), sizes, from the first
+    radius: FloatArray  # (n, M), rad: by how much phi may differ
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,37 +50,17 @@ class Dyad:
 
 @dataclass(frozen=True, slots=True)
 class Passing:
-    """The equations of a kind of linkage that passes points.
+    """The equations of a kind of linkage that passes points."""
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (N,), sizes
-        The first at the origin; in extended precision, for values as precise.
-    kind : str
-        Of linkage.
-    """
-
-    points: ComplexArray
-    kind: str
+    points: ComplexArray  # (N,), sizes: the first at the origin; in extended precision, for values as precise
+    kind: str  # of linkage
 
     def rows(self, unknowns: FloatArray, radius: FloatArray) -> Rows:
-        """Equations at some places, and their variation in boxes about them.
+        """Equations at some places, and their variation in boxes about them, half as wide as `radius` (n, K).
 
-        Parameters
-        ----------
-        unknowns : ndarray, shape (n, K), sizes and rad
-            O2 from the first point, A from the coupler point as it is there; of a four-bar the same of O4
-            and B, of a slider-crank B and the slide's direction, of an inverted one O4 and the rod's
-            direction; then the coupler's turn from the first to each other point.
-        radius : ndarray, shape (n, K)
-            Half the widths of the boxes.
-
-        Returns
-        -------
-        Rows
-
-        Notes
-        -----
+        `unknowns` (n, K), sizes and rad, are O2 from the first point, A from the coupler point as it is
+        there; of a four-bar the same of O4 and B, of a slider-crank B and the slide's direction, of an
+        inverted one O4 and the rod's direction; then the coupler's turn from the first to each other point.
         E = K = 16 through nine points (four-bars), 14 through eight.
         """
         second, own = _SECOND[self.kind]
@@ -183,18 +143,9 @@ def _line(
 ) -> Dyad:
     """That way = (t - 1) x + shift is along a line at an angle: none of it is across.
 
-    Parameters
-    ----------
-    point : tuple
-        x, shape (n, 1), and how far it may be off.
-    angle : tuple
-        Of the line, shape (n, 1), and how far it may be off.
-    turned : Turned
-    less, shift : ndarray of complex, shape (n, M) or (M,)
-        Where `sense` is -1, t is conjugate.
-    lever : tuple
-        d way / dt = `sense` i t lever; and how far the lever may be off.
-    sense : int
+    `point` is x and `angle` that of the line, each (n, 1) with how far it may be off; `less` and `shift` are
+    (n, M) or (M,). Where `sense` is -1, t is conjugate. `lever`, of d way / dt = `sense` i t lever, comes
+    with how far it may be off.
     """
     (x, off_x), (direction, off_angle), (arm, off_arm) = point, angle, lever
     across, off_t, chord = np.exp(-1j * direction), turned.radius, np.abs(less)

@@ -29,19 +29,11 @@ _POINTS = {FOUR_BAR: 9, SLIDER_CRANK: 8, INVERTED: 8}
 
 @dataclass(frozen=True, slots=True)
 class Enclosed:
-    """Linkages, each beside one that passes all points exactly.
+    """Linkages, each beside one that passes all points exactly; NaN where none is proven."""
 
-    Parameters
-    ----------
-    middle, radius : ndarray, shape (n, K)
-        A box that holds exactly one solution of `Passing`; NaN where none is proven.
-    within : ndarray, shape (n,), sizes and rad
-        Greatest difference of an unknown from that solution at most; NaN where none is proven.
-    """
-
-    middle: FloatArray
-    radius: FloatArray
-    within: FloatArray
+    middle: FloatArray  # (n, K): with `radius`, a box that holds exactly one solution of `Passing`
+    radius: FloatArray  # (n, K)
+    within: FloatArray  # (n,), sizes and rad: greatest difference of an unknown from that solution at most
 
     @classmethod
     def of(cls, passing: Passing, unknowns: FloatArray) -> Enclosed:
@@ -53,8 +45,6 @@ class Enclosed:
     def words(self, kind: str) -> str:
         """How many linkages of a kind are enclosed, and how near they are.
 
-        Examples
-        --------
         >>> box = np.zeros((2, 16))
         >>> Enclosed(box, box, np.array([3.2e-12, np.nan])).words("four-bar")
         '1 of 2 listed four-bars enclosed, within 4e-12 sizes of an exact one'
@@ -77,15 +67,8 @@ def proof_of_points(
 ) -> Proof | None:
     """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    designs : sequence of Candidate
-    counts : mapping of str to int
-        Of what the search looked at.
-    stopped, whole, enough : bool
-        Whether the search was stopped; whether it tried all that it found; whether it did not as it had as
-        many designs as it was asked for.
+    `counts` are of what the search looked at. It was `stopped` or not, and tried all that it found (`whole`)
+    or not, perhaps as it had as many designs as it was asked for (`enough`).
     """
     if not _leaves_no_freedom(scaled):
         return None
@@ -123,14 +106,7 @@ def enclosed_designs(scaled: ScaledProblem, designs: Sequence[Candidate]) -> Enc
 
 
 def unknowns_of(design: Candidate, points: ComplexArray, size: float) -> FloatArray:
-    """Where a design is, as `Passing.rows` has it, shape (K,).
-
-    Parameters
-    ----------
-    design : Candidate
-    points : ndarray of complex, shape (N,), length
-    size : float, length
-    """
+    """Where a design is, as `Passing.rows` has it, shape (K,); `points` (N,) and `size` are in length."""
     linkage, count = design.linkage, len(points)
     at = solve_position(linkage, design.verdict.theta2[:count], design.verdict.assembly[:count])
     a, b = (_z(joint[0] - at.p[0]) / size for joint in (at.a, at.b))

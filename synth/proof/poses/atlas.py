@@ -34,39 +34,21 @@ NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a
 
 @dataclass(frozen=True, slots=True)
 class Loci:
-    """Where the joints of a four-bar can be: pieces of the curves of dyads, in the problem's unit.
+    """Where the joints of a four-bar can be: pieces of the curves of dyads, in the problem's unit."""
 
-    Parameters
-    ----------
-    moving, ground : ndarray, shape (n, 2, 2)
-        Ends of each piece: of the moving pivot at the first pose, and of the ground pivot that belongs to it.
-    transmission : ndarray, shape (n,), rad
-        Of the best linkage that was seen with a dyad of the piece, as driver or driven.
-    """
-
-    moving: FloatArray
-    ground: FloatArray
+    moving: FloatArray  # (n, 2, 2): ends of each piece, of the moving pivot at the first pose
+    ground: FloatArray  # (n, 2, 2): the same of the ground pivot that belongs to it
+    # (n,), rad: of the best linkage that was seen with a dyad of the piece, as driver or driven
     transmission: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Atlas:
-    """Linkages in the middle of pairs of pieces, in regions.
+    """Linkages in the middle of pairs of pieces, in regions."""
 
-    Parameters
-    ----------
-    linkages : Screened
-        That meet all requirements that are screened, in the frame of the search.
-    region : ndarray of int, shape (n,)
-        Of each, numbered from 1 in the order of their best.
-    size : float, sizes
-        Half the length of the longest piece.
-    loci : Loci
-    """
-
-    linkages: Screened
-    region: IntArray
-    size: float
+    linkages: Screened  # that meet all requirements that are screened, in the frame of the search
+    region: IntArray  # (n,): of each, numbered from 1 in the order of their best
+    size: float  # sizes: half the length of the longest piece
     loci: Loci
 
     @property
@@ -89,10 +71,7 @@ class Atlas:
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     """All four-bars of four poses above half the best that bounds know; None where they know none.
 
-    Raises
-    ------
-    Stopped
-        Asked to stop.
+    Stopped if asked to stop.
     """
     if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES or scaled.motion is None:
         return None

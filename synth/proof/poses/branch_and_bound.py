@@ -26,34 +26,16 @@ Blocks = Iterator[tuple[IntArray, IntArray]]
 
 @dataclass(slots=True)
 class Bracket:
-    """The greatest transmission angle of linkages in pairs of pieces, between bounds.
-
-    Parameters
-    ----------
-    asked : Asked
-    gap : float, rad
-        Up to which the bounds are brought together.
-    most_pairs : int
-        Budget.
-    lower : float, rad
-        Transmission angle of a design that is known; 0 where none is.
-    pairs, levels : int
-        How many were bounded, and how often all that are left were halved.
-    left : Pairs
-        That may hold designs better than `upper`; none where the search is done.
-    begun : bool
-        Whether every pair of the first level was bounded.
-    over_budget : bool
-    """
+    """The greatest transmission angle of linkages in pairs of pieces, between bounds."""
 
     asked: Asked
-    gap: float
-    most_pairs: int
-    lower: float = 0.0
-    pairs: int = 0
-    levels: int = 0
-    left: Pairs | None = None
-    begun: bool = False
+    gap: float  # rad, up to which the bounds are brought together
+    most_pairs: int  # budget
+    lower: float = 0.0  # rad, transmission angle of a design that is known; 0 where none is
+    pairs: int = 0  # how many were bounded
+    levels: int = 0  # how often all that are left were halved
+    left: Pairs | None = None  # that may hold designs better than `upper`; none where the search is done
+    begun: bool = False  # whether every pair of the first level was bounded
     over_budget: bool = False
 
     @property

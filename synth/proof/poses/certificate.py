@@ -40,8 +40,6 @@ def certificate_of(
 ) -> dict[str, Any]:
     """The certificate that no linkage transmits more than `upper`, deg, ready for a file.
 
-    Notes
-    -----
     What was looked at is noted during the proof; why each part was dropped is found once more here, all
     against the bound that came of it.
     """

@@ -26,34 +26,16 @@ SMALL = 0.02  # sizes: rectangles are not cut into smaller squares to begin with
 
 @dataclass(frozen=True, slots=True)
 class Charts:
-    """All charts of a motion.
-
-    Parameters
-    ----------
-    motion : Displacements
-        Of three poses.
-    longest : float
-        Of dyads that count.
-    main : int
-        `MOVING` or `GROUND`: the chart that is used but near its poles.
-    radius : float
-        Up to which distance from poles other charts are used.
-    poles : tuple of ndarray of complex
-        Of z, and of c.
-    origin : Steps, shape (m,)
-        Dyad at the origin of each chart, its other coordinates about right.
-    free, bound : Steps, shape (2, m)
-        Unit directions of both coordinates of a chart, and of the others.
-    """
+    """All charts of a motion of three poses."""
 
     motion: Displacements
-    longest: float
-    main: int
-    radius: float
-    poles: tuple[ComplexArray, ComplexArray]
-    origin: Steps
-    free: Steps
-    bound: Steps
+    longest: float  # of dyads that count
+    main: int  # `MOVING` or `GROUND`: the chart that is used but near its poles
+    radius: float  # up to which distance from poles other charts are used
+    poles: tuple[ComplexArray, ComplexArray]  # of z, and of c
+    origin: Steps  # (m,): dyad at the origin of each chart, its other coordinates about right
+    free: Steps  # (2, m): unit directions of both coordinates of a chart
+    bound: Steps  # (2, m): those of the other coordinates
 
     @classmethod
     def of(cls, motion: Displacements, longest: float, main: int, turn: complex) -> Charts:
@@ -105,21 +87,12 @@ def _line(motion: Displacements, pair: IntArray, z: complex, c: complex) -> comp
 
 @dataclass(frozen=True, slots=True)
 class Tiles:
-    """Rectangles in charts.
-
-    Parameters
-    ----------
-    charts : Charts
-    kind : ndarray of int, shape (n,)
-        Which chart each is in.
-    place, half : ndarray, shape (2, n)
-        Its middle there, and half its sides.
-    """
+    """Rectangles in charts."""
 
     charts: Charts
-    kind: IntArray
-    place: FloatArray
-    half: FloatArray
+    kind: IntArray  # (n,): which chart each is in
+    place: FloatArray  # (2, n): its middle there
+    half: FloatArray  # (2, n): half its sides
 
     @classmethod
     def rectangle(cls, charts: Charts, kind: int, low: FloatArray, high: FloatArray, count: int) -> Tiles:

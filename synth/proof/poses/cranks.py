@@ -22,26 +22,13 @@ _NOBODY = Dyad((np.inf, 0.0), ANY_LENGTH, Box(), Box(), Box())  # no dyad of the
 
 @dataclass(frozen=True, slots=True)
 class Cranks:
-    """What is asked of the cranks that go with a slide.
+    """What is asked of the cranks that go with a slide."""
 
-    Parameters
-    ----------
-    asked : Asked
-        Of the crank; nothing of the curve is a driven dyad.
-    slider : Dyad
-        What is asked of B.
-    slide : Slide
-    offset : tuple of float, sizes
-        Of the slide from O2, positive to the left of its direction.
-    directions : tuple of float
-        Which directions of the slide are allowed: 1 for that of `slide`, -1 for the other one.
-    """
-
-    asked: Asked
-    slider: Dyad
+    asked: Asked  # of the crank; nothing of the curve is a driven dyad
+    slider: Dyad  # what is asked of B
     slide: Slide
-    offset: Limits
-    directions: tuple[float, ...]
+    offset: Limits  # sizes, of the slide from O2, positive to the left of its direction
+    directions: tuple[float, ...]  # which of the slide's are allowed: 1 for that of `slide`, -1 for the other
 
     @classmethod
     def of(cls, scaled: ScaledProblem, slide: Slide, at_least: float | None = None) -> Cranks:
@@ -67,13 +54,8 @@ class Cranks:
     def rows_left(self, z: Span, c: Span, sense: IntArray, least: FloatArray) -> tuple[IntArray, FloatArray]:
         """Which cranks may belong to a linkage that transmits more than `least`, rad, and their bounds.
 
-        Parameters
-        ----------
-        z, c : Span
-            A at the first pose, and O2, of one symbol.
-        sense : ndarray of int
-            In which they meet the poses; 0 where that is open.
-        least : ndarray, rad
+        `z` and `c` are A at the first pose, and O2, of one symbol; `sense` is that in which they meet the
+        poses, 0 where that is open.
         """
         point, along = self.slide.spans(len(z))
         rod, across = point - z, along.placed(1j)

@@ -32,32 +32,17 @@ _SMALL = 1e-3  # sizes: pieces as short as that are tried for a root of their ow
 
 @dataclass(frozen=True, slots=True)
 class Certified:
-    """Dyads that five poses have for certain, in the frame of a `Curve`.
+    """Dyads that five poses have for certain, in the frame of a `Curve`."""
 
-    Parameters
-    ----------
-    moving, ground : ndarray of complex, shape (n,), sizes
-    box : ndarray, shape (n,), sizes
-        Half the width of a box of both points, in all four coordinates, that holds this dyad and no other.
-    complete : bool
-        Whether all that may meet the limits of a dyad are among them.
-    within : int
-        How many may meet them.
-    rectangles : int
-        How many were looked at.
-    seconds : float, s
-    why : str
-        Why they are not all; else empty.
-    """
-
-    moving: ComplexArray
-    ground: ComplexArray
+    moving: ComplexArray  # (n,), sizes
+    ground: ComplexArray  # (n,), sizes
+    # (n,), sizes: half the width of a box of both points, in all four coordinates, with this dyad alone
     box: FloatArray
-    complete: bool = False
-    within: int = 0
-    rectangles: int = 0
-    seconds: float = 0.0
-    why: str = ""
+    complete: bool = False  # whether all that may meet the limits of a dyad are among them
+    within: int = 0  # how many may meet them
+    rectangles: int = 0  # how many were looked at
+    seconds: float = 0.0  # s
+    why: str = ""  # why they are not all; else empty
 
     def __len__(self) -> int:
         return len(self.moving)
@@ -102,23 +87,10 @@ def why_open(made: Certified, motion: Displacements) -> str:
 def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
     """All dyads of five displacements that meet the limits of a dyad, and perhaps some that do not.
 
-    Parameters
-    ----------
-    asked : Asked
-        What is asked of dyads; its curve is that of the first four poses.
-    motion : Displacements
-        Of five poses, seen from the origin of the curve.
-
-    Raises
-    ------
-    Stopped
-        Asked to stop.
-
-    Notes
-    -----
-    A cover of the curve of the first four poses; a piece is dropped where the equation of the fifth has no
-    zero on it, and settled where it lies in a box in which Krawczyk's test (*Computing* 4, 1969) proves that
-    there is exactly one zero of all four equations.
+    The curve of `asked` is that of the first four poses, and the displacements are seen from its origin. A
+    cover of the curve is taken; a piece is dropped where the equation of the fifth pose has no zero on it,
+    and settled where it lies in a box in which Krawczyk's test (*Computing* 4, 1969) proves that there is
+    exactly one zero of all four equations. Stopped if asked to stop.
     """
     known = _certified(motion, five_pose_dyads(motion))
     active, count = squares(asked), 0

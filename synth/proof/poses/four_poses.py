@@ -21,14 +21,8 @@ def bounds_of_four(
 ) -> Bounds | None:
     """Bounds of the best design; None where the question does not arise.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    proving : Proving
-    at_least : float, deg, optional
-        Only decide whether a design has that much: end with the first one.
-    trail : Trail, optional
-        Where what was looked at is noted, for a certificate.
+    With `at_least`, deg, it only decides whether a design has that much, and ends with the first one. `trail`
+    notes what was looked at, for a certificate.
     """
     why = refusal(scaled)
     if why is None:

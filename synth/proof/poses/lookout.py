@@ -29,20 +29,11 @@ CLIMBS, MOST_CLIMBS = 2, 4  # solves of a level, and in all, where no pair has a
 
 @dataclass(slots=True)
 class Lookout:
-    """Looks for designs in the middle of pairs; where none is, as under limits of no width, near it.
+    """Looks for designs in the middle of pairs; where none is, as under limits of no width, near it."""
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        With the requirements that the proof is about.
-    asked : Asked
-    best : Candidate, optional
-        The best design so far.
-    """
-
-    scaled: ScaledProblem
+    scaled: ScaledProblem  # with the requirements that the proof is about
     asked: Asked
-    best: Candidate | None = field(default=None)
+    best: Candidate | None = field(default=None)  # the best design so far
     _climbs: int = field(default=0)
 
     def __call__(self, table: Table, pairs: Pairs, least: float) -> float:

@@ -16,18 +16,11 @@ from grashof.synth.proof.forms.square import nothing_left
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """Pairs of pieces, and what their linkages transmit at most.
+    """Pairs of pieces, and what their linkages transmit at most."""
 
-    Parameters
-    ----------
-    driver, driven : ndarray of int, shape (n,)
-        Numbers of pieces.
-    bound : ndarray, shape (n,), rad
-    """
-
-    driver: IntArray
-    driven: IntArray
-    bound: FloatArray
+    driver: IntArray  # (n,), numbers of pieces
+    driven: IntArray  # (n,), numbers of pieces
+    bound: FloatArray  # (n,), rad
 
     def __len__(self) -> int:
         return len(self.driver)

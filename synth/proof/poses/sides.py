@@ -24,17 +24,9 @@ MOST_TILES = 60_000  # looked at for a side alone
 
 @dataclass(frozen=True, slots=True)
 class OneSide:
-    """What is asked of the dyad of one side.
+    """What is asked of the dyad of one side."""
 
-    Parameters
-    ----------
-    asked : Asked
-        The same of both dyads, so far as it is asked of one alone.
-    is_driver : bool
-    charts : Charts
-    """
-
-    asked: Asked
+    asked: Asked  # the same of both dyads, so far as it is asked of one alone
     is_driver: bool
     charts: Charts
 
@@ -51,13 +43,7 @@ class OneSide:
 
     @property
     def tiles(self) -> Tiles:
-        """Those that a cover begins with.
-
-        Raises
-        ------
-        TooMany
-            Nothing bounds the places of pivots.
-        """
+        """Those that a cover begins with; TooMany where nothing bounds the places of pivots."""
         dyad, charts = self.asked.driver, self.charts
         body, ground = _body(dyad), _ground(dyad)
         if not np.isfinite([*body, *ground]).all():
@@ -99,24 +85,13 @@ def _about(charts: Charts, ground: _Corners) -> _Corners:
 
 @dataclass(frozen=True, slots=True)
 class Sites:
-    """Tiles that may hold a dyad of a side, with its pivots; arrays by tile.
-
-    Parameters
-    ----------
-    tiles : Tiles
-    z, c : Span
-        Moving and ground pivots.
-    known : ndarray of bool
-        Whether one states the other closely.
-    sense : ndarray of int
-        In which sense a driver meets the poses; 0 where that is open.
-    """
+    """Tiles that may hold a dyad of a side, with its pivots; arrays by tile."""
 
     tiles: Tiles
-    z: Span
-    c: Span
-    known: BoolArray
-    sense: IntArray
+    z: Span  # moving pivot
+    c: Span  # ground pivot
+    known: BoolArray  # whether one states the other closely
+    sense: IntArray  # in which a driver meets the poses; 0 where that is open
 
     @classmethod
     def of(cls, side: OneSide, tiles: Tiles) -> tuple[Sites, IntArray]:
@@ -176,12 +151,7 @@ class Sites:
 def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
     """Whether no dyad meets what is asked of a side; None where that is open after so many tiles.
 
-    Raises
-    ------
-    TooMany
-        Nothing bounds the places of its pivots.
-    Stopped
-        Asked to stop.
+    TooMany where nothing bounds the places of its pivots; Stopped if asked to stop.
     """
     active, count = side.tiles, 0
     while len(active):
@@ -212,12 +182,7 @@ class Tiling:
     def covering(cls, side: OneSide) -> Tiling:
         """Tiles that hold all dyads that may meet what is asked of one; not so many that pairs are too many.
 
-        Raises
-        ------
-        TooMany
-            Nothing bounds the places of its pivots.
-        Stopped
-            Asked to stop.
+        TooMany where nothing bounds the places of its pivots; Stopped if asked to stop.
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:

@@ -45,12 +45,7 @@ def bounds_of_slider_cranks(
 ) -> Bounds | None:
     """Bounds of the best slider-crank through four whole poses; None of other problems.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    proving : Proving
-    at_least : float, deg, optional
-        Only decide whether a design has that much: end with the first one.
+    With `at_least`, deg, it only decides whether a design has that much, and ends with the first one.
     """
     if not _suits(scaled):
         return None
@@ -114,22 +109,12 @@ def _outside(scaled: ScaledProblem, slide: Slide) -> str:
 
 @dataclass(slots=True)
 class _Search:
-    """A branch and bound over pieces of the curve.
+    """A branch and bound over pieces of the curve."""
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-        With the requirements that the proof is about, and displacements of the body.
-    cranks : Cranks
-    gap : float, rad
-    most : int
-        Budget of pieces.
-    """
-
-    scaled: ScaledProblem
+    scaled: ScaledProblem  # with the requirements that the proof is about, and displacements of the body
     cranks: Cranks
-    gap: float
-    most: int
+    gap: float  # rad
+    most: int  # budget of pieces
     lower: float = 0.0
     best: Candidate | None = None
     begun: int = 0

@@ -82,14 +82,8 @@ def bounds_of_three(
 ) -> Bounds | None:
     """Bounds of the best design; None where the question does not arise, or where it would take minutes.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    proving : Proving
-    at_least : float, deg, optional
-        Only decide whether a design has that much: end with the first one.
-    lower : float, rad
-        Transmission angle of a design that is known, as judged.
+    With `at_least`, deg, it only decides whether a design has that much, and ends with the first one;
+    `lower`, rad, is the transmission angle of a design that is known, as judged.
     """
     if scaled.motion is None or len(scaled.targets) != THREE or scaled.problem.mechanism[0] != FOUR_BAR:
         return None

@@ -47,20 +47,7 @@ def floor_of(scaled: ScaledProblem, at_least: float | None = None) -> float:
 
 
 def sizes_left_out(scaled: ScaledProblem) -> tuple[str, ...]:
-    """Requirements that are stated and say something beyond sizes, by their fields.
-
-    Examples
-    --------
-    >>> from dataclasses import replace
-    >>> from grashof import load
-    >>> from grashof.problems import Box
-    >>> problem, beside, above = load("quick-return"), Box((0, 9), (0, 9)), Box((0, 9), (50, 60))
-    >>> for boxes in ({"o2": beside}, {"o2": beside, "o4": above}):
-    ...     placed = replace(problem, requirements=replace(problem.requirements, **boxes))
-    ...     print(sizes_left_out(ScaledProblem.of(placed)))
-    ()
-    ('o2', 'o4')
-    """
+    """Requirements that are stated and say something beyond sizes, by their fields."""
     wanted, kind = scaled.problem.requirements, scaled.problem.mechanism[0]
     beyond = [
         name

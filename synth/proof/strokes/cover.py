@@ -19,48 +19,20 @@ _OFF = 1e-14  # rad: more than the rounding of an angle
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """What is known of the greatest transmission angle in families.
+    """What is known of the greatest transmission angle in families."""
 
-    Parameters
-    ----------
-    lower : float, rad
-        Of a member that is allowed and counts; 0 where none is known.
-    upper : float, rad
-        No member has more.
-    closed : bool
-        Whether the bounds have met, or no member is left.
-    begun, bounded, levels : int
-        Pieces to begin with, and in all; how often what was left was halved.
-    """
-
-    lower: float = 0.0
-    upper: float = np.pi / 2
-    closed: bool = True
-    begun: int = 0
-    bounded: int = 0
-    levels: int = 0
+    lower: float = 0.0  # rad, of a member that is allowed and counts; 0 where none is known
+    upper: float = np.pi / 2  # rad; no member has more
+    closed: bool = True  # whether the bounds have met, or no member is left
+    begun: int = 0  # pieces to begin with
+    bounded: int = 0  # pieces in all
+    levels: int = 0  # how often what was left was halved
 
 
 def covered(families: Sequence[Family], gap: float, floor: float) -> Cover:
     """Bounds of the greatest transmission angle of all members of families.
 
-    Parameters
-    ----------
-    families : sequence of Family
-    gap : float, rad
-        Up to which the bounds are brought together.
-    floor : float, rad
-        Members that transmit less do not count.
-
-    Examples
-    --------
-    >>> from grashof.synth.proof.strokes.members import StrokeLimits, slider_cranks
-    >>> anything = StrokeLimits({"r2": (0, np.inf), "r3": (0, np.inf)}, ratio=1000.0, margin=0.0)
-    >>> found = covered([slider_cranks(1.0, 2.0, anything)], gap=1e-5, floor=1e-5)
-    >>> np.degrees([found.lower, found.upper]).round(3).tolist(), found.closed
-    ([11.211, 11.212], True)
-    >>> covered([slider_cranks(1.0, 3.0, anything)], gap=1e-5, floor=1e-5).lower
-    0.0
+    They are brought together up to `gap`, rad; members that transmit less than `floor`, rad, do not count.
     """
     whole, open_bounds = Cover(), [0.0]
     for family in families:

@@ -31,43 +31,21 @@ Conditions: TypeAlias = list[tuple[Range, Range]]
 
 @dataclass(frozen=True, slots=True)
 class StrokeLimits:
-    """What is asked of linkages by their sizes, with the slack of the judge.
+    """What is asked of linkages by their sizes, with the slack of the judge."""
 
-    Parameters
-    ----------
-    lengths : mapping
-        Limits of the lengths, by their names.
-    ratio : float
-        Longest to shortest link at most.
-    margin : float
-        Of full rotation, a share of the sum of lengths.
-    offset : tuple of float
-        Limits of the distance of the slide, on the side of a family.
-    """
-
-    lengths: Mapping[str, Limits]
-    ratio: float
-    margin: float
-    offset: Limits = (0.0, np.inf)
+    lengths: Mapping[str, Limits]  # by their names
+    ratio: float  # longest to shortest link at most
+    margin: float  # of full rotation, a share of the sum of lengths
+    offset: Limits = (0.0, np.inf)  # of the distance of the slide, on the side of a family
 
 
 @dataclass(frozen=True, slots=True)
 class Members:
-    """Pieces of a family.
+    """Pieces of a family."""
 
-    Parameters
-    ----------
-    cosine : Range
-        Of the worst transmission angle over the turn.
-    slope : Range
-        Its derivative by the number of the family.
-    conditions : list of tuple of Range
-        What has to be at most something else for members to be allowed.
-    """
-
-    cosine: Range
-    slope: Range
-    conditions: Conditions
+    cosine: Range  # of the worst transmission angle over the turn
+    slope: Range  # its derivative by the number of the family
+    conditions: Conditions  # what has to be at most something else for members to be allowed
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +60,8 @@ class Family:
 def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimits) -> Family:
     """Crank-rockers with a swing (rad) and a time ratio, by r2 / r3.
 
-    Parameters
-    ----------
-    swing, time_ratio : float
-    side : int
-        Of two families that differ where the time ratio is not 1: the sense in which link 4 swings in the
-        slow stroke of a driver that turns counter-clockwise, 1 or -1.
-    limits : StrokeLimits
+    `side`, 1 or -1, tells two families apart that differ where the time ratio is not 1: the sense in which
+    link 4 swings in the slow stroke of a driver that turns counter-clockwise.
     """
     half = Range.of(swing) / _TWO
     a = _half_lag(time_ratio) * Range.of(float(side))
@@ -133,8 +106,6 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
 def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
     """Inverted slider-cranks whose block swings by so much (rad); their time ratio follows from it.
 
-    Notes
-    -----
     The rod has the directions -asin(r2 - offset) and asin(r2 + offset) from the ground line in its limit
     positions, r1 = 1, and half the difference of both angles is p, from 0 to 90 deg - swing / 2. By
     w = tan(p / 2), r1 : r2 : offset = 1 + w² : (1 - w²) sin(swing / 2) : 2 w cos(swing / 2), and at worst
@@ -169,25 +140,14 @@ def _half_lag(time_ratio: float) -> Range:
 
 @dataclass(frozen=True, slots=True)
 class _InLine:
-    """What all linkages have whose driver and coupler are in line in the limit positions.
+    """What all linkages have whose driver and coupler are in line in the limit positions."""
 
-    Parameters
-    ----------
-    ground, output : Range
-        Their lengths times sin(swing / 2) / r3.
-    across : Range
-        (1 - x²) |sin a cos b|.
-    cosine, slope : Range
-    assembled : tuple of Range
-        The first is at most the second where both positions are on one assembly.
-    """
-
-    ground: Range
-    output: Range
-    across: Range
+    ground: Range  # its length times sin(swing / 2) / r3
+    output: Range  # its length times sin(swing / 2) / r3
+    across: Range  # (1 - x²) |sin a cos b|
     cosine: Range
     slope: Range
-    assembled: tuple[Range, Range]
+    assembled: tuple[Range, Range]  # the first is at most the second where both positions are on one assembly
 
     @classmethod
     def of(cls, x: Range, a: Range, b: Range) -> _InLine:

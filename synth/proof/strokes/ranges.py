@@ -19,12 +19,6 @@ class Range:
 
     Sum, difference, product, quotient and square root of doubles are the nearest ones to the true values
     (IEEE 754), so that their neighbours enclose these.
-
-    Examples
-    --------
-    >>> third = Range.of(1.0) / Range.of(3.0)
-    >>> bool(third.low < third.high), (third * Range.of(3.0)).holds(1.0)
-    (True, True)
     """
 
     low: FloatArray
