@@ -48,7 +48,7 @@ def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
             [np.moveaxis(getattr(state, point), -1, 0) for point in linkage.mechanism.moving]
         )
         both = own(np.concatenate([rows, -rows]))
-        closed = np.isfinite(own(np.broadcast_to(sum(state.margins), (len(both), *state.theta2.shape))))
+        closed = own(np.broadcast_to(np.isfinite(rows.sum(axis=0)), (len(both), *state.theta2.shape)))
         return np.where(closed, both, -np.inf)
 
     furthest = greatest(tracks, np.linspace(0, 1, _SAMPLES), most=2, rounds=_ROUNDS)[0].reshape(2, -1, 2)

@@ -294,7 +294,8 @@ def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
         sweep = subject.sweep
         angles = np.array([np.radians(60) if sweep.turns else np.mean(sweep.ranges[0])])
     state = solve_position(subject.linkage, angles, assembly)
-    open_ = np.isnan(sum(state.margins))
+    moving = subject.linkage.mechanism.moving
+    open_ = np.isnan(sum(getattr(state, point).sum(axis=-1) for point in moving))
     if theta2 is not None and open_.any():
         open_at = np.degrees(angles[open_][0])
         raise AssemblyError(f"{subject.spec.name} cannot close at theta2 = {open_at:.6g} deg")

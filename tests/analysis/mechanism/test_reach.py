@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import GrashofClass, driver_ranges, reach_box
+from grashof.analysis import GrashofClass, driver_ranges, reach_box, solve_position
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.reach import diagonal
 from grashof.problems import FourBar
@@ -78,3 +78,15 @@ def test_box_of_a_single_position_holds_every_point_of_the_linkage() -> None:
 def test_box_of_a_linkage_that_cannot_close_is_that_of_its_pivots() -> None:
     apart = FourBar(o2=(1, 2), o4=(10, -1), r2=1, r3=2, r4=2)
     assert reach_box(apart, 0.0, 1.0).tolist() == [[1.0, -1.0], [10.0, 2.0]]
+
+
+@pytest.mark.parametrize("kite", [(30.0, 30.0, 30.0), (30.0, 35.0, 35.0)])
+def test_box_of_a_kite_reaches_to_where_its_links_are_free(kite: tuple[float, float, float]) -> None:
+    """A meets O4 in the middle of the motion, where B is anywhere: on the way there it was in front of O4."""
+    linkage = FourBar(o2=(0, 0), o4=(30, 0), r2=kite[0], r3=kite[1], r4=kite[2], assembly=-1)
+    box = reach_box(linkage, -3.0, 3.0)
+    angles = np.concatenate([-np.geomspace(3.0, 1e-6, 4001), np.geomspace(1e-6, 3.0, 4001)])
+    state = solve_position(linkage, angles)
+    b = np.concatenate([state.a, state.b, state.p, [[0, 0], [30, 0]]])
+    np.testing.assert_allclose(box, [b.min(axis=0), b.max(axis=0)], atol=2e-3)
+    assert box[1, 0] == pytest.approx(30 + kite[2], abs=1e-3)
