@@ -31,14 +31,7 @@ COMPROMISE = "compromise"  # best at nothing alone, but no other design is bette
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """Designs of a list, and what was solved for them.
-
-    Parameters
-    ----------
-    designs : tuple of Candidate
-    rejected : list of Attempt
-    solved : int
-    """
+    """Designs of a list, and what was solved for them."""
 
     designs: tuple[Candidate, ...]
     rejected: list[Attempt]
