@@ -56,13 +56,8 @@ def ranked(
 ) -> tuple[Candidate, ...]:
     """Distinct candidates, best first; of two that are not distinct the better one stays.
 
-    Parameters
-    ----------
-    problem : Problem
-    candidates : sequence of Candidate
-    objective : callable, optional
-        The user's own in place of the problem's: a function of a `Design`, smaller is better. The
-        candidates keep what it makes of them.
+    The user's own `objective`, in place of the problem's, takes a `Design`, and smaller is better. The
+    candidates keep what it makes of them.
     """
     if objective is not None:
         candidates = [candidate.valued(objective) for candidate in candidates]
@@ -90,15 +85,7 @@ def pareto_goals(problem: Problem) -> list[Quantity]:
 
 
 def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArray:
-    """Which candidates no other one beats in error and `pareto_goals`; shape (n,).
-
-    Errors up to `same_error` count as equal. What has no value is worst.
-
-    Parameters
-    ----------
-    problem : Problem
-    candidates : sequence of Candidate
-    """
+    """Which candidates (n,) no other one beats in error, from `same_error` up, and `pareto_goals`."""
     goals = pareto_goals(problem)
     costs = np.array([
         (
@@ -108,7 +95,7 @@ def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArr
         )
         for candidate in candidates
     ]).reshape(-1, 2 + len(goals))  # fmt: skip
-    costs[np.isnan(costs)] = np.inf
+    costs[np.isnan(costs)] = np.inf  # what has no value is worst
     return ~_beaten(costs)
 
 
