@@ -87,11 +87,8 @@ def judged_in_time(
 
 
 def alike(one: Verdict, other: Verdict, size: float) -> bool:
-    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way.
-
-    Lengths are compared with the `size` of the task.
-    """
-    scales = {"position_error": size, "size": size, "square": size**2}
+    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way."""
+    scales = {"position_error": size, "size": size, "square": size**2}  # with which lengths are compared
 
     def near(x: Any, y: Any, scale: float) -> bool:
         same = np.shape(x) == np.shape(y)

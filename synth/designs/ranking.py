@@ -56,11 +56,10 @@ def ranked(
 ) -> tuple[Candidate, ...]:
     """Distinct candidates, best first; of two that are not distinct the better one stays.
 
-    The user's own `objective`, in place of the problem's, takes a `Design`, and smaller is better. The
-    candidates keep what it makes of them.
+    The user's own `objective` of a `Design` (smaller is better) stands in place of the problem's.
     """
     if objective is not None:
-        candidates = [candidate.valued(objective) for candidate in candidates]
+        candidates = [candidate.valued(objective) for candidate in candidates]  # they keep the values
     best_first = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     return distinct(problem, best_first, DISTINCT, len(best_first))
 

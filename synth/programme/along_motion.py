@@ -88,8 +88,7 @@ def overlooked(
 ) -> list[float]:
     """Where a linkage has peaks above a bound, as shares of the motion; the worst few.
 
-    Points (5,) in sizes and driver angles (N,) in rad as `magnitudes` has them, the bound in `Problem.scale`
-    of the quantity.
+    Points (5,) in sizes and driver angles (N,) in rad as in `magnitudes`; the bound in `Problem.scale`.
     """
     ways = theta2[None], np.array([direction]), np.array([assembly])
     (curve,) = magnitudes(scaled, key, points[None], *ways, LOOKED_AT)

@@ -10,8 +10,8 @@ from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
     """Order in which a driver meets targets on the shortest arc that holds them all.
 
-    From its angle at each target (n, N) in rad: the order of visit (n, N), the angles in it, unwrapped and
-    counter-clockwise, and the direction (n,).
+    From its angles (n, N) in rad: that order (n, N), the angles in it, unwrapped and counter-clockwise, and
+    the direction (n,).
     """
     count, sense = angle.shape[1], np.ones(len(angle))
     visit = np.argsort(angle % TURN, axis=1)

@@ -44,17 +44,15 @@ SLIGHT = 1e-6  # weight of the error beside the slack
 
 @dataclass(frozen=True, slots=True)
 class Solve:
-    """Outcome of one solve; the solver's status is recorded, not trusted."""
+    """Outcome of one solve in the frame of the search; the solver's status is recorded, not trusted."""
 
-    # O2, O4, and A, B, P at the first target, in the frame of the search
-    points: tuple[complex, complex, complex, complex, complex]
+    points: tuple[complex, complex, complex, complex, complex]  # O2, O4, and A, B, P at the first target
     theta2: tuple[float, ...]  # in the order of visit, rad, as theta3
     theta3: tuple[float, ...]
     body_angle: float  # rad, see `Start`
     status: str  # Ipopt's return status
     iterations: int
-    # The greatest magnitude along the motion in the programme, by the key of each quantity that has a part in
-    # it; in `Problem.scale`.
+    # the greatest magnitude along the motion, by the key of each quantity in the programme; `Problem.scale`
     peaks: Mapping[str, float] = field(default_factory=dict)
 
 

@@ -26,20 +26,16 @@ class ScaledProblem:
     targets: ComplexArray  # (N,); where P has to be; zero where its position is free
     weights: FloatArray  # (N,), of the squared distances; zero where the position is free
     turns: FloatArray  # (N,); angles of the body; zero where they are free
-    # (N,), sizes squared; of the squared turns from there; zero where the angle is free
-    turn_weights: FloatArray
-    # Of the body from the first pose to every pose, in the frame, where whole poses are met exactly, untimed;
-    # None for all other tasks.
+    turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
+    # of the body from the first pose to every pose, where whole poses are met exactly, untimed; else None
     motion: Displacements | None
-    # (N,); driver rotation from the first target, in either sense; all zero where it is free
-    timing: FloatArray
+    timing: FloatArray  # (N,); driver rotation from the first target, in either sense; zero where free
     wanted: Requirements  # resolved, in the frame
     exact: bool  # every target is met; otherwise least squares
     constraints: tuple[Constraint, ...] = ()  # the user's own
     zones: FloatArray | None = None  # (2, N); how far the position and the angle of each target may be missed
     own_objective: OwnObjective | None = None  # the user's own in place of the problem's
-    # Least squares: designs up to this error in sizes are of use, be they far from the best.
-    of_use: float = 0.0
+    of_use: float = 0.0  # least squares: designs up to this error are of use, be they far from the best
     kind: Kind = FOUR_BAR  # the first that the problem asks for
 
     @classmethod

@@ -36,8 +36,7 @@ class Screened:
     transmission: FloatArray  # (n,), rad; worst over the task or the cycle, as required
     coupler: ComplexArray  # (n, N), sizes; from A to B at every target, in the order of the targets
     error: FloatArray  # (n,), sizes; root mean square distance from the targets
-    # (n,), rad; from the coupler to the body, where the first pose does not fix it; else zero
-    body_angle: FloatArray
+    body_angle: FloatArray  # (n,), rad; coupler to body, where the first pose does not fix it; else zero
     kind: Kind = FOUR_BAR
 
     def __len__(self) -> int:
@@ -80,8 +79,7 @@ class Configurations:
     """Linkages at all their targets; arrays of shape (n,) and, with targets as columns, (n, N); sizes."""
 
     o2: ComplexArray
-    # of a slider-crank the point of its slide's line that lies r3 ahead of B at the first target
-    o4: ComplexArray
+    o4: ComplexArray  # of a slider-crank the point of its slide's line r3 ahead of B at the first target
     a: ComplexArray  # (n, N), as b, in the order of the targets
     b: ComplexArray
     visit: IntArray
@@ -272,16 +270,13 @@ def met(violations: FloatArray) -> BoolArray:
 def _ways(
     found: Configurations, view: Many, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
-    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and over a turn.
-
-    Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
-    ranges, has no way around.
-    """
+    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and a turn."""
     dyad = found.kind.dyad
     fold, stretch = (np.abs(dyad.cos_mu(view, reach))[:, 0] for reach in dyad.along_ground(view))
     ends = found.theta2[:, [0, -1]] - view.theta1
     inside = found.theta2 - view.theta1
     inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
+    # a driver that cannot turn, with all targets in one of its ranges, has no way around
     one_side = (fold <= 1) | (stretch <= 1) | (np.ptp(np.sign(inside), axis=1) == 0)
     rows = np.flatnonzero(one_side & ((fold > 1) | (stretch > 1)))
     ends[rows] = np.stack([inside[rows].min(axis=1), inside[rows].max(axis=1)], axis=1)
@@ -293,6 +288,7 @@ def _ways(
     span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
     at_ends = dyad.cos_mu(view, dyad.reach(view, ends))
     span = np.maximum(span, np.abs(at_ends).max(axis=1))
+    # where |cos mu| is above 1 the linkage does not close
     return found, violations, span, np.maximum(fold, stretch)
 
 

@@ -23,9 +23,8 @@ UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint ca
 class Start:
     """Where a solve begins, in the frame of the search; lengths in sizes, angles in rad.
 
-    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver, the
-    assembly, which of r1 and r2 is longer, and past which positions with O2A along the ground line the driver
-    goes.
+    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver, assembly,
+    which of r1 and r2 is longer, past which positions with O2A along the ground line the driver goes.
     """
 
     o2: complex
@@ -38,19 +37,16 @@ class Start:
     theta3: tuple[float, ...]  # in that order, each near the last
     direction: int
     assembly: int
-    # what the solve makes best; None for the user's own
-    objective: Objective | None = field(default_factory=Objective)
+    objective: Objective | None = field(default_factory=Objective)  # what is made best; None: the user's own
     body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
     radius: float = np.inf  # how far it may move each coordinate of the pivots
     stay: bool = False  # move no farther than the requirements make it, whatever the objective
     settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
-    # Requirements (fields), or parts of them ("o2.x"), that it may miss, coming as near as it can; all others
-    # hold.
+    # Requirements (fields), or parts ("o2.x"), that it may miss, coming as near as it can; all others hold.
     relaxed: tuple[str, ...] = ()
     # Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    # root mean square error that a least-squares search came to here, with what limits add
-    promise: float = 0.0
+    promise: float = 0.0  # root mean square error of a least-squares search here, with what limits add
     # By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
     more: Mapping[str, float] = field(default_factory=dict)
     loose: bool = False  # driver angles need not be where the judge will find them

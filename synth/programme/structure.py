@@ -36,15 +36,13 @@ class Form:
     same_branch: bool
     over_task: bool  # transmission is judged over the task, not over the turn
     limited: tuple[str, ...]  # fields of the requirements that limit something, those apart that cannot bind
-    # keys of the quantities that are weighed; none where another objective comes first
-    goals: tuple[str, ...]
+    goals: tuple[str, ...]  # keys of the quantities weighed; none where another objective comes first
     own_goal: bool  # the user's own objective decides
     grid: int  # at how many instants what varies along the motion is bounded
     burden: Burden | None  # what takes the torque and forces that are bounded; None where none are
     motor: MotorSpec | None  # how the driver goes where anything is bounded along the motion
     closed: bool  # the task motion is a whole turn
-    # of o2, o4, a, b, p: which are held in free regions, the moving ones at every target
-    keep_out: tuple[str, ...]
+    keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
     stay: bool  # the distance from the start is the objective
     elastic: bool  # requirements may be missed; how far is the objective
     # At which targets, in the order of visit, the driver stands where the miss is least, as the judge has it;

@@ -47,8 +47,7 @@ class Unknowns:
     at_first: ca.SX  # (N,); 1 at the first target, else 0
     turns: ca.SX  # 1 where the driver of the start turns fully, else 0
     double_crank: ca.SX  # 1 where r2 stays longer than r1, else 0
-    # of the body against the frame in which the programme has AP: the first pose, or `body_angle`
-    body_turn: ca.SX
+    body_turn: ca.SX  # of the body against the frame that AP is in: the first pose, or `body_angle`
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Unknowns:

@@ -37,8 +37,7 @@ class Explanation:
 
     note: str
     nearest: tuple[Candidate, ...] = ()  # the closest misses, the smallest first
-    # that do meet all requirements, where looking for near ones came upon some
-    designs: tuple[Candidate, ...] = ()
+    designs: tuple[Candidate, ...] = ()  # that meet all requirements, come upon in looking for near ones
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,8 +50,7 @@ class Attempt:
 
     status: str  # Ipopt's return status
     candidate: Candidate | None  # the design, judged, defects or not; None when the numbers make no linkage
-    # other linkages that lead the coupler point, or the body, alike, without defects
-    cognates: tuple[Candidate, ...] = ()
+    cognates: tuple[Candidate, ...] = ()  # other linkages without defects that lead P, or the body, alike
 
     @property
     def outcome(self) -> Outcome:

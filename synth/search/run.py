@@ -66,8 +66,7 @@ class Run:
     progress: Callable[[Progress], object] | None = None  # called after every batch
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})  # by stage
     since: float = field(default_factory=perf_counter)  # when it began, s
-    # numbers of the starts that end the process that solves them
-    crashed: list[int] = field(default_factory=list)
+    crashed: list[int] = field(default_factory=list)  # numbers of starts that end the process solving them
     proving: Proving = field(default_factory=Proving)  # how far proofs go
 
     @property

@@ -41,8 +41,7 @@ def asked_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
     """The problem as it is searched: as it is, or without zones, and then, perhaps, by least squares."""
     problems = [asked_first(scaled.problem)]
     first = scaled.of_problem(problems[0])
-    # two poses leave least squares nothing to make small
-    if scaled.bounded and first.exact and len(scaled.targets) > 2:
+    if scaled.bounded and first.exact and len(scaled.targets) > 2:  # two leave nothing to make small
         problems.append(scaled.problem.without_zones())
     return tuple(replace(scaled.of_problem(each), of_use=error_of_use(scaled)) for each in problems)
 

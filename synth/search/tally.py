@@ -18,8 +18,7 @@ class Tally:
     found: Counter[str] = field(default_factory=Counter)  # by the search for starts, such as "feasible finds"
     outcomes: Counter[Outcome] = field(default_factory=Counter)  # of solves
     totals: Counter[str] = field(default_factory=Counter)  # `COGNATES`, `CHOICE`, `DISTINCT`
-    # solves by the first requirement that their designs miss
-    rejected: Counter[str] = field(default_factory=Counter)
+    rejected: Counter[str] = field(default_factory=Counter)  # solves by the first requirement missed
     statuses: Counter[str] = field(default_factory=Counter)  # solves by Ipopt's return status
 
     def add(self, attempts: Iterable[Attempt]) -> None:

@@ -310,8 +310,7 @@ def _numbered(one: Attempt, number: int) -> Attempt:
 
 def new_state() -> Any:
     """What `processes` are told, by its value: nothing, `STOP` or `OVER`."""
-    # without a lock: one that a killed process holds would never be free
-    return get_context("spawn").RawValue("b", 0)
+    return get_context("spawn").RawValue("b", 0)  # no lock: one that a killed process holds is never free
 
 
 def processes(count: int, state: Any) -> ProcessPoolExecutor:

@@ -27,8 +27,7 @@ class SearchTargets:
     points: ComplexArray  # (N,), without a last one that repeats the first
     weights: FloatArray  # (N,), of the squared distances; zero where the position is free
     turns: FloatArray  # (N,), angles of the body
-    # (N,), sizes squared; of the squared turns from there; zero where the angle is free
-    turn_weights: FloatArray
+    turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
     timing: FloatArray  # (N,), driver rotation from the first point; all zero where it is free
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
     closed: bool = False  # the task motion is a whole turn

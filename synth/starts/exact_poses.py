@@ -300,8 +300,7 @@ def translate(motion: Displacements) -> bool:
 def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:
     """The first of some poses that a later one is equal to, and the first of those; None where all differ.
 
-    Positions in sizes and rotations of absolute value 1, each (n,). A tree finds those that may be, in place
-    of all pairs, where there are many.
+    Positions in sizes and rotations of absolute value 1, each (n,).
     """
     if len(positions) <= FEW:
         moved = sum(np.abs(each[:, None] - each) for each in (positions, rotations))
@@ -310,7 +309,7 @@ def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, 
     from scipy.spatial import cKDTree  # takes longer to import than many a search
 
     numbers = np.stack([positions.real, positions.imag, rotations.real, rotations.imag], axis=1)
-    tree = cKDTree(numbers)
+    tree = cKDTree(numbers)  # in place of all pairs
     for begin in range(0, len(numbers), AT_ONCE):
         some = numbers[begin : begin + AT_ONCE]
         apart = np.asarray(tree.query(some, k=2, distance_upper_bound=2 * EQUAL)[0])[:, 1]

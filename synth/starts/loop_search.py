@@ -43,8 +43,7 @@ Model: TypeAlias = Callable[["Batch"], tuple[FloatArray, FloatArray, FloatArray]
 class Placed:
     """Linkages of a batch where they fit the points best, in the frame of the points."""
 
-    # (n,), sizes squared, weighted sum of squared distances; infinite where the loop does not close
-    error: FloatArray
+    error: FloatArray  # (n,), sizes^2, weighted sum of squared distances; infinite where no loop closes
     o2: ComplexArray  # (n,), as o4
     o4: ComplexArray
     a: ComplexArray  # (n, N), as b and p

@@ -28,11 +28,10 @@ NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 def feasible_starts(
     scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS, closer: float = 1.0
 ) -> list[Start]:
-    """Starts from feasible linkages.
+    """Starts from feasible linkages: the best well separated ones first (`peaks`), free to climb.
 
-    The best well separated ones (`peaks`) first, free to climb to the best optima, then about 1.4 times
-    `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice; by
-    `closer`, below 1, they are nearer to each other than they could be, and better.
+    Then about 1.4 times `enough` spread over all, each kept to its own neighbourhood so that the list offers
+    a choice; by `closer`, below 1, they are nearer to each other than they could be, and better.
     """
     if not len(linkages):
         return []

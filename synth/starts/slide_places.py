@@ -31,8 +31,7 @@ class SlidePlaces(Places):
     advised: ClassVar[str] = "stroke"
     dyad: ClassVar[type[ClosingDyad]] = Slider
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
-    # The mirror image is a family of its own, the other assembly the same linkage with its slide taken the
-    # other way round.
+    # the mirror image is a family of its own, the other assembly this one with its slide the other way round
     mirrored: ClassVar[tuple[bool, ...]] = (False,)
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
