@@ -15,19 +15,17 @@ MOST_SIZE, LEAST_ROTATION, LEAST_TRANSMISSION, LEAST_MARGIN = 3.0, np.radians(15
 
 
 def caution(problem: Problem, candidate: Candidate) -> str:
-    """Why a design is hard to build or to drive, in words; empty where nothing is known against it.
-
-    What the user limits is judged by those limits alone, and designs for an objective that the user states
-    by that. Functions and strokes have no size to compare with, and lists by least squares offer small
-    designs anyway.
-    """
+    """Why a design is hard to build or to drive, in words; empty where nothing is known against it."""
+    # designs for an objective that the user states are judged by that
     if candidate.own_objective is not None or problem.objective not in (Objective(), SMALLEST):
         return ""
     wanted, verdict, found = problem.requirements, candidate.verdict, list[str]()
+    # functions and strokes have no size to compare with, lists by least squares offer small designs anyway
     sized = problem.task.kind in ("motion", "path") and problem.by_objective and wanted.size is None
     if sized and verdict.size > MOST_SIZE * problem.task.size:
         found.append(f"{verdict.size / problem.task.size:.1f} times the size of the task")
     turned = float(np.ptp(verdict.theta2))
+    # what the user limits is judged by those limits alone
     chosen = wanted.driver_rotation_deg is not None or problem.task.is_timed
     if not chosen and turned < LEAST_ROTATION:
         found.append(f"the driver turns by {np.degrees(turned):.1f} deg alone")

@@ -23,24 +23,11 @@ _OF_LINK2 = {"same_branch", "order"}  # and one on link 3 or 4 alone
 
 
 def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylinder | None:
-    """The best cylinder for a linkage.
-
-    Parameters
-    ----------
-    problem : Problem
-    linkage : Linkage
-    verdict : Verdict
-        On the linkage without a cylinder.
-
-    Returns
-    -------
-    Cylinder or None
-        None where none is asked for or found, and where the linkage has other defects anyhow.
-    """
+    """The best cylinder for a linkage judged without one, if one is asked for and found."""
     left = {each.requirement for each in verdict.defects if not each.requirement.startswith(_OWN)}
     if problem.driver is None:
         return None
-    if left - _OF_LINK2 or (left and verdict.branch_ok):
+    if left - _OF_LINK2 or (left and verdict.branch_ok):  # it has other defects anyhow
         return None
     ends = motion_ends(problem.task, verdict) if verdict.branch_ok else None
     moved = travel(linkage, verdict.theta2, verdict.assembly, ends)
@@ -79,10 +66,7 @@ def _samples(moved: Travel) -> FloatArray:
 
 
 def _power(problem: Problem, linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> FloatArray | None:
-    """Drive torque at driver angles, in N times the length, shape (M,); None without dynamics.
-
-    None as well where the motion leads beyond the rows of a load, a defect by itself.
-    """
+    """Drive torque at driver angles (M,), N times the length; None without dynamics or rows of a load."""
     spec = problem.dynamics
     if spec is None:
         return None
@@ -92,6 +76,6 @@ def _power(problem: Problem, linkage: Linkage, verdict: Verdict, theta2: FloatAr
         warnings.simplefilter("ignore", DeadPositionWarning)
         state = law.state(used, theta2)
         loads = stated_loads(spec, metre, lambda moved: law.time_at(moved.theta2))
-        with suppress(BeyondLoadError):
+        with suppress(BeyondLoadError):  # beyond the rows of a load: a defect by itself
             return metre * inverse_dynamics(state, stated_masses(used, spec, metre), loads).torque
     return None

@@ -26,17 +26,14 @@ OBJECTIVE = "objective"
 
 
 def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Distinct designs with their families: the best of each, best first, then all others, best first.
-
-    Designs with a `caution` come after all others; the best one by the objective says so where it is among
-    them.
-    """
+    """Distinct designs with their families: the best of each, best first, then all others, best first."""
     best_first = [replace(each, caution=caution(problem, each)) for each in ranked(problem, candidates)]
     if not best_first:
         return ()
     if best_first[0].caution and problem.by_objective and not all(each.caution for each in best_first):
+        # the best one by the objective says so where it has a caution
         best_first[0] = replace(best_first[0], best_at=best_first[0].best_at or OBJECTIVE)
-    best_first.sort(key=lambda each: bool(each.caution))
+    best_first.sort(key=lambda each: bool(each.caution))  # those with a caution come after all others
     first = best_related(problem, best_first)
     named = [
         replace(candidate, family=best_first[best].id)
@@ -94,13 +91,10 @@ def _dyads(candidate: Candidate) -> FloatArray:
 def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mechanism) -> IntArray:
     """Which design is the best of those like each one, all of one kind.
 
-    Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same
-    coupler curve (cognates); also when the one has first to be mirrored or turned as the task allows
-    (`symmetries`). All members of a family are like its best one; what is only like another member
-    is not in it.
-
-    The `signatures` of the designs, best first, shape (n, 9), have pivots measured from the middle of
-    the task.
+    Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same coupler
+    curve (cognates); also when the one has first to be mirrored or turned as the task allows (`symmetries`).
+    All members of a family are like its best one; what is only like another member is not in it. Signatures
+    (n, 9), best first, have pivots measured from the middle of the task.
     """
     maps = symmetries(task)
     best = np.arange(len(signatures))
@@ -118,10 +112,8 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
 
 
 def _alike_in_shape(curves: FloatArray, others: FloatArray) -> BoolArray:
-    """Which designs any of the curves' may be like, by what rotations and reflections leave as it is.
-
-    Far fewer are left for the closer look; shapes (k, 9) and (n, 9) to (n,).
-    """
+    """Which of others (n, 9) any of the curves' (k, 9) may be like."""
+    # by what rotations and reflections leave as it is: far fewer are left for the closer look
     (one, reach), (other, others_reach) = _shape(curves), _shape(others)
     differ = np.abs(one[:, None] - other).max(axis=-1)
     alike: BoolArray = (differ < ALIKE * np.maximum(reach[:, None], others_reach)).any(axis=0)

@@ -29,25 +29,11 @@ def judged(
     iterations: int,
     most_error: float = np.inf,
 ) -> Candidate | None:
-    """A design with the verdict on it.
+    """A design with the verdict on it; None where two pivots coincide.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    points : ndarray of complex, shape (5,), sizes
-        O2, O4, and A, B, P at the first target.
-    assembly : int
-    body_angle : float, rad
-        Whole poses do not need it: the first one fixes how the body stands to the coupler.
-    start, iterations : int
-        What it came from.
-    most_error : float, sizes
-        Root mean square error that is allowed.
-
-    Returns
-    -------
-    Candidate or None
-        None where two pivots coincide.
+    O2, O4, and A, B, P at the first target are (5,) and the error that is allowed (root mean square) is in
+    sizes, the body angle in rad. Whole poses do not need that: the first one fixes how the body stands to the
+    coupler. `start` and `iterations` are what it came from.
     """
     given = None if scaled.motion is not None else np.array(body_angle)
     try:
@@ -101,15 +87,8 @@ def judged_in_time(
 
 
 def alike(one: Verdict, other: Verdict, size: float) -> bool:
-    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way.
-
-    Parameters
-    ----------
-    one, other : Verdict
-    size : float, length
-        Of the task: what lengths are compared with.
-    """
-    scales = {"position_error": size, "size": size, "square": size**2}
+    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way."""
+    scales = {"position_error": size, "size": size, "square": size**2}  # with which lengths are compared
 
     def near(x: Any, y: Any, scale: float) -> bool:
         same = np.shape(x) == np.shape(y)

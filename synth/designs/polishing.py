@@ -17,11 +17,8 @@ CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made
 
 
 def polished_start(scaled: ScaledProblem, start: Start) -> Start:
-    """A start of an exact task moved onto the targets, where that takes no more than a nudge.
-
-    Those of whole poses are there already.
-    """
-    if not scaled.exact or scaled.motion is not None:
+    """A start of an exact task moved onto the targets, where that takes no more than a nudge."""
+    if not scaled.exact or scaled.motion is not None:  # those of whole poses are there already
         return start
     polished = _on_targets(scaled, start, start)
     if polished is None or np.abs(polished.points - start.points).max() > NUDGE:

@@ -56,16 +56,10 @@ def ranked(
 ) -> tuple[Candidate, ...]:
     """Distinct candidates, best first; of two that are not distinct the better one stays.
 
-    Parameters
-    ----------
-    problem : Problem
-    candidates : sequence of Candidate
-    objective : callable, optional
-        The user's own in place of the problem's: a function of a `Design`, smaller is better. The
-        candidates keep what it makes of them.
+    The user's own `objective` of a `Design` (smaller is better) stands in place of the problem's.
     """
     if objective is not None:
-        candidates = [candidate.valued(objective) for candidate in candidates]
+        candidates = [candidate.valued(objective) for candidate in candidates]  # they keep the values
     best_first = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     return distinct(problem, best_first, DISTINCT, len(best_first))
 
@@ -90,15 +84,7 @@ def pareto_goals(problem: Problem) -> list[Quantity]:
 
 
 def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArray:
-    """Which candidates no other one beats in error and `pareto_goals`; shape (n,).
-
-    Errors up to `same_error` count as equal. What has no value is worst.
-
-    Parameters
-    ----------
-    problem : Problem
-    candidates : sequence of Candidate
-    """
+    """Which candidates (n,) no other one beats in error, from `same_error` up, and `pareto_goals`."""
     goals = pareto_goals(problem)
     costs = np.array([
         (
@@ -108,7 +94,7 @@ def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArr
         )
         for candidate in candidates
     ]).reshape(-1, 2 + len(goals))  # fmt: skip
-    costs[np.isnan(costs)] = np.inf
+    costs[np.isnan(costs)] = np.inf  # what has no value is worst
     return ~_beaten(costs)
 
 

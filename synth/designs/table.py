@@ -85,16 +85,14 @@ Row = dict[str, Any]
 def rows_of(
     problem: Problem, candidates: Sequence[Candidate], quantities: Sequence[Quantity] = LISTED
 ) -> list[Row]:
-    """Candidates as rows, in the order given, each with the columns `COLUMNS`.
-
-    Of some `quantities` alone the other columns stay empty; nothing is measured for them.
-    """
+    """Candidates as rows, in the order given, each with the columns `COLUMNS`."""
     keys = {each.key for each in quantities}
     if not keys.isdisjoint(field.name for field in fields(OverTask)):
         find_peaks([candidate.values for candidate in candidates])
     ranked = keys.issuperset(goal.key for goal in pareto_goals(problem))
     fronts = pareto_optimal(problem, candidates) if ranked else [False] * len(candidates)
     own = any(candidate.own_objective is not None for candidate in candidates)
+    # of some quantities alone the other columns stay empty; nothing is measured for them
     empty = dict.fromkeys([*COLUMNS, *([OWN.column] if own else [])])
     return [
         {

@@ -55,25 +55,11 @@ def magnitudes(
     assembly: FloatArray,
     count: int,
 ) -> FloatArray:
-    """A quantity at even times over the task motion of each of many linkages.
+    """A quantity of `ALONG` at `count` even times over the task motion of many linkages, (n, count).
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    key : str
-        Of `ALONG`.
-    points : ndarray of complex, shape (n, 5), sizes
-        O2, O4, and A, B, P at the first target.
-    theta2 : ndarray, shape (n, N), rad
-        In the order of visit.
-    direction, assembly : ndarray, shape (n,)
-    count : int
-        Instants that are looked at.
-
-    Returns
-    -------
-    ndarray, shape (n, count)
-        In `Problem.scale` of the quantity; infinite where a linkage does not close.
+    In `Problem.scale` of the quantity; infinite where a linkage does not close. From points O2, O4, and A, B,
+    P at the first target (n, 5) in sizes, driver angles in the order of visit (n, N) in rad, direction and
+    assembly (n,).
     """
     problem, kind = scaled.problem, scaled.kind
     ground, lengths, arm = kind.sides(points[:, None])
@@ -102,17 +88,7 @@ def overlooked(
 ) -> list[float]:
     """Where a linkage has peaks above a bound, as shares of the motion; the worst few.
 
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    key : str
-        Of `ALONG`.
-    points : ndarray of complex, shape (5,), sizes
-    theta2 : ndarray, shape (N,), rad
-        In the order of visit.
-    direction, assembly : int
-    bound : float
-        In `Problem.scale` of the quantity.
+    Points (5,) in sizes and driver angles (N,) in rad as in `magnitudes`; the bound in `Problem.scale`.
     """
     ways = theta2[None], np.array([direction]), np.array([assembly])
     (curve,) = magnitudes(scaled, key, points[None], *ways, LOOKED_AT)

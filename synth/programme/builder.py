@@ -39,15 +39,9 @@ class _Unknown:
 
 @dataclass(slots=True)
 class Builder:
-    """Unknowns, parameters and rows, each declared once with the functions that fill them.
+    """Unknowns, parameters and rows, each declared once with the functions that fill them."""
 
-    Parameters
-    ----------
-    slack : SX, optional
-        An unknown by which rows may be missed that a start gives up.
-    """
-
-    slack: ca.SX | None = None
+    slack: ca.SX | None = None  # by which rows may be missed that a start gives up
     _unknowns: dict[str, _Unknown] = field(default_factory=dict)
     _parameters: list[tuple[ca.SX, Fill]] = field(default_factory=list)
     _rows: list[tuple[ca.SX, Fill]] = field(default_factory=list)
@@ -107,13 +101,7 @@ class Builder:
         }
 
     def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
-        """The programme that makes a cost least; a `long` one ends when asked to stop.
-
-        Raises
-        ------
-        Stopped
-            It was so before a `long` one was built.
-        """
+        """The programme that makes a cost least; a `long` one ends when asked to stop, here by `Stopped`."""
         stated = self.stated(cost)
         asking = Asking(stated) if long else None
         if long:
@@ -135,18 +123,15 @@ class Builder:
 
 @dataclass(frozen=True, slots=True)
 class Programme:
-    """A programme built; `places` holds where each unknown stands in the column of all.
-
-    `asking` is called by the solver of a long one, and has to be kept for that.
-    """
+    """A programme built."""
 
     solver: ca.Function
-    places: dict[str, slice]
+    places: dict[str, slice]  # where each unknown stands in the column of all
     unknowns: tuple[_Unknown, ...]
     parameters: tuple[Fill, ...]
     rows: tuple[tuple[int, Fill], ...]
     bounds: tuple[tuple[int, Fill], ...]
-    asking: Asking | None
+    asking: Asking | None  # called by the solver of a long one, and kept for that
 
     def arguments(self, scaled: ScaledProblem, start: Start) -> dict[str, FloatArray]:
         """What the solver takes for a start."""

@@ -18,62 +18,29 @@ _LINKS = tuple(link.number for link in FourBar.mechanism.links[1:])
 
 @dataclass(frozen=True, slots=True)
 class Mass:
-    """A mass fixed to a link: a bar along it, or a body at a place.
-
-    Parameters
-    ----------
-    link : int
-    per_size : float, kg/size
-        Of a bar.
-    width : float, sizes
-        Of a bar.
-    mass : float, kg
-        Of a body.
-    inertia : float, kg sizes^2
-        Of a body about its centre.
-    place : pair of float, sizes, or None
-        Of a body, in the link's frame; halfway between the joints where it is None.
-    at_point : bool
-        It is at P instead.
-    """
+    """A mass fixed to a link: a bar along it, or a body at a place."""
 
     link: int
-    per_size: float = 0.0
-    width: float = 0.0
-    mass: float = 0.0
-    inertia: float = 0.0
-    place: Numbers | None = None
-    at_point: bool = False
+    per_size: float = 0.0  # of a bar, kg/size
+    width: float = 0.0  # of a bar, sizes
+    mass: float = 0.0  # of a body, kg
+    inertia: float = 0.0  # of a body about its centre, kg sizes^2
+    place: Numbers | None = None  # of a body, in the link's frame, sizes; None: halfway between the joints
+    at_point: bool = False  # it is at P instead
 
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """A force on a link, or a moment, in reference torques and sizes.
-
-    Parameters
-    ----------
-    link : int
-    at : pair of float, sizes
-    turning : bool
-        A force turns with its link.
-    moment : bool
-    values : tuple of float
-        Of a constant one.
-    over : str
-        "theta2", "theta4", "travel" or "time"; empty for a constant one.
-    places : tuple of float, deg, sizes or s
-    rows : tuple of tuples of float
-        Its values there.
-    """
+    """A force on a link, or a moment, in reference torques and sizes."""
 
     link: int
-    at: Numbers
-    turning: bool
+    at: Numbers  # sizes
+    turning: bool  # a force turns with its link
     moment: bool
-    values: Numbers = ()
-    over: str = ""
-    places: Numbers = ()
-    rows: tuple[Numbers, ...] = ()
+    values: Numbers = ()  # of a constant one
+    over: str = ""  # "theta2", "theta4", "travel" or "time"; empty for a constant one
+    places: Numbers = ()  # deg, sizes or s
+    rows: tuple[Numbers, ...] = ()  # its values there
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,39 +56,23 @@ class Pull:
 
 @dataclass(frozen=True, slots=True)
 class Burden:
-    """All that takes a drive torque. It hashes, so that a programme can be kept for it.
+    """All that takes a drive torque. It hashes, so that a programme can be kept for it."""
 
-    Parameters
-    ----------
-    inertia : float
-        What a kg takes for each size of acceleration in squares of the driver's mean velocity:
-        omega2^2 S^2 / T0, with the task's size S in metres and the reference torque T0.
-    weight : pair of float
-        What a kg weighs: g S / T0.
-    masses : tuple of Mass
-    pushes : tuple of Push
-    pulls : tuple of Pull
-    windings : tuple of (joint, stiffness, free angle)
-        Torsion springs.
-    viscous, constant, radius : four floats
-        Friction in O2, A, B, O4.
-    slide_viscous, slide_constant, slide_mu, slide_length : float
-        Friction in a slide; the length in sizes.
-    """
-
+    # What a kg takes for each size of acceleration in squares of the driver's mean velocity: omega2^2 S^2 /
+    # T0, with the task's size S in metres and the reference torque T0.
     inertia: float
-    weight: Numbers
+    weight: Numbers  # what a kg weighs: g S / T0, a pair
     masses: tuple[Mass, ...]
     pushes: tuple[Push, ...] = ()
     pulls: tuple[Pull, ...] = ()
-    windings: tuple[tuple[int, float, float], ...] = ()
-    viscous: Numbers = (0.0,) * 4
+    windings: tuple[tuple[int, float, float], ...] = ()  # torsion springs: joint, stiffness, free angle
+    viscous: Numbers = (0.0,) * 4  # friction in O2, A, B, O4, as the next two
     constant: Numbers = (0.0,) * 4
     radius: Numbers = (0.0,) * 4
-    slide_viscous: float = 0.0
+    slide_viscous: float = 0.0  # friction in a slide, as the next three
     slide_constant: float = 0.0
     slide_mu: float = 0.0
-    slide_length: float = 0.0
+    slide_length: float = 0.0  # sizes
 
     @classmethod
     def of(cls, problem: Problem) -> Burden | None:

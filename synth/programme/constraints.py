@@ -30,17 +30,15 @@ LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame.
-
-    `across` gives a vector along e4 at a target: from O4 to B, or across what slides. It is made anew each
-    time: what rows share changes the last digits of their derivatives.
-    """
+    """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame."""
 
     a: list[ca.SX]
     b: list[ca.SX]
     p: list[ca.SX]
     ap: ca.SX
     bp: ca.SX
+    # Along e4 at a target: from O4 to B, or across what slides. Made anew each time: what rows share changes
+    # the last digits of their derivatives.
     across: Callable[[int], ca.SX]
 
 
@@ -66,23 +64,12 @@ class Symbols(View):
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What the design has to meet, as parameters in the order of visit.
+    """What the design has to meet, as parameters in the order of visit."""
 
-    Parameters
-    ----------
-    points : list of SX, shape (2,), sizes
-    turns : SX, shape (N,), rad
-        Angles of the body, moved by whole turns to be nearest to the start.
-    weights : SX, shape (2 N,)
-        Of the squared distances, then of the squared turns.
-    error_scale : SX
-        One over the squares that the start misses its targets by.
-    """
-
-    points: list[ca.SX]
-    turns: ca.SX
-    weights: ca.SX
-    error_scale: ca.SX
+    points: list[ca.SX]  # (2,) each, sizes
+    turns: ca.SX  # (N,), rad; angles of the body, moved by whole turns to be nearest to the start
+    weights: ca.SX  # (2 N,), of the squared distances, then of the squared turns
+    error_scale: ca.SX  # one over the squares that the start misses its targets by
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Targets:
@@ -200,14 +187,11 @@ def _area(form: Form, x: Unknowns) -> ca.SX:
 
 
 def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
-    """The derivative of a target's square by its driver angle is zero, as the judge will have it.
-
-    With d theta3 / d theta2 = N / D from the loop projected on e4, multiplied by D. Timed targets
-    have one driver angle: the sum of their derivatives is zero.
-    """
-    total = ca.SX(0)
+    """The derivative of a target's square by its driver angle is zero, as the judge will have it."""
+    total = ca.SX(0)  # timed targets have one driver angle: the sum of their derivatives is zero
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
+        # d theta3 / d theta2 = n / d from the loop projected on e4; rows are multiplied by d
         d = ca.dot(places.across(k), quarter_turn(b - a))
         n = -ca.dot(places.across(k), quarter_turn(a - x.o2))
         row = ca.SX(0)

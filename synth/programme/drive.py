@@ -40,11 +40,8 @@ def joint_forces(at: Instant, burden: Burden) -> list[Any]:
 
 
 def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
-    """Forces in O2, A, B and O4, and what presses in the slide.
-
-    From moments of link 3 about A and of link 4 about the origin of its frame; what is a moment in a pin
-    is a force along a slide.
-    """
+    """Forces in O2, A, B and O4, and what presses in the slide."""
+    # about A of link 3 and the origin of the frame of link 4; a moment in a pin is a force along a slide
     force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
     turning = [0.0 if joint == at.slide else moment for joint, moment in enumerate(moments)]
     about: dict[int, Any] = {2: 0.0, 3: turning[2] - turning[1], 4: -turning[2] - turning[3]}

@@ -10,17 +10,8 @@ from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
     """Order in which a driver meets targets on the shortest arc that holds them all.
 
-    Parameters
-    ----------
-    angle : ndarray, shape (n, N), rad
-        Driver angle at each target.
-
-    Returns
-    -------
-    visit : ndarray of int, shape (n, N)
-    theta2 : ndarray, shape (n, N), rad
-        In that order, unwrapped, counter-clockwise.
-    direction : ndarray, shape (n,)
+    From its angles (n, N) in rad: that order (n, N), the angles in it, unwrapped and counter-clockwise, and
+    the direction (n,).
     """
     count, sense = angle.shape[1], np.ones(len(angle))
     visit = np.argsort(angle % TURN, axis=1)

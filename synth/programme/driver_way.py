@@ -17,19 +17,9 @@ from grashof.synth.loop.instant import Moment
 
 
 def driver_at(motor: MotorSpec | None, omega2: Any, share: Any, first: Any, last: Any, sense: Any) -> Moment:
-    """The driver at shares of the time from the first target to the last.
+    """The driver at shares (0 to 1) of the time from the first target to the last; no motor is steady speed.
 
-    Parameters
-    ----------
-    motor : MotorSpec, optional
-        Steady speed without it.
-    omega2 : float, rad/s
-        Mean speed.
-    share
-        Of the time, from 0 to 1; where the speed is steady, of the way.
-    first, last : rad
-    sense
-        +1 or -1, that of the rotation.
+    Mean speed `omega2` in rad/s, `first` and `last` angles in rad, `sense` +1 or -1, that of the rotation.
     """
     turn = sense * (last - first)
     if motor is None or motor.steady:

@@ -27,77 +27,37 @@ class View(Sized):
     """A design, or many, at their targets; lengths in sizes, angles in rad.
 
     Scalars are arrays (n, 1), `Dual`, or symbols; what belongs to targets has N columns, or is a symbol of N
-    rows.
-
-    Attributes
-    ----------
-    o2, o4 : Vector
-    r1, r2, r3, r4, theta1 : scalar
-    ap, bp : Vector
-        From A and B to the coupler point, in a frame that the body is turned against by `body_turn`.
-    body_turn : scalar
-    a, b : Vector, at the targets
-    theta2_start : scalar
-        Driver angle at the first target.
-    driver_turn : scalar
-        Driver rotation from the first target to the last, positive in its sense.
-    direction : scalar
-        Sense of the driver, +1 or -1.
-    output_turn : scalar
-        Rotation of the output link from the first target to the last, within half a turn.
-    turns : scalar
-        1 where the driver turns fully, else 0.
-    double_crank : scalar
-        1 where r2 exceeds r1, so that the output of a full crank turns fully, too; else 0.
-    offset, output_travel : scalar
-        Of slider kinds; the travel of the slide from the first target to the last.
+    rows. `offset` and `output_travel` are of slider kinds.
     """
 
     o2: Vector
     o4: Vector
     theta1: Any
-    theta2_start: Any
-    ap: Vector
-    bp: Vector
+    theta2_start: Any  # driver angle at the first target
+    ap: Vector  # from A to P, in a frame that the body is turned against by `body_turn`
+    bp: Vector  # from B to P in that frame
     body_turn: Any
-    a: Vector
-    b: Vector
-    driver_turn: Any
-    direction: Any
-    output_turn: Any
-    turns: Any
-    output_travel: Any
+    a: Vector  # at the targets
+    b: Vector  # at the targets
+    driver_turn: Any  # driver rotation from the first target to the last, positive in its sense
+    direction: Any  # sense of the driver, +1 or -1
+    output_turn: Any  # of the output link from the first target to the last, within half a turn
+    turns: Any  # 1 where the driver turns fully, else 0
+    output_travel: Any  # of the slide from the first target to the last
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One number of a quantity, or one at every target.
+    """One number of a quantity, or one at every target."""
 
-    Parameters
-    ----------
-    name : str
-        Such as "r3" or "o2.x".
-    of : callable
-        From a `View`.
-    axis : str
-        Of the box that limits it; empty for other limits.
-    dyad : int, optional
-        2 or 4 for what the driver's dyad (O2, A) or the driven one (O4, B) decides by itself.
-    squared : bool
-        `of` gives the square, which has no kink at zero.
-    per : callable, optional
-        What `of` is divided by, so that a limit can be a product.
-    fixed : bool
-        The start decides it: no solve can change it.
-    """
-
-    name: str
-    of: Callable[[Any], Any]
-    axis: str = ""
+    name: str  # such as "r3" or "o2.x"
+    of: Callable[[Any], Any]  # from a `View`
+    axis: str = ""  # of the box that limits it; empty for other limits
+    # 2 or 4 for what the dyad of the driver (O2, A) or the driven one (O4, B) decides by itself
     dyad: int | None = None
-    squared: bool = False
-    per: Callable[[Any], Any] | None = None
-    fixed: bool = False
+    squared: bool = False  # `of` gives the square, which has no kink at zero
+    per: Callable[[Any], Any] | None = None  # what `of` is divided by, so that a limit can be a product
+    fixed: bool = False  # the start decides it: no solve can change it
 
 
 def _place(name: str, dyad: int) -> tuple[Part, ...]:
@@ -141,22 +101,18 @@ def _cosine(opposite: Any, one: Any, other: Any) -> Any:
 
 
 def _output_swing(d: View) -> Any:
-    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn.
-
-    From the first target to the last where the driver does not turn fully.
-    """
+    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn."""
     far, close = (np.arccos(_cosine(d.r3 + sign * d.r2, d.r1, d.r4)) for sign in (1.0, -1.0))
     whole = (1 - d.double_crank) * (far - close) + d.double_crank * TURN
+    # from the first target to the last where it does not turn fully
     return d.turns * whole + (1 - d.turns) * np.abs(d.output_turn)
 
 
 def _time_ratio(d: View) -> Any:
-    """(pi + delta) / (pi - delta) with delta between the directions of O2B in its limit positions.
-
-    Zero for a double-crank, whose output has no strokes.
-    """
+    """(pi + delta) / (pi - delta) with delta between the directions of O2B in its limit positions."""
     far, close = (np.arccos(_cosine(d.r4, d.r1, d.r3 + sign * d.r2)) for sign in (1.0, -1.0))
     delta = (1 - d.double_crank) * np.abs(far - close)
+    # zero for a double-crank, whose output has no strokes
     return (1 - d.double_crank) * (np.pi + delta) / np.maximum(np.pi - delta, 1e-9)
 
 
@@ -189,17 +145,10 @@ LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios co
 def parts_of(
     limited: Collection[str], *formulas: Mapping[str, tuple[Part, ...]]
 ) -> Iterator[tuple[str, Part]]:
-    """Parts of all that is limited, each with its field of `Requirements`.
-
-    Parameters
-    ----------
-    limited : collection of str
-        Fields.
-    formulas : mapping of str to tuple of Part
-        Of a kind of linkage, by the key of the quantity; the first that has one is taken.
-    """
+    """Parts of all that is limited, each with its field of `Requirements`."""
     for name in limited:
         key = LIMITS[name].quantity.key
+        # the first mapping that has it, by the key of the quantity
         for part in next((each[key] for each in formulas if key in each), ()):
             if key != "link_length" or part.name not in limited:  # a limit of its own overrides it
                 yield name, part

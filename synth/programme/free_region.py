@@ -16,29 +16,14 @@ _EVERY_PLANE = np.array([0.0, 0.0, -1.0])  # 0 x + 0 y >= -1: no limit
 
 
 def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
-    """Half-planes about a point whose intersection is free of an area.
+    """Half-planes about a point whose intersection is free of an area (see `solid`).
 
-    Parameters
-    ----------
-    area : shapely.Geometry
-        See `grashof.problems.values.areas.solid`.
-    point : complex
-        Where it lies inside the area, its nearest boundary point stands for it.
+    Rows (nx, ny, c), (PLANES, 3): nx x + ny y >= c in the free region, (nx, ny) a unit vector. For a point
+    inside the area its nearest boundary point stands. The side nearest to the point is drawn out to a
+    straight line; what of the area lies beyond it is cut off; and so on until nothing is left, or `PLANES`
+    are used up and some of the area farther away is left. (Deits & Tedrake, "Computing large convex regions
+    of obstacle-free space", 2015, take the same greedy cuts.)
 
-    Returns
-    -------
-    ndarray, shape (PLANES, 3)
-        Rows (nx, ny, c): nx x + ny y >= c in the free region, (nx, ny) a unit vector. With more than
-        `PLANES` of them needed, some of the area farther away is left.
-
-    Notes
-    -----
-    The side of the area that is nearest to the point is drawn out to a straight line; what of the
-    area lies beyond it is cut off; and so on until nothing is left. (Deits & Tedrake, "Computing
-    large convex regions of obstacle-free space", 2015, take the same greedy cuts.)
-
-    Examples
-    --------
     >>> stairs = solid([np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]])])
     >>> half_planes(stairs, 3 + 1j)[:3].tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, -5.0], [0.0, 0.0, -1.0]]
@@ -60,13 +45,7 @@ def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
 
 
 def free_regions(wanted: Requirements, start: Start, names: tuple[str, ...]) -> FloatArray:
-    """Half-planes for each named point of a start, the moving ones at every target.
-
-    Returns
-    -------
-    ndarray, shape (K, PLANES, 3)
-        First all of the first name, in the order of visit, then all of the next one.
-    """
+    """Half-planes (K, PLANES, 3) about points of a start, name by name, moving ones in the order of visit."""
     track = dict(zip(("a", "b", "p"), start.track, strict=True))
     places = [track.get(name, np.array([getattr(start, name)])) for name in names]
     area = solid(wanted.keep_out)

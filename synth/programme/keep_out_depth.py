@@ -22,19 +22,8 @@ def points_kept_out(wanted: Requirements) -> tuple[str, ...]:
 def depth(wanted: Requirements, name: str, points: ComplexArray) -> FloatArray:
     """How deep points lie inside areas that `name` must keep out of; zero outside and where it need not.
 
-    Parameters
-    ----------
-    wanted : Requirements
-        In the frame of `points`.
-    name : {"o2", "o4", "a", "b", "p"}
-    points : ndarray of complex, shape (...)
+    Requirements in the frame of the points; `name` is "o2", "o4", "a", "b" or "p".
 
-    Returns
-    -------
-    ndarray, shape (...)
-
-    Examples
-    --------
     >>> square = Requirements(keep_out=[[[0, 0], [4, 0], [4, 4], [0, 4]]])
     >>> points = np.array([1 + 2j, 4 + 1j, 9])
     >>> depth(square, "o2", points).tolist(), depth(square, "a", points).tolist()

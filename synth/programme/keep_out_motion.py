@@ -17,18 +17,7 @@ _ROWS = 4000  # linkages at a time
 
 
 def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """Greatest depth of what must keep out, over sampled driver angles.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    linkages : Screened
-
-    Returns
-    -------
-    ndarray, shape (n,), sizes
-        Zero where no sample lies inside: the judge looks closer.
-    """
+    """Greatest depth (n,), sizes, of what must keep out, over sampled angles: the judge looks closer."""
     wanted = scaled.wanted
     kind = scaled.kind.linkage.mechanism
     names = [name for name in points_kept_out(wanted) if name in kind.moving]

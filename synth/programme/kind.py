@@ -53,16 +53,13 @@ class LoopOf(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Kind(ABC):
-    """A kind of linkage; a value without fields, so that it travels to workers.
-
-    Slider kinds have a single assembly here: the other one is the same linkage with its slide, or its
-    rod, taken the other way round.
-    """
+    """A kind of linkage; a value without fields, so that it travels to workers."""
 
     linkage: ClassVar[type[Linkage]]
     proportions: ClassVar[int]  # numbers that are neither place nor size
     formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
     smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
+    # slider kinds: the other is the same linkage with its slide, or its rod, taken the other way round
     one_assembly: ClassVar[bool]
     closure: ClassVar[Closure]
     instant: ClassVar[type[Instant]]

@@ -32,10 +32,7 @@ ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
 
 def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
-    """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows.
-
-    Where a start gives a bound up, rows with slack stand for it.
-    """
+    """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows."""
     design = Symbols(form, x, places)
     for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
         if part.fixed:
@@ -50,6 +47,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
         elif leaf:
             build.bound(value, _inset(allowed), gives=(name, part.name))
         if leaf or angle:
+            # where a start gives the bound up
             build.require_if_given_up((name, part.name), *_rows(build, design, part, value, allowed))
         else:
             build.require((name, part.name), *_rows(build, design, part, value, allowed))
@@ -142,13 +140,10 @@ _CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high"
 
 
 def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> ca.SX:
-    """What a magnitude does not exceed at any driver angle of an even grid, and at those added to it.
-
-    In units of its peak at the start.
-    """
+    """What a magnitude does not exceed at any driver angle of an even grid, nor at those added to it."""
     arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
     ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
-    one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))
+    one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))

@@ -15,19 +15,12 @@ STOPPED = "User_Requested_Stop"  # Ipopt's return status
 
 
 def jacobian_by_rows(stated: Mapping[str, ca.SX]) -> ca.Function:
-    """The rows of a programme and their derivative by the unknowns, as Ipopt takes them.
-
-    Unknowns that every target depends on and rows that depend on every target leave no two columns, and
-    no two rows, that can be differentiated together: all at once take time with the square of the
-    targets. So the few full rows are differentiated by themselves.
-
-    Parameters
-    ----------
-    stated : mapping of str to SX
-        Unknowns ``x``, parameters ``p`` and rows ``g``.
-    """
+    """The rows ``g`` of a programme and their derivative by the unknowns ``x``, as Ipopt takes them."""
     x, p, g = (stated[name] for name in "xpg")
     row, _ = ca.jacobian_sparsity(g, x).get_triplet()
+    # Unknowns that every target depends on and rows that depend on every target leave no two columns, and no
+    # two rows, that can be differentiated together: all at once take time with the square of the targets. So
+    # the few full rows are differentiated by themselves.
     full = np.bincount(np.array(row, dtype=np.int64), minlength=g.numel()) > FULL
     blocks = [np.flatnonzero(~full).tolist(), np.flatnonzero(full).tolist()]
     slope = ca.vertcat(*(ca.jacobian(g[rows], x) for rows in blocks))
@@ -36,13 +29,7 @@ def jacobian_by_rows(stated: Mapping[str, ca.SX]) -> ca.Function:
 
 
 class Asking(ca.Callback):
-    """Called after every iteration of Ipopt: whether to end it, since that is overdue.
-
-    Parameters
-    ----------
-    stated : mapping of str to SX
-        Unknowns ``x``, parameters ``p`` and rows ``g``.
-    """
+    """Called after every iteration of Ipopt: whether to end it, since that is overdue."""
 
     def __init__(self, stated: Mapping[str, ca.SX]) -> None:
         ca.Callback.__init__(self)

@@ -13,10 +13,7 @@ SAME_ERROR = 1e-6  # sizes: least-squares errors up to it count as equal, or up 
 def weigh(
     objective: Objective, transmission: FloatArray, size: FloatArray, torque: FloatArray | None = None
 ) -> FloatArray:
-    """Scores of transmission angles (rad), sizes (in sizes of the task) and torques (in reference torques).
-
-    All of shape (n,); the torque only where it has a weight.
-    """
+    """Scores (n,) of transmission angles (rad), sizes (of the task) and, if any, torques (reference ones)."""
     score = objective.transmission * transmission / (np.pi / 2) - objective.compactness * size
     return score if torque is None else score - objective.torque * torque
 

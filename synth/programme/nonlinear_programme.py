@@ -44,48 +44,21 @@ SLIGHT = 1e-6  # weight of the error beside the slack
 
 @dataclass(frozen=True, slots=True)
 class Solve:
-    """Outcome of one solve; the solver's status is recorded, not trusted.
+    """Outcome of one solve in the frame of the search; the solver's status is recorded, not trusted."""
 
-    Parameters
-    ----------
-    points : tuple of complex
-        O2, O4, and A, B, P at the first target, in the frame of the search.
-    theta2, theta3 : tuple of float, rad
-        Driver and coupler angles in the order of visit.
-    body_angle : float, rad
-        See `Start`.
-    status : str
-        Ipopt's return status.
-    iterations : int
-    peaks : mapping of str to float
-        The greatest magnitude along the motion in the programme, by the key of each quantity that
-        has a part in it; in `Problem.scale`.
-    """
-
-    points: tuple[complex, complex, complex, complex, complex]
-    theta2: tuple[float, ...]
+    points: tuple[complex, complex, complex, complex, complex]  # O2, O4, and A, B, P at the first target
+    theta2: tuple[float, ...]  # in the order of visit, rad, as theta3
     theta3: tuple[float, ...]
-    body_angle: float
-    status: str
+    body_angle: float  # rad, see `Start`
+    status: str  # Ipopt's return status
     iterations: int
+    # the greatest magnitude along the motion, by the key of each quantity in the programme; `Problem.scale`
     peaks: Mapping[str, float] = field(default_factory=dict)
 
 
 @one_at_a_time
 def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> Solve:
-    """Run Ipopt from one start.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    start : Start
-    max_iter : int, optional
-        More than usual by default where the error is bounded.
-
-    Returns
-    -------
-    Solve
-    """
+    """Run Ipopt from one start, by default with more iterations than usual where the error is bounded."""
     patience = PATIENCE[scaled.bounded] if start.bounded else MOST_ITERATIONS
     if start.stay and not scaled.constraints:
         patience = MENDING

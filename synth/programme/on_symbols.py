@@ -15,11 +15,9 @@ _WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols
 
 @contextmanager
 def numpy_on_symbols() -> Iterator[None]:
-    """NumPy functions give symbols of symbols, and do not warn.
-
-    CasADi from 3.8 on warns whoever calls a NumPy function on symbols that a later version may give
-    arrays. The mode is of the whole process: it is put back, and left alone where it is not the default.
-    """
+    """NumPy functions give symbols of symbols, and do not warn."""
+    # CasADi from 3.8 on warns whoever calls a NumPy function on symbols that a later version may give arrays.
+    # The mode is of the whole process: it is put back, and left alone where it is not the default.
     options = ca.GlobalOptions
     if not hasattr(options, "setNumpyMode") or options.getNumpyMode() != _WARNS:
         yield

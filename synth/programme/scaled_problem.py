@@ -19,56 +19,24 @@ from grashof.synth.theory.burmester import Displacements
 
 @dataclass(frozen=True, slots=True)
 class ScaledProblem:
-    """A problem in the frame of the search.
-
-    Parameters
-    ----------
-    problem : Problem
-    frame : Frame
-    targets : ndarray of complex, shape (N,), sizes
-        Where the coupler point P has to be, in the frame; zero where its position is free.
-    weights : ndarray, shape (N,)
-        Of the squared distances; zero where the position is free.
-    turns : ndarray, shape (N,), rad
-        Angles of the body; zero where they are free.
-    turn_weights : ndarray, shape (N,), sizes squared
-        Of the squared turns from there; zero where the angle is free.
-    motion : Displacements or None
-        Of the body from the first pose to every pose, in the frame, where whole poses are met
-        exactly, untimed; None for all other tasks.
-    timing : ndarray, shape (N,), rad
-        Driver rotation from the first target, in either sense; all zero where it is free.
-    wanted : Requirements
-        Resolved, in the frame.
-    exact : bool
-        Every target is met; otherwise least squares.
-    constraints : tuple of callable
-        The user's own.
-    zones : ndarray, shape (2, N), sizes and rad, or None
-        How far the position and the angle of each target may be missed.
-    own_objective : callable, optional
-        The user's own in place of the problem's.
-    of_use : float, sizes
-        Least squares: designs up to this error are of use, be they far from the best.
-    kind : Kind
-        Of linkage: the first that the problem asks for.
-    """
+    """A problem in the frame of the search: N targets, lengths in sizes, angles in rad."""
 
     problem: Problem
     frame: Frame
-    targets: ComplexArray
-    weights: FloatArray
-    turns: FloatArray
-    turn_weights: FloatArray
+    targets: ComplexArray  # (N,); where P has to be; zero where its position is free
+    weights: FloatArray  # (N,), of the squared distances; zero where the position is free
+    turns: FloatArray  # (N,); angles of the body; zero where they are free
+    turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
+    # of the body from the first pose to every pose, where whole poses are met exactly, untimed; else None
     motion: Displacements | None
-    timing: FloatArray
-    wanted: Requirements
-    exact: bool
-    constraints: tuple[Constraint, ...] = ()
-    zones: FloatArray | None = None
-    own_objective: OwnObjective | None = None
-    of_use: float = 0.0
-    kind: Kind = FOUR_BAR
+    timing: FloatArray  # (N,); driver rotation from the first target, in either sense; zero where free
+    wanted: Requirements  # resolved, in the frame
+    exact: bool  # every target is met; otherwise least squares
+    constraints: tuple[Constraint, ...] = ()  # the user's own
+    zones: FloatArray | None = None  # (2, N); how far the position and the angle of each target may be missed
+    own_objective: OwnObjective | None = None  # the user's own in place of the problem's
+    of_use: float = 0.0  # least squares: designs up to this error are of use, be they far from the best
+    kind: Kind = FOUR_BAR  # the first that the problem asks for
 
     @classmethod
     def of(
@@ -147,14 +115,7 @@ class ScaledProblem:
         return self.problem.scale(quantity) / self.frame.scale**quantity.unit.lengths
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
-        """Root mean weighted square of what targets are missed by, sizes.
-
-        Parameters
-        ----------
-        p : ndarray of complex, shape (..., N), sizes
-        turned : ndarray, shape (..., N), rad
-            Angles of the body.
-        """
+        """Root mean weighted square, sizes, of what P, sizes, and the body, rad, (..., N) miss targets by."""
         off = np.angle(np.exp(1j * (turned - self.turns)))
         square = (self.weights * np.abs(p - self.targets) ** 2).sum(axis=-1)
         square = square + (self.turn_weights * off**2).sum(axis=-1)
@@ -164,25 +125,10 @@ class ScaledProblem:
     def linkages(
         self, points: ComplexArray, assembly: FloatArray, body_angle: FloatArray | None = None
     ) -> Linkage:
-        """The linkages with given pivots.
+        """Linkages with given pivots, (...), in the problem's unit; ProblemError where two pivots coincide.
 
-        Parameters
-        ----------
-        points : ndarray of complex, shape (..., 5), sizes
-            O2, O4, and A, B, P at the first target; see `Kind.placed`.
-        assembly : ndarray, shape (...)
-        body_angle : ndarray, shape (...), rad, optional
-            From the coupler to the body. By default as the first of whole poses asks for it.
-
-        Returns
-        -------
-        Linkage
-            Batch of shape (...), in the problem's unit.
-
-        Raises
-        ------
-        ProblemError
-            Two pivots coincide.
+        O2, O4, and A, B, P at the first target are (..., 5) in sizes, see `Kind.placed`; the angle from the
+        coupler to the body (...) in rad is by default as the first of whole poses asks for it.
         """
         with np.errstate(invalid="ignore", divide="ignore"):  # a value refuses a link of no length
             coupler, given = self.kind.coupler(points), self.kind.arguments(points)

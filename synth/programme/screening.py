@@ -24,41 +24,19 @@ GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_
 
 @dataclass(frozen=True, slots=True)
 class Screened:
-    """Linkages in the frame of the search, and how far each violates the requirements.
+    """Linkages in the frame of the search, and how far each violates the requirements."""
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (n, 5), sizes
-        O2, O4, and A, B, P at the first target.
-    visit : ndarray of int, shape (n, N)
-        Targets in the order in which the driver meets them.
-    theta2 : ndarray, shape (n, N), rad
-        Driver angles in that order, each step in the driver's sense and less than a turn.
-    direction, assembly : ndarray, shape (n,)
-        Sense of the driver and sign of sin(theta4 - theta3) that fits most targets.
-    violations : ndarray, shape (n, len(GROUPS))
-        By how much each requirement is missed, zero when met: sizes, radians or ratios.
-    transmission : ndarray, shape (n,), rad
-        Worst over the task or the cycle, as required.
-    coupler : ndarray of complex, shape (n, N), sizes
-        From A to B at every target, in the order of the targets.
-    error : ndarray, shape (n,), sizes
-        Root mean square distance from the targets.
-    body_angle : ndarray, shape (n,), rad
-        From the coupler to the body, where the first pose does not fix it; else zero.
-    kind : Kind
-    """
-
-    points: ComplexArray
-    visit: IntArray
-    theta2: FloatArray
-    direction: FloatArray
-    assembly: FloatArray
+    points: ComplexArray  # (n, 5), sizes; O2, O4, and A, B, P at the first target
+    visit: IntArray  # (n, N); targets in the order in which the driver meets them
+    theta2: FloatArray  # (n, N), rad, in that order, each step in the driver's sense and less than a turn
+    direction: FloatArray  # (n,), sense of the driver
+    assembly: FloatArray  # (n,), sign of sin(theta4 - theta3) that fits most targets
+    # (n, len(GROUPS)); by how much each requirement is missed, zero when met: sizes, radians or ratios
     violations: FloatArray
-    transmission: FloatArray
-    coupler: ComplexArray
-    error: FloatArray
-    body_angle: FloatArray
+    transmission: FloatArray  # (n,), rad; worst over the task or the cycle, as required
+    coupler: ComplexArray  # (n, N), sizes; from A to B at every target, in the order of the targets
+    error: FloatArray  # (n,), sizes; root mean square distance from the targets
+    body_angle: FloatArray  # (n,), rad; coupler to body, where the first pose does not fix it; else zero
     kind: Kind = FOUR_BAR
 
     def __len__(self) -> int:
@@ -98,27 +76,14 @@ class Screened:
 
 @dataclass(frozen=True, slots=True)
 class Configurations:
-    """Linkages at all their targets; arrays of shape (n,) and, with targets as columns, (n, N).
-
-    Parameters
-    ----------
-    o2, o4 : ndarray of complex, shape (n,), sizes
-    a, b : ndarray of complex, shape (n, N), sizes
-        In the order of the targets.
-    visit : ndarray of int, shape (n, N)
-    theta2 : ndarray, shape (n, N), rad
-        In the order of visit, unwrapped along the motion.
-    direction : ndarray, shape (n,)
-    kind : Kind
-        Of a slider-crank `o4` is the point of its slide's line that lies r3 ahead of B at the first target.
-    """
+    """Linkages at all their targets; arrays of shape (n,) and, with targets as columns, (n, N); sizes."""
 
     o2: ComplexArray
-    o4: ComplexArray
-    a: ComplexArray
+    o4: ComplexArray  # of a slider-crank the point of its slide's line r3 ahead of B at the first target
+    a: ComplexArray  # (n, N), as b, in the order of the targets
     b: ComplexArray
     visit: IntArray
-    theta2: FloatArray
+    theta2: FloatArray  # (n, N), rad, in the order of visit, unwrapped along the motion
     direction: FloatArray
     kind: Kind = FOUR_BAR
 
@@ -126,22 +91,9 @@ class Configurations:
 class Many(View):
     """Many linkages as formulas see them, or of each the dyad O2A or O4B alone.
 
-    Parameters
-    ----------
-    o2, o4 : ndarray of complex, shape (n,), sizes, optional
-    a, b : ndarray of complex, shape (n, N), sizes, optional
-    p : ndarray of complex, shape (n,), sizes
-        The coupler point at the first target.
-    theta2 : ndarray, shape (n, N), rad, optional
-        Driver angles in the order of visit.
-    body_turn : ndarray, shape (n,), rad, optional
-        Angle of the body at the first target.
-    kind : Kind
-
-    Attributes
-    ----------
-    sine : ndarray, shape (n, N)
-        Signed sin mu at the targets; of whole linkages.
+    Pivots (n,), A and B (n, N), and P at the first target (n,) in sizes; theta2 (n, N) in rad in the order of
+    visit; the angle of the body at the first target (n,) in rad. `sine` (n, N) is the signed sin mu at the
+    targets, of whole linkages.
     """
 
     def __init__(
@@ -184,11 +136,8 @@ class Many(View):
 
 
 def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
-    """How far each limit is overstepped, shape (n,), by what one dyad decides, or two together (None).
-
-    The parts of a quantity add up at every target; the worst target counts.
-    """
-    missed: dict[str, FloatArray] = {}
+    """How far limits are overstepped at the worst target, (n,), by what one dyad decides, or both (None)."""
+    missed: dict[str, FloatArray] = {}  # the parts of a quantity add up at every target
     for name, part in parts_of(wanted.limited, view.kind.formulas):
         if part.dyad == dyad:
             missed[name] = missed.get(name, 0.0) + _overstep(view, name, part, wanted)
@@ -217,26 +166,11 @@ def judge(
     body_angle: FloatArray | None = None,
     first_turn: FloatArray | None = None,
 ) -> Screened:
-    """Judge linkages by everything but what single dyads decide.
+    """Judge linkages by everything but what single dyads decide, which is known already (`dyad_violations`).
 
-    Parameters
-    ----------
-    found : Configurations
-    p : ndarray of complex, shape (n,), sizes
-        The coupler point at the first target.
-    error : ndarray, shape (n,), sizes
-        Root mean square distance from the targets.
-    violations : ndarray, shape (n, len(GROUPS))
-        Violations known already (see `dyad_violations`).
-    wanted : Requirements
-        In the frame of the search.
-    body_angle : ndarray, shape (n,), rad, optional
-    first_turn : ndarray, shape (n,), rad, optional
-        Angle of the body at the first target, where it is not the coupler's and `body_angle`.
-
-    Returns
-    -------
-    Screened
+    P at the first target (n,) and the root mean square distance from the targets (n,) in sizes, requirements
+    in the frame of the search. `first_turn` (n,) in rad is the angle of the body at the first target, where
+    it is not the coupler's and `body_angle`.
     """
     coupler = found.b - found.a
     if first_turn is None:
@@ -290,23 +224,10 @@ def dyad_violations(
     wanted: Requirements,
     kind: Kind = FOUR_BAR,
 ) -> FloatArray:
-    """What dyads violate by themselves, such as length, coupler arm, places of ground pivot and joint.
+    """What dyads, driver ("o2") or driven ("o4"), violate by themselves, (n, len(GROUPS)).
 
-    Parameters
-    ----------
-    pivot : {"o2", "o4"}
-        As driver or as driven dyad.
-    ground : ndarray of complex, shape (n,), sizes
-    places : ndarray of complex, shape (n, N), sizes
-        The moving pivot at every target.
-    p : ndarray of complex, shape (n,), sizes
-        The coupler point at the first target.
-    wanted : Requirements
-    kind : Kind
-
-    Returns
-    -------
-    ndarray, shape (n, len(GROUPS))
+    Such as length, coupler arm, places of ground pivot (n,) and joint at every target (n, N), all in sizes; P
+    (n,) at the first target.
     """
     joint, dyad = ("a", 2) if pivot == "o2" else ("b", 4)
     violations = np.zeros((len(ground), len(GROUPS)))
@@ -349,16 +270,13 @@ def met(violations: FloatArray) -> BoolArray:
 def _ways(
     found: Configurations, view: Many, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
-    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and over a turn.
-
-    Above 1 the linkage does not close. A driver that cannot turn, with all targets in one of its
-    ranges, has no way around.
-    """
+    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and a turn."""
     dyad = found.kind.dyad
     fold, stretch = (np.abs(dyad.cos_mu(view, reach))[:, 0] for reach in dyad.along_ground(view))
     ends = found.theta2[:, [0, -1]] - view.theta1
     inside = found.theta2 - view.theta1
     inside = np.where((stretch > 1)[:, None], (inside + np.pi) % TURN - np.pi, inside % TURN)
+    # a driver that cannot turn, with all targets in one of its ranges, has no way around
     one_side = (fold <= 1) | (stretch <= 1) | (np.ptp(np.sign(inside), axis=1) == 0)
     rows = np.flatnonzero(one_side & ((fold > 1) | (stretch > 1)))
     ends[rows] = np.stack([inside[rows].min(axis=1), inside[rows].max(axis=1)], axis=1)
@@ -370,6 +288,7 @@ def _ways(
     span = np.maximum(np.where(even, fold, 0.0), np.where(odd, stretch, 0.0))
     at_ends = dyad.cos_mu(view, dyad.reach(view, ends))
     span = np.maximum(span, np.abs(at_ends).max(axis=1))
+    # where |cos mu| is above 1 the linkage does not close
     return found, violations, span, np.maximum(fold, stretch)
 
 

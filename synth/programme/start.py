@@ -21,74 +21,37 @@ UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint ca
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where a solve begins, in the frame of the search.
+    """Where a solve begins, in the frame of the search; lengths in sizes, angles in rad.
 
-    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver,
-    the assembly, which of r1 and r2 is longer, and past which positions with O2A along the ground
-    line the driver goes.
-
-    Parameters
-    ----------
-    o2, o4, a, b, p : complex, sizes
-        Pivots and coupler point, the moving ones at the first target.
-    visit : tuple of int
-        Targets in the order in which the driver meets them.
-    theta2 : tuple of float, rad
-        Driver angles in that order, unwrapped along the motion.
-    theta3 : tuple of float, rad
-        Coupler angles in that order, each near the last.
-    direction, assembly : int
-    objective : Objective or None
-        What the solve makes best; None for the user's own.
-    body_angle : float, rad
-        From the coupler to the body, where the first pose does not fix it; else zero.
-    radius : float, sizes
-        How far it may move each coordinate of the pivots.
-    stay : bool
-        Move no farther than the requirements make it, whatever the objective.
-    settled : bool
-        The targets leave no freedom: the design is there already, or nowhere near.
-    relaxed : tuple of str
-        Requirements (fields), or parts of them ("o2.x"), that it may miss, coming as near as it can; all
-        others hold.
-    peaks_at : mapping of str to tuple of float
-        Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
-    promise : float, sizes
-        Root mean square error that a least-squares search came to here, with what limits add.
-    more : mapping of str to float
-        By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
-    loose : bool
-        Driver angles need not be where the judge will find them.
-    most_error : float, sizes
-        Root mean square error up to which the objective decides.
-    zoned : bool
-        The objective decides as long as each target is missed by no more than it may.
-    kind : Kind
-        Of a slider-crank `o4` is the point of its slide's line that lies r3 ahead of B at the first target.
+    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver, assembly,
+    which of r1 and r2 is longer, past which positions with O2A along the ground line the driver goes.
     """
 
     o2: complex
-    o4: complex
-    a: complex
+    o4: complex  # of a slider-crank the point of its slide's line that lies r3 ahead of B at the first target
+    a: complex  # at the first target, as b and p
     b: complex
     p: complex
-    visit: tuple[int, ...]
-    theta2: tuple[float, ...]
-    theta3: tuple[float, ...]
+    visit: tuple[int, ...]  # targets in the order in which the driver meets them
+    theta2: tuple[float, ...]  # in that order, unwrapped along the motion
+    theta3: tuple[float, ...]  # in that order, each near the last
     direction: int
     assembly: int
-    objective: Objective | None = field(default_factory=Objective)
-    body_angle: float = 0.0
-    radius: float = np.inf
-    stay: bool = False
-    settled: bool = False
+    objective: Objective | None = field(default_factory=Objective)  # what is made best; None: the user's own
+    body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
+    radius: float = np.inf  # how far it may move each coordinate of the pivots
+    stay: bool = False  # move no farther than the requirements make it, whatever the objective
+    settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
+    # Requirements (fields), or parts ("o2.x"), that it may miss, coming as near as it can; all others hold.
     relaxed: tuple[str, ...] = ()
+    # Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    promise: float = 0.0
+    promise: float = 0.0  # root mean square error of a least-squares search here, with what limits add
+    # By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
     more: Mapping[str, float] = field(default_factory=dict)
-    loose: bool = False
-    most_error: float = np.inf
-    zoned: bool = False
+    loose: bool = False  # driver angles need not be where the judge will find them
+    most_error: float = np.inf  # root mean square error up to which the objective decides
+    zoned: bool = False  # the objective decides as long as each target is missed by no more than it may
     kind: Kind = FOUR_BAR
 
     @classmethod
@@ -208,24 +171,11 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """The starts of one round of a search.
+    """The starts of one round of a search."""
 
-    Parameters
-    ----------
-    starts : list of Start
-        The most promising first.
-    counts : mapping of str to int
-        Of what was looked at.
-    size : int
-        Its work, in usual rounds.
-    prune : float
-        Least squares: starts that promise more than so many times the least error found are not solved.
-    free : bool
-        No limit binds: what traces the same coupler curve is the same design or a cognate.
-    """
-
-    starts: list[Start]
-    counts: Mapping[str, int]
-    size: int = 1
+    starts: list[Start]  # the most promising first
+    counts: Mapping[str, int]  # of what was looked at
+    size: int = 1  # its work, in usual rounds
+    # Least squares: starts that promise more than so many times the least error found are not solved.
     prune: float = np.inf
-    free: bool = False
+    free: bool = False  # no limit binds: what traces the same coupler curve is the same design or a cognate

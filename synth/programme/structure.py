@@ -23,75 +23,33 @@ STEPS = 24  # in every half turn, between driver angles at which what varies alo
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """What the programme contains.
-
-    Parameters
-    ----------
-    kind : Kind
-    targets : int
-    poses : bool
-        Targets are whole poses, met exactly: A, B and P move with the body.
-    positions, angles : tuple of bool
-        Which targets, in the order of visit, have a position, and a body angle.
-    exact : bool
-        Every target is met; otherwise the squared distances are the objective.
-    timed : bool
-        Driver rotations from the first target are prescribed.
-    crank : bool
-        The driver turns fully.
-    same_branch : bool
-    over_task : bool
-        Transmission is judged over the task, not over the turn.
-    limited : tuple of str
-        Fields of the requirements that limit something, those apart that cannot bind.
-    goals : tuple of str
-        Keys of the quantities that are weighed; none where another objective comes first.
-    own_goal : bool
-        The user's own objective decides.
-    grid : int
-        At how many instants what varies along the motion is bounded.
-    burden : Burden or None
-        What takes the torque and forces that are bounded; None where none are.
-    motor : MotorSpec or None
-        How the driver goes where anything is bounded along the motion.
-    closed : bool
-        The task motion is a whole turn.
-    keep_out : tuple of str
-        Of o2, o4, a, b, p: which are held in free regions, the moving ones at every target.
-    stay : bool
-        The distance from the start is the objective.
-    elastic : bool
-        Requirements may be missed; how far is the objective.
-    nearest : tuple of bool
-        At which targets, in the order of visit, the driver stands where the miss is least, as the
-        judge has it; of timed targets, that of all together.
-    most_error, zoned : bool
-        The error as a whole, or that at every target, is bounded, and the problem's objective decides.
-    """
+    """What the programme contains."""
 
     kind: Kind
     targets: int
-    poses: bool
-    positions: tuple[bool, ...]
-    angles: tuple[bool, ...]
-    exact: bool
-    timed: bool
-    crank: bool
+    poses: bool  # targets are whole poses, met exactly: A, B and P move with the body
+    positions: tuple[bool, ...]  # which targets, in the order of visit, have a position
+    angles: tuple[bool, ...]  # which have a body angle
+    exact: bool  # every target is met; otherwise the squared distances are the objective
+    timed: bool  # driver rotations from the first target are prescribed
+    crank: bool  # the driver turns fully
     same_branch: bool
-    over_task: bool
-    limited: tuple[str, ...]
-    goals: tuple[str, ...]
-    own_goal: bool
-    grid: int
-    burden: Burden | None
-    motor: MotorSpec | None
-    closed: bool
-    keep_out: tuple[str, ...]
-    stay: bool
-    elastic: bool
+    over_task: bool  # transmission is judged over the task, not over the turn
+    limited: tuple[str, ...]  # fields of the requirements that limit something, those apart that cannot bind
+    goals: tuple[str, ...]  # keys of the quantities weighed; none where another objective comes first
+    own_goal: bool  # the user's own objective decides
+    grid: int  # at how many instants what varies along the motion is bounded
+    burden: Burden | None  # what takes the torque and forces that are bounded; None where none are
+    motor: MotorSpec | None  # how the driver goes where anything is bounded along the motion
+    closed: bool  # the task motion is a whole turn
+    keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
+    stay: bool  # the distance from the start is the objective
+    elastic: bool  # requirements may be missed; how far is the objective
+    # At which targets, in the order of visit, the driver stands where the miss is least, as the judge has it;
+    # of timed targets, that of all together.
     nearest: tuple[bool, ...]
-    most_error: bool
-    zoned: bool
+    most_error: bool  # the error as a whole is bounded, and the problem's objective decides
+    zoned: bool  # the error at every target is bounded, and the problem's objective decides
 
     @property
     def fits(self) -> bool:

@@ -24,52 +24,30 @@ LIFTED = 10 * np.pi  # rad: angles are unwrapped along the motion
 
 @dataclass(frozen=True, slots=True)
 class Unknowns:
-    """Symbols of a design: the unknowns, and the choices that a start makes once for all.
+    """Symbols of a design: the unknowns, and the choices that a start makes once for all; sizes and rad.
 
-    Angles are lifted, so that order is a linear constraint and no arc function is differentiated.
-    `theta3` and `arm` (u, v) follow where whole poses are met exactly; `body_angle` is there for others.
-
-    Parameters
-    ----------
-    o2, o4, a, b : SX, shape (2,), sizes
-        The moving pivots at the first target; an inverted slider-crank has no B here, a slider-crank no O4.
-    r : SX, shape (4,), sizes
-        Of slider kinds the offset in place of r4, and 0 for what they lack.
-    theta1, tau : SX, rad
-        Direction of the ground line; the worst transmission angle.
-    theta2, theta3 : SX, shape (N,), rad
-        In the order of visit.
-    arm : SX, shape (2,), sizes
-    body_angle : SX, rad
-    direction, assembly : SX
-        Sense of the driver and assembly, +1 or -1.
-    at_first : SX, shape (N,)
-        1 at the first target, else 0.
-    turns : SX
-        1 where the driver of the start turns fully, else 0.
-    double_crank : SX
-        1 where r2 stays longer than r1, else 0.
-    body_turn : SX, rad
-        Of the body against the frame in which the programme has AP: the first pose, or `body_angle`.
+    Angles are lifted, so that order is a linear constraint and no arc function is differentiated. `theta3`
+    and `arm` (u, v) follow where whole poses are met exactly; `body_angle` is there for others. Pivots are
+    (2,), the moving ones at the first target; an inverted slider-crank has no B here, a slider-crank no O4.
     """
 
     o2: ca.SX
     o4: ca.SX
     a: ca.SX
     b: ca.SX
-    r: ca.SX
-    theta1: ca.SX
-    theta2: ca.SX
-    tau: ca.SX
+    r: ca.SX  # (4,); of slider kinds the offset in place of r4, and 0 for what they lack
+    theta1: ca.SX  # direction of the ground line
+    theta2: ca.SX  # (N,), in the order of visit, as theta3
+    tau: ca.SX  # the worst transmission angle
     theta3: ca.SX
-    arm: ca.SX
+    arm: ca.SX  # (2,)
     body_angle: ca.SX
-    direction: ca.SX
-    assembly: ca.SX
-    at_first: ca.SX
-    turns: ca.SX
-    double_crank: ca.SX
-    body_turn: ca.SX
+    direction: ca.SX  # sense of the driver, +1 or -1
+    assembly: ca.SX  # +1 or -1
+    at_first: ca.SX  # (N,); 1 at the first target, else 0
+    turns: ca.SX  # 1 where the driver of the start turns fully, else 0
+    double_crank: ca.SX  # 1 where r2 stays longer than r1, else 0
+    body_turn: ca.SX  # of the body against the frame that AP is in: the first pose, or `body_angle`
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Unknowns:

@@ -15,12 +15,8 @@ _HALVINGS = 12
 
 
 def advice(problem: Problem) -> str:
-    """For a stroke that no linkage transmits well: how well the best does, and what would do better.
+    """For a stroke that no linkage transmits well: how well the best does and what does better; else empty.
 
-    Empty for all others.
-
-    Examples
-    --------
     >>> advice(Problem(task=StrokeTask.from_degrees(swing_deg=80, time_ratio=1.05)))
     ''
     >>> print(advice(Problem(task=StrokeTask.from_degrees(swing_deg=40, time_ratio=1.5))))

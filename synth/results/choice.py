@@ -36,14 +36,11 @@ def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
 def _best_within_bounds(
     scaled: ScaledProblem, found: Sequence[Candidate], ledger: Ledger, run: Run
 ) -> Chosen:
-    """The best designs by the objective that miss the targets by no more than they may.
-
-    They are begun from the designs `found` without zones or ``error_factor``: exact ones, or of least
-    squares; `ledger` is that of the last search.
-    """
+    """The best designs by the objective that miss targets by no more than they may; `ledger` is the last."""
     problem, factor = scaled.problem, scaled.problem.requirements.error_factor
     most = np.inf if factor is None else factor * max(ledger.least, same_error(problem))
     allowed = most if factor is not None else max(error_of_use(scaled), ledger.least)
+    # from designs found without zones or error_factor: exact ones, or of least squares
     starts = [
         started_at(scaled, one, scaled.objective, most_error=most, zoned=scaled.zones is not None)
         for one in seeds_of(problem, found, NEAR * allowed, round(SEEDS * max(1.0, run.search.effort)))

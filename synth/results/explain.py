@@ -33,20 +33,11 @@ NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """Why a list is empty.
-
-    Parameters
-    ----------
-    note : str
-    nearest : tuple of Candidate
-        The closest misses, the smallest first.
-    designs : tuple of Candidate
-        Designs that do meet all requirements, where looking for near ones came upon some.
-    """
+    """Why a list is empty."""
 
     note: str
-    nearest: tuple[Candidate, ...] = ()
-    designs: tuple[Candidate, ...] = ()
+    nearest: tuple[Candidate, ...] = ()  # the closest misses, the smallest first
+    designs: tuple[Candidate, ...] = ()  # that meet all requirements, come upon in looking for near ones
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,8 +163,6 @@ def _ways_note(why: str, words: list[str], given: str = "") -> str:
 def note_parts(note: str) -> tuple[str, list[str]]:
     """What a note says, and the requirements that it names one by one.
 
-    Examples
-    --------
     >>> note_parts("no design; each of these alone would do: r 3 instead of 2; order = false")
     ('no design; each of these alone would do', ['r 3 instead of 2', 'order = false'])
     >>> note_parts("no design: the search found none")

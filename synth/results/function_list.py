@@ -83,24 +83,9 @@ def function_list(
 ) -> Result:
     """Find, verify and rank linkages of one kind that generate a function.
 
-    Parameters
-    ----------
-    problem : Problem
-        Whose task is a function; of one kind of linkage.
-    search : Search
-        `starts` has no part in it: its designs are not solved for one by one.
-    asked : Asking
-        Whether to end early.
-    constraints, objective
-        The user's own: what is found is judged and ranked by them.
-    progress : callable, optional
-        Called as designs are judged.
-    proving : Proving
-
-    Returns
-    -------
-    Result
-        Perhaps empty; then `Result.note` states why.
+    The user's own constraints and objective judge and rank what is found; `Search.starts` has no part in it:
+    its designs are not solved for one by one. `progress` is called as designs are judged. `Result.note`
+    states why a list is empty.
     """
     begun, aims = perf_counter(), FunctionAims.of(problem)
     judged = _Judged(problem, tuple(constraints), objective)

@@ -27,10 +27,7 @@ CLOSER = (0.8, 0.95)  # of the enlargement needed so far: the shares that are tr
 def nearest_zones(
     scaled: ScaledProblem, starts: Sequence[Start], known: Sequence[Candidate], first: int, run: Run
 ) -> tuple[list[Attempt], int]:
-    """Designs for which zones need little enlargement, with those `known`, and the number of starts solved.
-
-    Zones become smaller as long as a design is found for them, by less where none is.
-    """
+    """Designs for which zones need little enlargement, the `known` ones too, and the number of solves."""
     problem, zones = scaled.problem, scaled.zones
     made, solved = [Attempt("", one) for one in known], 0
 
@@ -47,6 +44,7 @@ def nearest_zones(
     need = min((_need(problem, one) for one in known), key=np.max, default=np.ones(2))
     nearest = tried(HALF, [replace(start, relaxed=("within",)) for start in starts], need)
     share, last = CLOSER
+    # smaller as long as a design is found, by less where none is
     while nearest is not None and share <= last and not run.ended():
         need = _need(problem, nearest)
         if need.max() <= 1:
@@ -62,13 +60,10 @@ def nearest_zones(
 def wider(
     problem: Problem, constraints: Sequence[Constraint], known: Sequence[Candidate]
 ) -> list[Relaxation]:
-    """Larger zones, or a greater tolerance, by which the nearest of some designs would do; one at most.
-
-    The `known` designs are judged against all requirements; the judge has accepted the one named under
-    the larger zones.
-    """
+    """Larger zones, or a greater tolerance, by which the nearest of some designs would do; one at most."""
     if problem.zones is None:
         return []
+    # they are judged against all requirements, the one named also under the larger zones
     for one in _missing_zones(problem, known):
         asked, words = _enlarged(problem, shares(problem, one.verdict))
         if verify(

@@ -19,15 +19,8 @@ from grashof.synth.search.tally import DISTINCT, Tally
 def one_list(problem: Problem, found: Sequence[Result]) -> Result:
     """One ranked list of what was found for each kind of linkage that a problem asks for.
 
-    Parameters
-    ----------
-    problem : Problem
-    found : sequence of Result
-        For the problem `Problem.for_kind` of each, in their order; perhaps not for the last ones.
-
-    Notes
-    -----
-    With ``error_factor`` the least error of all kinds counts.
+    For the problem `Problem.for_kind` of each, in their order; perhaps not for the last ones. With
+    ``error_factor`` the least error of all kinds counts.
     """
     if len(problem.mechanism) == 1 and found:
         return found[0]

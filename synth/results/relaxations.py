@@ -45,14 +45,11 @@ def relaxations(
     """For each requirement that may be the only one in the way: how it would have to be relaxed.
 
     One relaxation for each requirement at most, the smallest miss first; `known` are designs that were
-    rejected. The judge has accepted each design under the relaxed requirement and all others.
-
-    Notes
-    -----
-    Without the requirement a search finds linkages that meet all others; from the nearest of them the
-    elastic programme makes what is missed of it as small as it can. Fixed numbers of draws and solves
-    bound the time, so that the seed decides. Where it is proven that even without the requirement there
-    is no design, nothing is searched.
+    rejected. The judge has accepted each design under the relaxed requirement and all others. Without the
+    requirement a search finds linkages that meet all others; from the nearest of them the elastic programme
+    makes what is missed of it as small as it can. Fixed numbers of draws and solves bound the time, so that
+    the seed decides. Where it is proven that even without the requirement there is no design, nothing is
+    searched.
     """
     found = list[Relaxation]()
     for key in limiting(scaled.problem, scaled.constraints):
@@ -132,10 +129,7 @@ def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
 
 
 def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
-    """The same relaxation with an angle rounded, or a design of smaller error, if there is one.
-
-    Both are solved under the relaxed requirement, which makes sure of it.
-    """
+    """The same relaxation with an angle rounded, or a design of smaller error, if there is one."""
     angle = fixes_angle(scaled.problem.requirements, found.key)
     if scaled.exact and not angle:
         return found
@@ -143,6 +137,7 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     problem = replace(scaled.problem, requirements=asked.requirements)
     eased = replace(scaled.of_problem(problem), constraints=asked.constraints)
     under_it = judged_again(eased, found.candidate)
+    # solved under the relaxed requirement, which makes sure of it
     (made,) = run.solve(eased, [Start.of_linkage(eased, under_it.linkage, under_it.verdict)], 0)
     if not made.verified:
         return found

@@ -23,33 +23,15 @@ COARSEST = 0.02  # share of a change that its value may be rounded by
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """A requirement that alone stands in the way, and a design that the judge accepts once it is relaxed.
+    """A requirement that alone stands in the way, and a design that the judge accepts once it is relaxed."""
 
-    Parameters
-    ----------
-    key : str
-        The requirement.
-    words : str
-        What would do, such as "transmission_min_deg 31.4 instead of 35".
-    requirements : Requirements
-        Those of the problem, this one relaxed.
-    constraints : tuple of callable
-        The user's own, relaxed where the key is "constraints".
-    candidate : Candidate
-        Judged against the requirements as they were asked.
-    miss : float
-        By how much it misses them: sizes, rad or ratio.
-    figures : int
-        How many limits change.
-    """
-
-    key: str
-    words: str
-    requirements: Requirements
-    constraints: tuple[Constraint, ...]
-    candidate: Candidate
-    miss: float
-    figures: int = 1
+    key: str  # the requirement
+    words: str  # what would do, such as "transmission_min_deg 31.4 instead of 35"
+    requirements: Requirements  # those of the problem, this one relaxed
+    constraints: tuple[Constraint, ...]  # the user's own, relaxed where the key is "constraints"
+    candidate: Candidate  # judged against the requirements as they were asked
+    miss: float  # by how much it misses them: sizes, rad or ratio
+    figures: int = 1  # how many limits change
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +48,10 @@ class Eased:
 
 
 def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
-    """Keys of the requirements that ask for more than to exclude the absurd, exactness aside.
-
-    The user's own constraints are one of them.
-    """
+    """Keys of the requirements that ask for more than to exclude the absurd, exactness aside."""
     wanted, usual = problem.requirements, Requirements()
     keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
-    keys += ["constraints"] * bool(constraints)
+    keys += ["constraints"] * bool(constraints)  # the user's own
     if wanted.rotatability is not Rotatability.ANY and not (
         problem.task.closed and problem.task.has_position.any()
     ):
@@ -114,26 +93,12 @@ def loosest(problem: Problem, key: str) -> Requirements:
 def relaxation(
     problem: Problem, constraints: Sequence[Constraint], key: str, candidate: Candidate
 ) -> Relaxation | None:
-    """What a requirement would have to be for a design; None where another one stands in its way, too.
-
-    Parameters
-    ----------
-    problem : Problem
-    constraints : sequence of callable
-        The user's own.
-    key : str
-        Of the requirement.
-    candidate : Candidate
-        Judged against all of them.
-
-    Notes
-    -----
-    The value is rounded to the loose side, and the judge has to accept the design with it.
-    """
+    """What a requirement would have to be for a judged design; None where another is in its way, too."""
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
     if key not in ("rotatability", *UNSMOOTH) and len(missed) < len(candidate.verdict.defects):
         return None
     miss, own = max((defect.miss for defect in missed), default=1.0), tuple(constraints)
+    # rounded to the loose side; the judge has to accept the design with it
     for change, words in _eased(problem, own, key, missed):
         eased = change.pop("constraints", own)
         wanted = replace(problem.requirements, **change)

@@ -15,12 +15,7 @@ from grashof.synth.search.story import Ending, Story, now
 
 
 class SoFar:
-    """The designs that a search last reported of each kind of linkage.
-
-    Parameters
-    ----------
-    problem : Problem
-    """
+    """The designs that a search last reported of each kind of linkage."""
 
     def __init__(self, problem: Problem) -> None:
         self._problem, self._begun = problem, now()

@@ -24,17 +24,10 @@ KEPT = 0.98  # of the error that may be added: the judge looks at all targets
 
 @dataclass(frozen=True, slots=True)
 class StandIn:
-    """The problem whose targets stand in for those of another one; that problem itself where it is short.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    least : float, sizes
-        The least error of all targets; zero where the problem stands for itself.
-    """
+    """The problem whose targets stand in for those of another one; that problem itself where it is short."""
 
     scaled: ScaledProblem
-    least: float = 0.0
+    least: float = 0.0  # the least error of all targets, sizes; zero where the problem stands for itself
 
     @classmethod
     def of(cls, scaled: ScaledProblem, best: Candidate, least: float) -> StandIn:

@@ -31,14 +31,7 @@ COMPROMISE = "compromise"  # best at nothing alone, but no other design is bette
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """Designs of a list, and what was solved for them.
-
-    Parameters
-    ----------
-    designs : tuple of Candidate
-    rejected : list of Attempt
-    solved : int
-    """
+    """Designs of a list, and what was solved for them."""
 
     designs: tuple[Candidate, ...]
     rejected: list[Attempt]
@@ -46,15 +39,10 @@ class Chosen:
 
 
 def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
-    """Beside the least error: within some times of it the best transmission and the smallest size.
-
-    Of all designs those that no other one beats in every goal, up to twice the least error. Where every
-    target is met there is nothing to trade: all such designs, with what freedom the targets leave made use
-    of, and brought back onto them.
-    """
+    """Beside the least error: within some times of it the best transmission and the smallest size."""
     problem = scaled.problem
     exact = ledger.least <= EXACT_ERROR and same_error(problem) <= SAME_ERROR
-    if exact and not leaves_freedom(scaled):
+    if exact and not leaves_freedom(scaled):  # all targets met: nothing to trade
         met = [one for one in ledger.verified if _error(problem, one) <= max(ledger.least, MET)]
         return Chosen(ranked(problem, met), [], 0)
     least = max(ledger.least, _exact(problem))
@@ -82,13 +70,14 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             every = (*good, *latest.get(goal, ()))
             latest[goal] = _best_at(stand_in, goal, every, factor, most) or latest.get(goal, [])
             found += good if stand_in.is_itself else latest[goal]
-    if exact:
+    if exact:  # with what freedom the targets leave made use of, brought back onto them
         begun_again = [] if run.ended() else [_settled(scaled, one) for one in found]
         back = run.solve(scaled, begun_again, ledger.solved + len(attempts))
         attempts += back
         found = [each for one in back for each in one.verified]
     elif not stand_in.is_itself:
         found = on_all_targets(scaled, found, FACTORS[-1] * least)
+    # of all designs those that no other one beats in every goal, up to twice the least error
     designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
 

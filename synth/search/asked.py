@@ -13,13 +13,7 @@ from grashof.synth.starts.finder import refuse_unsearchable
 
 
 def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
-    """The problem's own search options, or those given.
-
-    Raises
-    ------
-    ProblemError
-        The problem, or an option, is invalid.
-    """
+    """The problem's own search options, or those given; ProblemError where it, or an option, is invalid."""
     if not isinstance(problem, Problem):
         raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
     options = {name: number for name, number in given.items() if number is not None}
@@ -30,13 +24,7 @@ def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
 
 
 def asking(time_limit: float | None, stop: Callable[[], bool] | None) -> Asking:
-    """What is asked whether to end: after a time from now on, s, or because somebody wants it.
-
-    Raises
-    ------
-    ProblemError
-        The time is invalid.
-    """
+    """What asks to end: a time from now on, s (ProblemError if invalid), or somebody who wants it."""
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
         raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
     return Asking(time_limit, stop)

@@ -46,21 +46,11 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """What became of a start.
+    """What became of a start."""
 
-    Parameters
-    ----------
-    status : str
-        Ipopt's return status.
-    candidate : Candidate or None
-        The design, judged, defects or not; None when the numbers make no linkage.
-    cognates : tuple of Candidate
-        Other linkages that lead the coupler point, or the body, alike, without defects.
-    """
-
-    status: str
-    candidate: Candidate | None
-    cognates: tuple[Candidate, ...] = ()
+    status: str  # Ipopt's return status
+    candidate: Candidate | None  # the design, judged, defects or not; None when the numbers make no linkage
+    cognates: tuple[Candidate, ...] = ()  # other linkages without defects that lead P, or the body, alike
 
     @property
     def outcome(self) -> Outcome:
@@ -78,10 +68,7 @@ class Attempt:
 
 
 def attempt(scaled: ScaledProblem, start: Start, number: int, *, cognates: bool = True) -> Attempt:
-    """Solve from a start, polish the design, verify it, and linkages that move alike where that is of use.
-
-    `number` is that of the start.
-    """
+    """Solve from start `number`, polish the design, verify it, and what moves alike where that is of use."""
     if overdue():
         return Attempt(LEFT_ALONE, None)
     finder, start = finder_for(scaled), polished_start(scaled, start)

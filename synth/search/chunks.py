@@ -22,21 +22,7 @@ AHEAD = 3  # chunks begun for each process before it is known that they are want
 
 
 def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
-    """One chunk of a search, wherever it is made; a function of what it is given.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    number : int
-    enough, seed : int
-    starts : int
-        Most solves.
-
-    Raises
-    ------
-    Stopped
-        It was asked to end before it was done.
-    """
+    """One chunk of at most `starts` solves, a function of what it is given; `Stopped` if asked to end."""
     return _made_by(Here(), scaled, number, enough, seed, starts)
 
 
@@ -53,21 +39,7 @@ def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: 
 
 
 def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> Iterator[Chunk]:
-    """Chunks in the order of their numbers, several of them made at a time.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    run : Run
-    numbers : sequence of int
-    starts : int
-        Most solves of each.
-
-    Raises
-    ------
-    Stopped
-        It was asked to end before all are done.
-    """
+    """Chunks of at most `starts` solves by their numbers, several at a time; `Stopped` if asked to end."""
     rest = which(run.search, starts)
     for place, number in enumerate(numbers):
         if not run.journal.recorded:

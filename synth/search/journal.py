@@ -52,20 +52,9 @@ class Journal(Protocol):
     def done(
         self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
     ) -> T:
-        """The result of the next step: as recorded, where that holds, else done now.
+        """The result of the next step: as recorded, where that `holds`, else done now.
 
-        Parameters
-        ----------
-        kind : str
-            Of step.
-        of : value
-            What it is done with (see `plain`).
-        problem : Problem
-            That its designs are for.
-        do : callable
-            Does it.
-        holds : callable
-            Whether a recorded result is true; what is not is done again.
+        Of a `kind`, with `of` (see `plain`); its designs are for `problem`.
         """
 
     def close(self) -> None:
@@ -97,26 +86,13 @@ class Recorded:
     """A journal in a folder: `HEAD` states of which search, ``000001.json`` and so on hold its steps.
 
     A search is a sequence of steps, screenings, solves and chunks, each of which depends on nothing but the
-    problem, the seed and the steps before; so it goes on by taking the results of the first ones from
-    the record. Each file is written to a temporary name, flushed to disk and renamed, about every
-    `EVERY` seconds, and holds all steps since the one before.
+    problem, the seed and the steps before; so it goes on by taking the results of the first ones from the
+    record. Each file is written to a temporary name, flushed to disk and renamed, about every `EVERY`
+    seconds, and holds all steps since the one before. A folder without a record is made with the first file.
 
-    Parameters
-    ----------
-    folder : Path
-        Goes on from the record in it, if there is one; made with the first file.
-    head : mapping
-        Of which search (see `head_of`).
-    needed : bool
-        Whether a file that cannot be written ends the search; else it ends the record alone, and `lost`
-        says why.
-
-    Raises
-    ------
-    ProblemError
-        The record is of another search, or of another version of a package.
-    OSError
-        It cannot be written, where it is needed.
+    Where it is `needed`, a file that cannot be written ends the search (OSError); else it ends the record
+    alone, and `lost` says why. ProblemError where the record is of another search (see `head_of`), or of
+    another version of a package.
     """
 
     def __init__(self, folder: Path, head: Mapping[str, Any], *, needed: bool) -> None:
@@ -245,17 +221,14 @@ class Recorded:
 def journal_of(
     folder: Path | None, problem: Problem, search: Search, *, keep: bool = False
 ) -> Iterator[Journal]:
-    """The journal of a search in a folder.
-
-    The record of a search that was stopped, or failed, stays; that of a whole one goes, or stays marked as
-    whole where it is to be kept.
-    """
+    """The journal of a search in a folder; the record of a search that was stopped, or failed, stays."""
     if folder is None:
         yield Unrecorded()
         return
     journal = Recorded(folder, head_of(problem, search), needed=False)
     try:
         yield journal
+        # that of a whole one goes, or stays marked as whole where it is to be kept
         if keep and journal.is_open and (folder / HEAD).exists():
             journal.finish()
         elif journal.is_open or (journal.lost and not keep):
@@ -277,13 +250,7 @@ def head_of(problem: Problem, search: Search, **more: Any) -> dict[str, Any]:
 
 
 def read_head(folder: Path) -> dict[str, Any]:
-    """The head of a record.
-
-    Raises
-    ------
-    ProblemError
-        There is none.
-    """
+    """The head of a record; ProblemError where there is none."""
     found = _content(folder / HEAD)
     if not isinstance(found, dict):
         raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}")

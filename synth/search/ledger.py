@@ -9,15 +9,16 @@ from math import ceil
 
 import numpy as np
 
-from grashof.problems import Search
-from grashof.problems.values.arrays import ComplexArray
+from grashof.problems import Problem, Search
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt
-from grashof.synth.search.leaders import Leaders
 from grashof.synth.search.tally import Tally
+from grashof.synth.theory.distinct import DISTINCT, apart, signature
 
 FRUITLESS = 64  # so many solves without one verified exact design end the search
 STALE = 20  # so many rounds on end without a new exact design, too
@@ -33,41 +34,62 @@ MOST_KEPT, OF_KIND = 2000, 8
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """What came of one round, for a ledger that saw nothing else of it.
-
-    Parameters
-    ----------
-    tally : Tally
-    designs : tuple of Candidate
-        Verified; of those that are not distinct the best.
-    misses : tuple of Attempt
-        Rejected; the nearest of each kind.
-    solved, size : int
-        Solves, and the work of the round, in usual rounds.
-    """
+    """What came of one round, for a ledger that saw nothing else of it."""
 
     tally: Tally
-    designs: tuple[Candidate, ...]
-    misses: tuple[Attempt, ...]
+    designs: tuple[Candidate, ...]  # verified; of those that are not distinct the best
+    misses: tuple[Attempt, ...]  # rejected; the nearest of each kind
     solved: int
-    size: int
+    size: int  # the work of the round, in usual rounds
+
+
+@dataclass(slots=True)
+class Leaders:
+    """What `ranked` makes of all designs added so far; each is valued and compared with the others once."""
+
+    problem: Problem
+    _every: list[Candidate] = field(default_factory=list)
+    _order: list[tuple[tuple[float, ...], int]] = field(default_factory=list)  # keys and numbers, best first
+    _alike: list[list[int]] = field(default_factory=list)  # numbers of those not distinct from each
+    _signatures: FloatArray = field(default_factory=lambda: np.empty((16, 9)))
+
+    def __len__(self) -> int:
+        return len(self._every)
+
+    def add(self, candidates: Iterable[Candidate]) -> None:
+        """Take designs in."""
+        origin = self.problem.task.middle
+        for candidate in candidates:
+            number, numbers = len(self._every), signature(candidate.linkage, origin)
+            if number == len(self._signatures):
+                self._signatures = np.concatenate([self._signatures, np.empty_like(self._signatures)])
+            near = np.flatnonzero(~(apart(numbers, self._signatures[:number]) > DISTINCT)).tolist()
+            self._signatures[number] = numbers
+            self._every.append(candidate)
+            self._alike.append(near)
+            for other in near:
+                self._alike[other].append(number)
+            insort(self._order, (ranking_key(self.problem, candidate), number))
+
+    @property
+    def distinct(self) -> tuple[Candidate, ...]:
+        """Distinct designs, best first; of two that are not distinct the better one."""
+        out, chosen = bytearray(len(self._every)), list[Candidate]()
+        for _, number in self._order:
+            if not out[number]:
+                chosen.append(self._every[number])
+                for other in self._alike[number]:
+                    out[other] = 1
+        return tuple(chosen)
 
 
 @dataclass(slots=True)
 class Ledger:
-    """Bookkeeping of a search for exact designs, as many as are enough, or for the least error.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    search : Search
-    exhausted : str
-        Why a search ends that has gone through all its rounds.
-    """
+    """Bookkeeping of a search for exact designs, as many as are enough, or for the least error."""
 
     scaled: ScaledProblem
     search: Search
-    exhausted: str
+    exhausted: str  # why a search ends that has gone through all its rounds
     verified: list[Candidate] = field(default_factory=list)
     rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()

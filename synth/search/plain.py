@@ -6,7 +6,9 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
-from typing import Any
+from functools import cache
+from types import UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -19,7 +21,6 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.kinds import kind_of
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.attempt import Attempt, Outcome
-from grashof.synth.search.field_types import refuse_misfits
 from grashof.synth.search.ledger import Chunk
 from grashof.synth.search.tally import Tally
 
@@ -34,6 +35,9 @@ TYPES: dict[str, Any] = {
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
 # Known, or measured again.
 _LEFT_OUT = {"Candidate": {"problem", "values"}, "Start": {"kind"}}
+# Numbers, by how NumPy's kinds of them begin: a whole number is a real one, too, but True is none.
+_NUMBERS = {int: "iu", float: "iuf", complex: "iufc", bool: "b"}
+_SCALARS = (int, float, complex, np.generic)
 
 
 def plain(value: Any) -> Any:
@@ -41,8 +45,6 @@ def plain(value: Any) -> Any:
 
     Tuples are lists there; whatever else has no form of its own is an object whose one key names it.
 
-    Examples
-    --------
     >>> plain((1, 2j)), plain(np.array([0.5]))
     ([1, {'complex': [0.0, 2.0]}], {'array': ['<f8', [1], [0.5]]})
     """
@@ -75,13 +77,8 @@ def plain(value: Any) -> Any:
 def restored(value: Any, problem: Problem) -> Any:
     """The value of a plain form; designs are for `problem`.
 
-    Raises
-    ------
-    ValueError
-        It is not the plain form of a value whose fields have their types.
+    ValueError unless it is the plain form of a value whose fields have their types.
 
-    Examples
-    --------
     >>> from grashof import load
     >>> restored(plain((1, 2j, float("inf"))), load("luggage"))
     (1, 2j, inf)
@@ -147,3 +144,42 @@ def _restored_array(dtype: str, shape: list[int], numbers: list[Any]) -> np.ndar
     array = array.reshape(shape)
     array.setflags(write=False)
     return array
+
+
+@cache
+def _hints(kind: type) -> dict[str, Any]:
+    return get_type_hints(kind)
+
+
+def refuse_misfits(kind: type, named: Mapping[str, Any]) -> None:
+    """Raise `TypeError` unless values have the types of the fields of a dataclass that they name."""
+    hints = _hints(kind)
+    for name, value in named.items():
+        if name not in hints or not fits(value, hints[name]):
+            raise TypeError(f"{kind.__name__}.{name}")
+
+
+def fits(value: Any, hint: Any) -> bool:
+    """Whether a value is of an annotated type.
+
+    >>> fits((1.0, 2), tuple[float, ...]), fits(True, int), fits(None, float | None)
+    (True, False, True)
+    >>> fits({"a": "b"}, dict[str, int])
+    False
+    """
+    kind: Any = get_origin(hint) or hint
+    parts = get_args(hint)
+    if kind in (Union, UnionType):
+        return any(fits(value, each) for each in parts)
+    if kind in _NUMBERS:
+        return isinstance(value, _SCALARS) and np.asarray(value).dtype.kind in _NUMBERS[kind]
+    if kind is np.ndarray:
+        return isinstance(value, (np.ndarray, np.generic))
+    if kind is type(None) or not isinstance(value, kind):
+        return value is None and kind is type(None)
+    if kind is tuple and parts[1:] != (...,):
+        return len(value) == len(parts) and all(map(fits, value, parts))
+    if issubclass(kind, Mapping):
+        key, each = (*parts, int)[:2]  # a Counter states its keys alone
+        return all(fits(name, key) and fits(found, each) for name, found in value.items())
+    return not parts or all(fits(each, parts[0]) for each in value)

@@ -57,37 +57,17 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """How a search is run.
-
-    Parameters
-    ----------
-    search : Search
-    work : Work
-        Where screenings and attempts are made.
-    asked_to_stop : callable
-        Asked between solves: to be content with what there is.
-    journal : Journal
-    progress : callable, optional
-        Called with a `Progress` after every batch.
-    seconds : dict
-        Time by stage.
-    since : float, s
-        When it began.
-    crashed : list of int
-        Numbers of the starts that end the process that solves them.
-    proving : Proving
-        How far proofs go.
-    """
+    """How a search is run."""
 
     search: Search
-    work: Work
-    asked_to_stop: Callable[[], bool]
+    work: Work  # where screenings and attempts are made
+    asked_to_stop: Callable[[], bool]  # asked between solves: to be content with what there is
     journal: Journal = field(default_factory=Unrecorded)
-    progress: Callable[[Progress], object] | None = None
-    seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})
-    since: float = field(default_factory=perf_counter)
-    crashed: list[int] = field(default_factory=list)
-    proving: Proving = field(default_factory=Proving)
+    progress: Callable[[Progress], object] | None = None  # called after every batch
+    seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})  # by stage
+    since: float = field(default_factory=perf_counter)  # when it began, s
+    crashed: list[int] = field(default_factory=list)  # numbers of starts that end the process solving them
+    proving: Proving = field(default_factory=Proving)  # how far proofs go
 
     @property
     def times(self) -> dict[str, float]:

@@ -29,25 +29,19 @@ CONTINUED = 3  # times at most that the solve of the least error goes on
 
 
 def searches(scaled: ScaledProblem, run: Run, known: Round | None = None) -> list[Ledger]:
-    """The search as it is asked; where targets may be missed, one or two without.
-
-    First with all of them met, where that can be expected; then by least squares, where few do.
-    """
+    """The search as it is asked; where targets may be missed, one or two without."""
     first, *second = asked_in_turn(scaled)
     ledger = search_designs(first, run, known)
-    if second and ledger.complete and found_few(ledger):
+    if second and ledger.complete and found_few(ledger):  # least squares, where few meet all targets
         return [ledger, search_designs(second[0], run)]
     return [ledger]
 
 
 def asked_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
-    """The problem as it is searched: as it is, or without zones, and then, perhaps, by least squares.
-
-    Two poses leave least squares nothing to make small.
-    """
+    """The problem as it is searched: as it is, or without zones, and then, perhaps, by least squares."""
     problems = [asked_first(scaled.problem)]
     first = scaled.of_problem(problems[0])
-    if scaled.bounded and first.exact and len(scaled.targets) > 2:
+    if scaled.bounded and first.exact and len(scaled.targets) > 2:  # two leave nothing to make small
         problems.append(scaled.problem.without_zones())
     return tuple(replace(scaled.of_problem(each), of_use=error_of_use(scaled)) for each in problems)
 
@@ -64,14 +58,12 @@ def nothing_to_search(scaled: ScaledProblem, run: Run) -> list[Ledger]:
 
 
 def search_designs(scaled: ScaledProblem, run: Run, known: Round | None = None) -> Ledger:
-    """Find starts, solve from them, and keep what is verified, round by round until there is enough.
-
-    Starts that are known make the first round; where these are enough, nothing else is looked for.
-    """
+    """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
     _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
     _begin_more(finder, ledger, run)
+    # they make the first round; where these are enough, nothing else is looked for
     given = [known] if known is not None and known.starts else []
     for number, found in enumerate(chain(given, _rounds(finder, ledger, run)), start=1):
         with run.timed("solving"):

@@ -25,38 +25,18 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Story:
-    """What happened to a run, besides its designs.
+    """What happened to a run, besides its designs; times in UTC."""
 
-    Parameters
-    ----------
-    begun, ended : datetime
-        UTC; of the search, in ``run.json`` with what is written.
-    ending : Ending
-    resumed : int
-        How often it was gone on with from its record.
-    steps_recorded : int
-        Screenings, solves and chunks taken from the record.
-    record_lost : str
-        Why the record ended before the search; empty where it did not.
-    processes_lost : int
-        How often a process was lost and replaced.
-    starts_crashed : tuple of int
-        Numbers of the starts that end the process that solves them.
-    drawings_left_out : int
-    why_left_out : str
-        Empty where none is.
-    """
-
-    begun: datetime
+    begun: datetime  # of the search, in ``run.json`` with what is written, as `ended`
     ended: datetime
     ending: Ending
-    resumed: int = 0
-    steps_recorded: int = 0
-    record_lost: str = ""
-    processes_lost: int = 0
-    starts_crashed: tuple[int, ...] = ()
+    resumed: int = 0  # how often it was gone on with from its record
+    steps_recorded: int = 0  # screenings, solves and chunks taken from the record
+    record_lost: str = ""  # why the record ended before the search; empty where it did not
+    processes_lost: int = 0  # how often a process was lost and replaced
+    starts_crashed: tuple[int, ...] = ()  # numbers of the starts that end the process that solves them
     drawings_left_out: int = 0
-    why_left_out: str = ""
+    why_left_out: str = ""  # empty where none is
 
 
 def now() -> datetime:
@@ -66,23 +46,12 @@ def now() -> datetime:
 
 @dataclass(slots=True)
 class Asking:
-    """Whether a search is asked to end, and what asks; once it is asked, it stays so.
+    """Whether a search is asked to end, and what asks; once it is asked, it stays so."""
 
-    Parameters
-    ----------
-    time_limit : float, s, optional
-        From now on.
-    stop : callable, optional
-        Asks it by True.
-    ending : Ending
-    begun : datetime
-        UTC.
-    """
-
-    time_limit: float | None
-    stop: Callable[[], bool] | None
+    time_limit: float | None  # s, from now on
+    stop: Callable[[], bool] | None  # asks it by True
     ending: Ending = Ending.COMPLETE
-    begun: datetime = field(default_factory=now)
+    begun: datetime = field(default_factory=now)  # UTC
     _since: float = field(default_factory=perf_counter)
 
     def __call__(self) -> bool:

@@ -13,27 +13,13 @@ COGNATES, CHOICE, DISTINCT = "cognates verified", "solves for the choice", "veri
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """Counts of a search.
+    """Counts of a search."""
 
-    Parameters
-    ----------
-    found : Counter of str
-        By the search for starts, such as "feasible finds".
-    outcomes : Counter of Outcome
-        Of solves.
-    totals : Counter of str
-        `COGNATES`, `CHOICE`, `DISTINCT`.
-    rejected : Counter of str
-        Solves by the first requirement that their designs miss.
-    statuses : Counter of str
-        Solves by Ipopt's return status.
-    """
-
-    found: Counter[str] = field(default_factory=Counter)
-    outcomes: Counter[Outcome] = field(default_factory=Counter)
-    totals: Counter[str] = field(default_factory=Counter)
-    rejected: Counter[str] = field(default_factory=Counter)
-    statuses: Counter[str] = field(default_factory=Counter)
+    found: Counter[str] = field(default_factory=Counter)  # by the search for starts, such as "feasible finds"
+    outcomes: Counter[Outcome] = field(default_factory=Counter)  # of solves
+    totals: Counter[str] = field(default_factory=Counter)  # `COGNATES`, `CHOICE`, `DISTINCT`
+    rejected: Counter[str] = field(default_factory=Counter)  # solves by the first requirement missed
+    statuses: Counter[str] = field(default_factory=Counter)  # solves by Ipopt's return status
 
     def add(self, attempts: Iterable[Attempt]) -> None:
         """Count attempts."""

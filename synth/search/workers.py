@@ -65,17 +65,10 @@ class Work(Protocol):
 
 
 def screen(scaled: ScaledProblem, effort: int, number: int, enough: int, seed: int) -> Round | None:
-    """One round of the search for starts; it depends on no other one.
-
-    Parameters
-    ----------
-    scaled : ScaledProblem
-    effort, number : int
-        Which one: of the usual rounds (0), or of those that a greater effort adds, which are larger.
-    enough, seed : int
-    """
+    """One round of the search for starts; it depends on no other one."""
     key = (effort, number) if effort or number else ()
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+    # effort 0: the usual rounds; those that a greater effort adds are larger
     return finder_for(scaled).round(number, enough, rng, LARGER if effort else 1)
 
 
@@ -123,14 +116,7 @@ class Here:
 
 
 class Elsewhere:
-    """On an executor; what may be wanted is begun early, and dropped where it is not.
-
-    Parameters
-    ----------
-    executor : Executor
-    width : int
-        How many it works on at a time.
-    """
+    """On an executor, `width` at a time; what may be wanted is begun early, and dropped where it is not."""
 
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width, self.lost = executor, width, 0
@@ -295,17 +281,8 @@ class Processes(Elsewhere):
 def working(workers: int, executor: Executor | None) -> Iterator[Work]:
     """Where screenings and attempts are made, in the order asked for.
 
-    Parameters
-    ----------
-    workers : int
-        Processes of its own, which end with it; none for one. How many an `executor` has.
-    executor : concurrent.futures.Executor, optional
-        Where to work instead; not shut down.
-
-    Raises
-    ------
-    SolverError
-        The executor was lost.
+    On as many processes of its own as there are `workers`, which end with it (none for one), or on an
+    `executor` that has so many and is not shut down. SolverError where the executor was lost.
     """
     if executor is not None:
         elsewhere = Elsewhere(executor, workers)
@@ -332,11 +309,8 @@ def _numbered(one: Attempt, number: int) -> Attempt:
 
 
 def new_state() -> Any:
-    """What `processes` are told, by its value: nothing, `STOP` or `OVER`.
-
-    It has no lock: one that a killed process holds would never be free again.
-    """
-    return get_context("spawn").RawValue("b", 0)
+    """What `processes` are told, by its value: nothing, `STOP` or `OVER`."""
+    return get_context("spawn").RawValue("b", 0)  # no lock: one that a killed process holds is never free
 
 
 def processes(count: int, state: Any) -> ProcessPoolExecutor:
@@ -346,14 +320,12 @@ def processes(count: int, state: Any) -> ProcessPoolExecutor:
 
 
 def begun(executor: Executor, count: int) -> Future[int]:
-    """Begin all processes of an executor; done once the first of them is there.
-
-    Ctrl-C reaches every process of a terminal: where it comes before a process can ignore it, that one would
-    end with a traceback. So it waits in them, and here for as long as they are begun.
-    """
+    """Begin all processes of an executor; done once the first of them is there."""
     if sys.platform == "win32":
         return executor.submit(abs, 0)
     resource_tracker.ensure_running()  # begun with them otherwise, it would let Ctrl-C through again
+    # Ctrl-C reaches every process of a terminal: where it comes before a process can ignore it, that one
+    # would end with a traceback. So it waits in them, and here for as long as they are begun.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         first, *_ = [executor.submit(abs, 0) for _ in range(count)]  # each begins one

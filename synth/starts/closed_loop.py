@@ -22,37 +22,17 @@ SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
 @dataclass(frozen=True, slots=True)
 class SearchTargets:
-    """What the coupler has to pass.
+    """What the coupler has to pass: N targets, lengths in sizes, angles in rad."""
 
-    Parameters
-    ----------
-    points : ndarray of complex, shape (N,), sizes
-        Without a last one that repeats the first.
-    weights : ndarray, shape (N,)
-        Of the squared distances; zero where the position is free.
-    turns : ndarray, shape (N,), rad
-        Angles of the body.
-    turn_weights : ndarray, shape (N,), sizes squared
-        Of the squared turns from there; zero where the angle is free.
-    timing : ndarray, shape (N,), rad
-        Driver rotation from the first point; all zero where it is free.
-    wanted : Requirements
-        In the frame of the points. Its limits draw the search inwards.
-    closed : bool
-        The task motion is a whole turn.
-    kind : Kind
-    limited : tuple
-        Field, part and range of all that is limited and has a formula.
-    """
-
-    points: ComplexArray
-    weights: FloatArray
-    turns: FloatArray
-    turn_weights: FloatArray
-    timing: FloatArray
-    wanted: Requirements
-    closed: bool = False
+    points: ComplexArray  # (N,), without a last one that repeats the first
+    weights: FloatArray  # (N,), of the squared distances; zero where the position is free
+    turns: FloatArray  # (N,), angles of the body
+    turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
+    timing: FloatArray  # (N,), driver rotation from the first point; all zero where it is free
+    wanted: Requirements  # in the frame of the points; its limits draw the search inwards
+    closed: bool = False  # the task motion is a whole turn
     kind: Kind = FOUR_BAR
+    # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -96,24 +76,14 @@ class SearchTargets:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Linkages of a search.
+    """Linkages of a search."""
 
-    Parameters
-    ----------
-    unknowns : ndarray, shape (n, M)
-        Proportions, then the first driver angle and the logarithms of the gaps between the driver
-        angles and of the rest of the turn (ordered), or all driver angles.
-    longer_driver : ndarray of bool, shape (n,)
-        r2 > r1: among full cranks a double-crank.
-    assembly : ndarray, shape (n, N)
-    direction : ndarray, shape (n,)
-        Sense of the driver.
-    """
-
+    # (n, M): proportions, then the first driver angle and the logarithms of the gaps between the driver
+    # angles and of the rest of the turn (ordered), or all driver angles
     unknowns: FloatArray
-    longer_driver: BoolArray
-    assembly: FloatArray
-    direction: FloatArray
+    longer_driver: BoolArray  # (n,), r2 > r1: among full cranks a double-crank
+    assembly: FloatArray  # (n, N)
+    direction: FloatArray  # (n,), sense of the driver
 
     def __len__(self) -> int:
         return len(self.unknowns)
@@ -190,15 +160,12 @@ def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def body_turns(target: SearchTargets, loop: Loop) -> tuple[FloatArray, FloatArray]:
-    """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,).
-
-    None where no target has an angle: (n, 0). How the body sits on the coupler is solved for exactly.
-    """
+    """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,)."""
     if not target.has_angles:
-        return np.zeros((len(loop.r2), 0)), np.zeros(len(loop.r2))
+        return np.zeros((len(loop.r2), 0)), np.zeros(len(loop.r2))  # no target has an angle
     weights = target.turn_weights
     off = np.exp(1j * target.turns) * loop.e3.conj()
-    middle = np.angle((weights * off).sum(axis=1))
+    middle = np.angle((weights * off).sum(axis=1))  # how the body sits on the coupler is solved for exactly
     missed = np.angle(off * np.exp(-1j * middle)[:, None])
     mean = (weights * missed).sum(axis=1) / weights.sum()
     return np.sqrt(weights) * (missed - mean[:, None]), middle + mean

@@ -43,12 +43,10 @@ class _Side:
 
 
 def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements, pairs: int) -> Screened:
-    """All feasible pairs of the given dyads.
-
-    `body` is the guided point at the first pose; beyond so many `pairs` to judge the dyads are thinned.
-    """
+    """All feasible pairs of the given dyads; `body` is the guided point at the first pose."""
     driver, driven = _sides(motion, body, dyads, wanted)
     driver, driven = driver[met(driver.violations)], driven[met(driven.violations)]
+    # beyond so many pairs to judge they are thinned
     stride = max(1, int(np.ceil(np.sqrt(len(driver) * len(driven) / pairs))))
     driver, driven = driver[::stride], driven[::stride]
     if not len(driver) or not len(driven):

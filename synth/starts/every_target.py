@@ -28,20 +28,15 @@ HEAVY = 1e6  # damping under which no step is worth trying
 
 @dataclass(frozen=True, slots=True)
 class _Model:
-    """Misses of every target, linearised: gap - common @ what all share - own * its driver angle.
+    """Misses of every target, linearised: gap - common @ what all share - own * its driver angle."""
 
-    `gap` and `own` have the shape (n, N, 3), `common` (n, N, 3, C), `error` (n,). Limits are overstepped by
-    `over` (n, L), with derivatives `by_over` (n, L, C + 2) by what all share and by the driver angles at both
-    `ends` of the motion (n, 2).
-    """
-
-    error: FloatArray
-    gap: FloatArray
-    common: FloatArray
+    error: FloatArray  # (n,)
+    gap: FloatArray  # (n, N, 3), as own
+    common: FloatArray  # (n, N, 3, C)
     own: FloatArray
-    over: FloatArray
-    by_over: FloatArray
-    ends: IntArray
+    over: FloatArray  # (n, L): how far limits are overstepped
+    by_over: FloatArray  # (n, L, C + 2), derivatives by what all share and the driver angles at the ends
+    ends: IntArray  # (n, 2), of the motion
 
     def where(self, better: BoolArray, fresh: _Model) -> _Model:
         """The fresh one of the linkages that are better."""
@@ -52,30 +47,13 @@ class _Model:
 def fitted_to_all(
     target: SearchTargets, batch: Batch, steps: int = STEPS, *, weight: float = PULL, placed: bool = False
 ) -> Batch:
-    """Linkages with the least squares over all targets, by the Gauss-Newton method.
+    """Linkages with the least squares over all (untimed) targets, in at most `steps` Gauss-Newton steps.
 
-    Parameters
-    ----------
-    target : SearchTargets
-        Untimed.
-    batch : Batch
-        With driver angles at every target, near the best ones.
-    steps : int
-        At most.
-    weight : float, sizes
-        Error that overstepping a limit by one unit counts as.
-    placed : bool
-        The batch has places (`with_places`); otherwise linkages stand where they fit the targets best.
-
-    Returns
-    -------
-    Batch
-
-    Notes
-    -----
-    Damped as Levenberg and Marquardt do. Of targets in order, driver angles that would go back are
-    projected on the order by weighted isotonic regression, which is the solution of the step for given
-    proportions; those that stand together are eliminated together.
+    The batch has driver angles at every target, near the best ones; where it is not `placed` (`with_places`),
+    linkages stand where they fit the targets best. Overstepping a limit by one unit counts as an error of
+    `weight`, in sizes. Damped as Levenberg and Marquardt do. Of targets in order, driver angles that would go
+    back are projected on the order by weighted isotonic regression, which is the solution of the step for
+    given proportions; those that stand together are eliminated together.
     """
     now = _with_angles(target, batch, PLACES * placed)
     model = _linearised(target, now, weight)

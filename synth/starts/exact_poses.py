@@ -199,10 +199,7 @@ class FewPoses(DyadPairs):
         return Round(starts[:GLANCE_STARTS], {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
-        """A round of dyads; where these are samples, of two or three poses, the search for points goes on.
-
-        Of two translated poses parallelogram linkages alternate with the others.
-        """
+        """A round of dyads; where these are samples, of two or three poses, the search for points goes on."""
         if number:
             last = SEARCHES if len(self.scaled.targets) < 4 else 0
             return searched_round(self.scaled, enough, rng) if number <= last else None
@@ -215,6 +212,7 @@ class FewPoses(DyadPairs):
         if len(starts) < enough:
             only_own = len(pairs) > len(feasible)  # nothing but the user's own constraints is violated
             starts += mended_starts(scaled, pairs if only_own else self.near_pairs(dyads), enough)
+        # of two translated poses parallelogram linkages alternate with the others
         alternating = [start for both in zip_longest(sideways, starts) for start in both if start]
         return Round(alternating, {"feasible finds": len(feasible), "exact dyads": 0})
 
@@ -302,13 +300,7 @@ def translate(motion: Displacements) -> bool:
 def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:
     """The first of some poses that a later one is equal to, and the first of those; None where all differ.
 
-    A tree finds those that may be, in place of all pairs, where there are many.
-
-    Parameters
-    ----------
-    positions : ndarray of complex, shape (n,), sizes
-    rotations : ndarray of complex, shape (n,)
-        Of absolute value 1.
+    Positions in sizes and rotations of absolute value 1, each (n,).
     """
     if len(positions) <= FEW:
         moved = sum(np.abs(each[:, None] - each) for each in (positions, rotations))
@@ -317,7 +309,7 @@ def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, 
     from scipy.spatial import cKDTree  # takes longer to import than many a search
 
     numbers = np.stack([positions.real, positions.imag, rotations.real, rotations.imag], axis=1)
-    tree = cKDTree(numbers)
+    tree = cKDTree(numbers)  # in place of all pairs
     for begin in range(0, len(numbers), AT_ONCE):
         some = numbers[begin : begin + AT_ONCE]
         apart = np.asarray(tree.query(some, k=2, distance_upper_bound=2 * EQUAL)[0])[:, 1]

@@ -132,13 +132,10 @@ def finder_of(problem: Problem) -> Begins:
 
 
 def asked_first(problem: Problem) -> Problem:
-    """The problem that a search begins with.
-
-    Where targets may be missed, that is to meet all of them if linkages that do can be expected, or
-    else least squares.
-    """
+    """The problem that a search begins with: where targets may be missed, to meet all, or least squares."""
     if problem.zones is None and problem.requirements.error_factor is None:
         return problem
     return problem.without_zones(
+        # all are met where linkages that do can be expected
         exact=problem.requirements.exact is not False and problem.task.exact_by_default
     )

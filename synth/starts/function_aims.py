@@ -32,33 +32,17 @@ INSIDE = 4e-8  # by so much limits are kept, so that rounding misses none
 class FunctionAims:
     """The problem of a function as its search sees it: on the ground O2 = 0, O4 = 1, or in units of travel.
 
-    The driver turns counter-clockwise from the beginning of the range; designs that turn it clockwise are
-    the mirror images.
-
-    Parameters
-    ----------
-    task : FunctionTask
-    problem : Problem
-        Of one kind of linkage.
-    kind : type of Generators
-    wanted : Requirements
-        Resolved.
-    limits : ShapeLimits
-        Of drivers that turn counter-clockwise.
-    sizes : dict of str to tuple of float
-        Limits of lengths, by name.
-    unit : float
-        Of outputs: 1 rad, or the whole travel.
-    exact : bool
+    The driver turns counter-clockwise from the beginning of the range; designs that turn it clockwise are the
+    mirror images.
     """
 
     task: FunctionTask
-    problem: Problem
+    problem: Problem  # of one kind of linkage
     kind: type[Generators]
-    wanted: Requirements
-    limits: ShapeLimits
-    sizes: dict[str, Limits]
-    unit: float
+    wanted: Requirements  # resolved
+    limits: ShapeLimits  # of drivers that turn counter-clockwise
+    sizes: dict[str, Limits]  # limits of lengths, by name
+    unit: float  # of outputs: 1 rad, or the whole travel
     exact: bool
 
     @classmethod

@@ -37,24 +37,12 @@ ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, h
 
 @dataclass(frozen=True, slots=True)
 class FoundFunction:
-    """One generator that the search came to.
+    """One generator that the search came to."""
 
-    Parameters
-    ----------
-    made : Generators
-        One.
-    driver : int
-        Sense of the driver.
-    steps : int
-        Of its refinement.
-    best_at : str
-        What it was made for; empty for exact ones.
-    """
-
-    made: Generators
-    driver: int
-    steps: int = 0
-    best_at: str = ""
+    made: Generators  # one
+    driver: int  # its sense
+    steps: int = 0  # of its refinement
+    best_at: str = ""  # what it was made for; empty for exact ones
 
 
 class FunctionPairs:
@@ -147,11 +135,9 @@ class _Pairs:
         return self.kept(made.begun(self.wanted.turned[0]))
 
     def on_curve(self, count: int) -> Generators:
-        """Of one pair less: the curve, and once more where it is best.
-
-        The other pair is between two of them, where every linkage without a defect closes.
-        """
+        """Of one pair less: the curve, and once more where it is best."""
         wide = int(np.argmax(np.diff(self.turned)))
+        # the other pair is between two of them, where every linkage without a defect closes
         between = (self.turned[wide] + self.turned[wide + 1]) / 2
         tried, step = self.aims.kind.tried_between(count)
         pool = self.through_and(between, tried)
@@ -251,14 +237,7 @@ def optimal_functions(
 ) -> Iterator[FoundFunction]:
     """Generators of least error that keep the limits, and a choice of those that transmit better.
 
-    Parameters
-    ----------
-    aims : FunctionAims
-    rng : Generator
-    effort : float
-        So many times as many starts.
-    levels : tuple of float, deg, optional
-        Of transmission, that designs are made for besides.
+    With `effort` times as many starts; designs are made for `levels` of transmission, in deg, besides.
     """
     asked = float(np.degrees(aims.limits.transmission))
     usual = tuple(level for level in LEVELS if level > asked + 1)

@@ -132,10 +132,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
 
 
 def _other_curves(starts: list[Start], most: int) -> list[Start]:
-    """Starts that pass the targets along another curve than all before.
-
-    Cognates trace the same curve; they are added to every design afterwards.
-    """
+    """Starts that pass the targets along another curve than all before; cognates are added afterwards."""
     chosen, curves = list[Start](), list[ComplexArray]()
     for start in starts:
         order = np.argsort(start.visit)

@@ -139,10 +139,7 @@ class LimitPositions:
         return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
-        """In each of some stretches the member that is farthest inside the limits, or least outside.
-
-        It is put where these limits, or those of another problem, allow it.
-        """
+        """In each of some stretches the member that is farthest inside the limits, or least outside."""
         starts = list[Start]()
         for family, mirrored, ranges in within:
 
@@ -157,6 +154,7 @@ class LimitPositions:
                 )
                 tried = np.array([shares[k], between])
                 member = family(tried[[np.argmax(inside(tried))]])
+                # where these limits, or those of another problem, allow it
                 starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
         return starts
 

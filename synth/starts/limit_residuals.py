@@ -38,15 +38,7 @@ class Placement(View):
     """Linkages of a batch where they stand, with derivatives by the M unknowns.
 
     A = z0 + z1 e2, B = z0 + g (r2 e2 + r3 e3), O4 = z0 + g, P = A + z2 e3 with the frame of the loop turned
-    and scaled by g = z1 / r2.
-
-    Parameters
-    ----------
-    target : SearchTargets
-    loop : Loop
-    by_theta2, by_theta3 : ndarray, shape (n, N, M)
-    z : ndarray of complex, shape (n, 3), sizes
-    by_z : ndarray of complex, shape (n, 3, M)
+    and scaled by g = z1 / r2; z is (n, 3) in sizes, by_z (n, 3, M), by_theta2 and by_theta3 (n, N, M).
     """
 
     def __init__(
@@ -126,19 +118,10 @@ class Placement(View):
 
 
 def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
-    """How far every limit is overstepped, and the derivative by the unknowns.
+    """How far every limit is overstepped, (n, L), and the derivative by the unknowns, (n, L, M).
 
-    Parameters
-    ----------
-    target : SearchTargets
-    at : Placement
-
-    Returns
-    -------
-    ndarray, shape (n, L)
-        Lengths of links and their ratio by their logarithms, places and coupler arms in sizes, angles
-        in rad, the transmission by |cos mu|.
-    ndarray, shape (n, L, M)
+    Lengths of links and their ratio by their logarithms, places and coupler arms in sizes, angles in rad, the
+    transmission by |cos mu|.
     """
     rows = [*_limit_rows(target, at), *_transmission_rows(target, at.relative)]
     over = np.concatenate([row.value for row in rows], axis=1)

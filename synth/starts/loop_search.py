@@ -41,27 +41,16 @@ Model: TypeAlias = Callable[["Batch"], tuple[FloatArray, FloatArray, FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """Linkages of a batch where they fit the points best, in the frame of the points.
+    """Linkages of a batch where they fit the points best, in the frame of the points."""
 
-    Parameters
-    ----------
-    error : ndarray, shape (n,)
-        Weighted sum of squared distances, sizes squared; infinite where the loop does not close.
-    o2, o4 : ndarray of complex, shape (n,)
-    a, b, p : ndarray of complex, shape (n, N)
-    theta2 : ndarray, shape (n, N), rad
-    body_angle : ndarray, shape (n,), rad
-        From the coupler to the body; zero for a path.
-    """
-
-    error: FloatArray
-    o2: ComplexArray
+    error: FloatArray  # (n,), sizes^2, weighted sum of squared distances; infinite where no loop closes
+    o2: ComplexArray  # (n,), as o4
     o4: ComplexArray
-    a: ComplexArray
+    a: ComplexArray  # (n, N), as b and p
     b: ComplexArray
     p: ComplexArray
-    theta2: FloatArray
-    body_angle: FloatArray
+    theta2: FloatArray  # (n, N), rad
+    body_angle: FloatArray  # (n,), rad, from the coupler to the body; zero for a path
 
     def __getitem__(self, index: BoolArray | IntArray) -> Placed:
         return Placed(*(getattr(self, name)[index] for name in self.__slots__))
@@ -73,10 +62,7 @@ class Placed:
 
 
 def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: float = 0.0) -> Batch:
-    """Random linkages, feasible by construction; gaps between driver angles follow the points.
-
-    On a share of them, `astray`, P makes a detour between two targets.
-    """
+    """Random linkages, feasible by construction; gaps between driver angles follow the points."""
     n = len(target.points)
     rotatability = target.wanted.rotatability
     proportions = target.kind.drawn(rng, count, anything=rotatability is Rotatability.ANY)
@@ -85,7 +71,7 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
         steps = target.steps
         gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
         gaps += rng.normal(0, 0.4, (count, n - 1))
-        if astray:
+        if astray:  # on that share P makes a detour between two targets
             rows, at = np.flatnonzero(rng.random(count) < astray), rng.integers(n - 1, size=count)
             share = rng.uniform(*DETOUR, count)
             gaps[rows, at[rows]] = np.log(share * np.exp(gaps).sum(axis=1))[rows]
@@ -135,22 +121,10 @@ def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatAr
 def improve(
     model: Model, batch: Batch, steps: int, tolerance: float, until: int = 1
 ) -> tuple[Batch, FloatArray]:
-    """Levenberg-Marquardt on every linkage of a batch.
+    """Levenberg-Marquardt on every linkage of a batch, and the errors (n,) in sizes squared.
 
-    Parameters
-    ----------
-    model : callable
-        What is made small: see `fitting` and `within_limits`.
-    batch : Batch
-    steps : int
-        At most.
-    tolerance : float, sizes squared
-        Stop as soon as `until` linkages have no greater error.
-
-    Returns
-    -------
-    batch : Batch
-    error : ndarray, shape (n,), sizes squared
+    At most `steps`; stops as soon as `until` linkages have no greater error than `tolerance`, in sizes
+    squared. The model is what is made small: see `fitting` and `within_limits`.
     """
     leave_off()
     result = replace(batch, unknowns=batch.unknowns.copy())
@@ -237,11 +211,7 @@ def fitting(target: SearchTargets) -> Model:
 def within_limits(target: SearchTargets, weight: float) -> Model:
     """The error under limits, for batches with their places among the unknowns (see `with_places`).
 
-    Parameters
-    ----------
-    target : SearchTargets
-    weight : float, sizes
-        Error that overstepping a limit by one unit counts as.
+    Overstepping a limit by one unit counts as an error of `weight`, in sizes.
     """
 
     def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:

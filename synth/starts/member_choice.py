@@ -33,11 +33,8 @@ def unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
 
 
 def apart(lengths: FloatArray, merit: FloatArray, most: int) -> IntArray:
-    """Indices of at most so many of some lengths (n, 4), as far apart as leaves that many, best first.
-
-    Those of merit -inf are left out.
-    """
-    worth = np.flatnonzero(np.isfinite(merit))
+    """Indices of at most so many of some lengths (n, 4), as far apart as leaves that many, best first."""
+    worth = np.flatnonzero(np.isfinite(merit))  # without those of merit -inf
     signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
     for least in (0.1, 0.05, 0.025, DISTINCT):
         picked = pick_apart(signatures, merit[worth], least, most)

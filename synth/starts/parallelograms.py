@@ -61,14 +61,10 @@ class Circle:
 
 
 def circle_through(targets: ComplexArray) -> Circle:
-    """The circle nearest to three or more targets, shape (N,), in least squares of the distances.
+    """The circle nearest to three or more targets (N,), in least squares of the distances.
 
-    Notes
-    -----
     A linear start (Kasa 1976: |p|^2 = 2 Re(conj(c) p) + k), then Gauss-Newton steps in centre and radius.
 
-    Examples
-    --------
     >>> circle_through(4 + 5 * np.exp(1j * np.array([0.1, 0.5, 1.5, 2.0]))).off < 1e-12
     True
     """
@@ -123,12 +119,10 @@ def parallelogram_obstacle(scaled: ScaledProblem) -> str:
 
 
 def parallelograms(scaled: ScaledProblem, rng: np.random.Generator) -> Screened:
-    """Parallelogram linkages through translated poses: drawn, then the best varied.
-
-    None where the driver has to turn fully, or where three poses or more do not lie on a circle.
-    """
+    """Parallelogram linkages through translated poses: drawn, then the best varied."""
     circle = circle_through(scaled.targets) if len(scaled.targets) > 2 else Circle(0.0, 1.0, 0.0)
     off = circle.off > scaled.wanted.tolerance or circle.radius > STRAIGHT
+    # none where they do not lie on a circle, or the driver has to turn fully
     if off or scaled.wanted.rotatability is not Rotatability.ANY:
         return _judged(scaled, _drawn(scaled, FEW, rng))[:0]
     drawn = _drawn(scaled, SAMPLES, rng)

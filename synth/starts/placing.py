@@ -16,18 +16,11 @@ _LEAST, _MOST = 1e-30, 1e30  # of scales
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """Where O4 may lie as seen from O2.
-
-    Parameters
-    ----------
-    o2, o4 : Box
-    x, y : tuple of float, length
-        Limits of O4 - O2.
-    """
+    """Where O4 may lie as seen from O2."""
 
     o2: Box
     o4: Box
-    x: Limits
+    x: Limits  # limits of O4 - O2, as y; length
     y: Limits
 
     @classmethod
@@ -76,12 +69,7 @@ class Ground:
     ) -> tuple[complex, complex]:
         """O2, as near to the origin as it may be, or at shares (2,) of its room; and O4.
 
-        Parameters
-        ----------
-        r1, angle : float, length and rad
-        share : ndarray, shape (2,), optional
-        room : Box, optional
-            Where O2 is put that is not bounded.
+        `angle` in rad; `room` is where O2 is put that is not bounded.
         """
         way = r1 * np.exp(1j * angle)
         place = []

@@ -53,10 +53,7 @@ class PrecisionPoints(CouplerSearch):
 
 @dataclass(frozen=True, slots=True)
 class EveryLinkage(PrecisionPoints, ABC):
-    """As many distinct points of a path without timing as leave no freedom.
-
-    Finitely many linkages pass them, all of which can be computed.
-    """
+    """Distinct points of an untimed path that leave no freedom: finitely many linkages, all computable."""
 
     patience: ClassVar[float] = np.inf
     points: ClassVar[int]
@@ -82,12 +79,10 @@ class EveryLinkage(PrecisionPoints, ABC):
         return bool(apart.min() > 1e-9)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """A round of the search, which for points in order is most often sooner there; then all linkages.
-
-        These are not computed again, however large the round.
-        """
+        """A round of the search, which for points in order is most often sooner there; then all linkages."""
         if number < self.rounds_a_pass - 1:
             return searched_round(self.scaled, enough, rng)
+        # these are not computed again, however large the round
         return self._all_linkages(rng) if number < self.rounds_a_pass and size == 1 else None
 
     @abstractmethod

@@ -43,10 +43,7 @@ def sampled_dyads(
 def _along_ground(
     motion: Displacements, moving: ComplexArray, offset: FloatArray, wanted: Requirements
 ) -> FloatArray:
-    """Offsets of dyads of two poses, for grounds of the stated direction.
-
-    Each of the second half has its pivot in that direction from the pivot of its like in the first half.
-    """
+    """Offsets of dyads of two poses, for grounds of the stated direction."""
     if wanted.ground_angle_deg is None:
         return offset
     half = len(moving) // 2
@@ -54,6 +51,7 @@ def _along_ground(
     along = np.exp(-1j * (low + (high - low) * (np.arange(half) * _GOLDEN % 1)))
     middle = bisector_dyads(motion, moving, np.zeros_like(offset)).ground
     across = bisector_dyads(motion, moving, np.ones_like(offset)).ground - middle
+    # each pivot of the second half in that direction from its like in the first
     first, second = slice(0, half), slice(half, 2 * half)
     apart = (middle + across * offset)[first] - middle[second]
     with np.errstate(divide="ignore", invalid="ignore"):

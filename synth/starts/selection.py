@@ -28,11 +28,10 @@ NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 def feasible_starts(
     scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS, closer: float = 1.0
 ) -> list[Start]:
-    """Starts from feasible linkages.
+    """Starts from feasible linkages: the best well separated ones first (`peaks`), free to climb.
 
-    The best well separated ones (`peaks`) first, free to climb to the best optima, then about 1.4 times
-    `enough` spread over all, each kept to its own neighbourhood so that the list offers a choice; by
-    `closer`, below 1, they are nearer to each other than they could be, and better.
+    Then about 1.4 times `enough` spread over all, each kept to its own neighbourhood so that the list offers
+    a choice; by `closer`, below 1, they are nearer to each other than they could be, and better.
     """
     if not len(linkages):
         return []
@@ -60,10 +59,7 @@ def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> lis
 
 
 def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, each: int = 5) -> list[Start]:
-    """Starts that may miss what no linkage meets: one requirement where one is enough, else a few.
-
-    The set of requirements that is missed least comes first.
-    """
+    """Starts that may miss what no linkage meets: one requirement where one is enough, else a few."""
     missed = linkages.violations > 0
     fewest = missed.sum(axis=1).min(initial=len(GROUPS))
     if not len(linkages) or fewest == 0:  # feasible but not solved: nothing to relax
@@ -75,7 +71,7 @@ def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, e
         mine = linkages[rows[which.ravel() == number]]
         lacking = mine.violations.sum(axis=1)
         found.append((lacking.min(), tuple(np.array(GROUPS)[together].tolist()), mine, lacking))
-    found.sort(key=lambda item: item[:2])
+    found.sort(key=lambda item: item[:2])  # the set that is missed least first
     return [
         replace(start, relaxed=names)
         for _, names, mine, lacking in found[:groups]
@@ -116,10 +112,7 @@ def _spread(
 
 
 def to_nearest(coordinates: FloatArray) -> FloatArray:
-    """How far points (n, C) are from the nearest others, by the coordinate that differs most; up to 1.
-
-    A tree holds them, in place of all pairs, where there are many.
-    """
+    """How far points (n, C) are from the nearest others, by the coordinate that differs most; up to 1."""
     if len(coordinates) <= FEW:
         pairs = np.abs(coordinates[:, None] - coordinates).max(axis=-1, initial=0.0)
         np.fill_diagonal(pairs, np.inf)
@@ -127,6 +120,7 @@ def to_nearest(coordinates: FloatArray) -> FloatArray:
     else:
         from scipy.spatial import cKDTree  # takes longer to import than many a search
 
+        # a tree in place of all pairs, where there are many
         apart = np.asarray(cKDTree(coordinates).query(coordinates, k=2, p=np.inf)[0])[:, 1]
     nearest: FloatArray = np.minimum(apart, 1.0)
     return nearest

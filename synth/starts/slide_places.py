@@ -25,16 +25,14 @@ _ONE_STROKE = 1e-12  # rad: strokes that differ by less take as long
 
 @dataclass(frozen=True, slots=True)
 class SlidePlaces(Places):
-    """Of one scale; the stroke, in the direction of the slide, counts as 1.
-
-    The other assembly is the same linkage with its slide taken the other way round.
-    """
+    """Of one scale; the stroke, in the direction of the slide, counts as 1."""
 
     what: ClassVar[str] = "slider-cranks"
     advised: ClassVar[str] = "stroke"
     dyad: ClassVar[type[ClosingDyad]] = Slider
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
-    mirrored: ClassVar[tuple[bool, ...]] = (False,)  # that is a family of its own
+    # the mirror image is a family of its own, the other assembly this one with its slide the other way round
+    mirrored: ClassVar[tuple[bool, ...]] = (False,)
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
         lag, wanted = lag_of(self.task.time_ratio), self.wanted

@@ -25,18 +25,12 @@ KEPT = frozenset({
 class Places(ABC):
     """Members of the families of a task, inside limits and in the plane.
 
-    A member is put there by two points: O2, and the end of the length that counts as 1 in its family,
-    along the ground line or the slide.
-
-    Parameters
-    ----------
-    task : StrokeTask
-    wanted : Requirements
-        Resolved, in the problem's unit.
+    A member is put there by two points: O2, and the end of the length that counts as 1 in its family, along
+    the ground line or the slide.
     """
 
     task: StrokeTask
-    wanted: Requirements
+    wanted: Requirements  # resolved, in the problem's unit
 
     what: ClassVar[str]  # the linkages, in words
     advised: ClassVar[str] = ""  # a stroke whose best transmission the time ratio tells, in a word
@@ -53,10 +47,7 @@ class Places(ABC):
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
         """The families, and whether their mirror images are meant; both where limits tell them apart.
 
-        Parameters
-        ----------
-        elsewhere : bool
-            Places decide that the families do not know of.
+        `elsewhere`: places decide that the families do not know of.
         """
 
     @abstractmethod
@@ -85,11 +76,7 @@ class Places(ABC):
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         """O4 (n,) as `Start` has it, and A, B and theta2 in the limit positions, each (n, 2).
 
-        Parameters
-        ----------
-        members : Members
-        points : ndarray of complex, shape (n, 2)
-            In any unit.
+        The points (n, 2) may be in any unit.
         """
 
     @abstractmethod

@@ -17,19 +17,7 @@ CLOSED = 1e-9  # of a unit vector
 
 
 def thinned(target: SearchTargets, most: int) -> tuple[SearchTargets, IntArray]:
-    """At most `most` targets, evenly picked, and which; the first and the last are kept.
-
-    Parameters
-    ----------
-    target : SearchTargets
-    most : int
-
-    Returns
-    -------
-    SearchTargets
-    index : ndarray of int
-        Of those kept.
-    """
+    """At most `most` targets, evenly picked, and the indices of those; the first and the last are kept."""
     count = len(target.points)
     index = np.arange(count)
     if count <= most:
@@ -48,21 +36,9 @@ def refined(
 ) -> Batch:
     """Linkages of a thinned task with driver angles at every target.
 
-    In between by the length of the path; of targets in any order, where each is nearest.
-
-    Parameters
-    ----------
-    target : SearchTargets
-        All of them.
-    index : ndarray of int
-        Of the targets that `batch` knows.
-    batch : Batch
-    places : ndarray of complex, shape (n, 3), sizes, optional
-        Where linkages stand: z0, z1, z2; where they fit those targets best by default.
-
-    Returns
-    -------
-    Batch
+    In between by the length of the path; of targets in any order, where each is nearest. `target` has all of
+    them, `index` those that `batch` knows. Linkages stand at `places` z0, z1, z2 (n, 3) in sizes, or where
+    they fit those targets best.
     """
     count = len(target.points)
     if len(index) == count:
