@@ -1,8 +1,8 @@
 """The dyads of the search: how links 3 and 4 close the gap between ground and driver.
 
 Written once for arrays, numbers with derivatives and CasADi symbols. All kinds have one equation,
-across . (c + rod u) = const with u along link 3 and `across` along O4B, or across what slides: its derivative
-gives the turn of link 3, (moved . across) / lever, by anything that moves B out of its place.
+across . (c + rod u) = const, with u along link 3 and `across` along O4B, or across what slides. Its derivative
+gives the turn of link 3 by a vector that moves B out of its place: -(moved . across) / lever.
 """
 
 from __future__ import annotations
@@ -20,21 +20,16 @@ Root: TypeAlias = Callable[[Any], Any]
 
 
 class Closed(NamedTuple):
-    """A loop that a dyad has closed.
+    """A loop that a dyad has closed."""
 
-    Along link 3: AB, or the unit vector along a rod. Across: O4B, or the unit vector across what slides, to
-    the left. From A along link 3 to B. The square under the root of the closure: positive where the loop is
-    closed and in no dead position.
-    """
-
-    along: Vector
-    across: Vector
-    rod: Any
-    square: Any
+    along: Vector  # AB, or the unit vector along a rod
+    across: Vector  # O4B, or the unit vector across what slides, to the left
+    rod: Any  # from A along link 3 to B
+    square: Any  # under the root of the closure: positive where the loop is closed and in no dead position
 
 
 class Sized:
-    """Lengths of a loop; the offset where one of links 3 and 4 slides; 1 where r2 exceeds r1, else 0."""
+    """Lengths of a loop, the offset of its slide, and 1 where r2 is to exceed r1, else 0."""
 
     r1: Any
     r2: Any
