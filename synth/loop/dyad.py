@@ -25,7 +25,7 @@ class Closed(NamedTuple):
     along: Vector  # AB, or the unit vector along a rod
     across: Vector  # O4B, or the unit vector across what slides, to the left
     rod: Any  # from A along link 3 to B
-    square: Any  # under the root of the closure: positive where the loop is closed and in no dead position
+    square: Any  # under the root of the closure; positive in a closed loop that is in no dead position
 
 
 class Sized:
