@@ -1,8 +1,8 @@
 """The dyads of the search: how links 3 and 4 close the gap between ground and driver.
 
 Written once for arrays, numbers with derivatives and CasADi symbols. All kinds have one equation,
-across . (c + rod u) = const, with u along link 3 and `across` along O4B, or across what slides. Its derivative
-gives the turn of link 3 by a vector that moves B out of its place: -(moved . across) / lever.
+across . (c + rod u) = const, with u along link 3 and `across` along O4B, or across what slides. Its
+derivative gives the turn of link 3 by a vector that moves B out of its place: -(moved . across) / lever.
 """
 
 from __future__ import annotations
