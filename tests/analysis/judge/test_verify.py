@@ -182,43 +182,44 @@ def test_a_closed_motion_ends_where_it_began() -> None:
     assert verdict.transmission_min_task == pytest.approx(verdict.transmission_min_cycle, rel=1e-12)
 
 
-def test_two_poses_take_the_shorter_way() -> None:
-    for degrees, direction in (([20.0, 150.0], 1), ([20.0, 240.0], -1)):
-        verdict = verify(CRANK_ROCKER, task_of(CRANK_ROCKER, degrees), Requirements())
-        assert verdict.ok
-        assert verdict.direction == direction
-        assert abs(verdict.theta2[1] - verdict.theta2[0]) < np.pi
+@pytest.mark.parametrize(
+    ("linkage", "degrees", "assembly", "wanted", "circuit_ok", "counted"),
+    [
+        (CRANK_ROCKER, DEGREES, [1, 1, -1, 1], Requirements(), False, "circuits used"),
+        (
+            ROCKER,
+            [-60, 10, 40, 80],
+            [1, 1, -1, -1],
+            ANY,
+            True,
+            "branches used (a dead position lies between)",
+        ),
+        (DOUBLE_ROCKER, [60, 65, -65, -60], [1, 1, 1, 1], ANY, False, "circuits used"),
+    ],
+    ids=["both assemblies of a crank", "both of a rocker", "both ranges of a double-rocker"],
+)
+def test_targets_on_several_circuits_or_branches(
+    linkage: FourBar,
+    degrees: list[float],
+    assembly: list[int],
+    wanted: Requirements,
+    circuit_ok: bool,
+    counted: str,
+) -> None:
+    task = task_of(linkage, degrees, assembly)
+    verdict = verify(linkage, task, wanted)
+    assert (verdict.circuit_ok, verdict.branch_ok) == (circuit_ok, False)
+    assert verdict.assembly.tolist() == assembly
+    assert str(only(verdict, "same_branch")) == f"same_branch: the number of {counted} is 2, allowed: 1"
+    assert verify(linkage, task, replace(wanted, same_branch=False)).ok
 
 
-def test_targets_on_both_assemblies_of_a_crank_are_a_circuit_defect() -> None:
-    task = task_of(CRANK_ROCKER, DEGREES, [1, 1, -1, 1])
-    verdict = verify(CRANK_ROCKER, task, Requirements())
-    assert (verdict.circuit_ok, verdict.branch_ok) == (False, False)
-    assert verdict.assembly.tolist() == [1, 1, -1, 1]
-    assert str(only(verdict, "same_branch")) == "same_branch: the number of circuits used is 2, allowed: 1"
-    assert verify(CRANK_ROCKER, task, Requirements(same_branch=False)).ok
-
-
-def test_targets_on_both_assemblies_of_a_rocker_are_a_branch_defect() -> None:
-    task = task_of(ROCKER, [-60, 10, 40, 80], [1, 1, -1, -1])
-    verdict = verify(ROCKER, task, ANY)
-    assert (verdict.circuit_ok, verdict.branch_ok) == (True, False)
-    found = str(only(verdict, "same_branch"))
-    assert found == (
-        "same_branch: the number of branches used (a dead position lies between) is 2, allowed: 1"
+def test_one_range_of_a_double_rocker_is_one_circuit() -> None:
+    verdict = verify(
+        DOUBLE_ROCKER, task_of(DOUBLE_ROCKER, [60, 62, 64, 66]), replace(ANY, link_length=(0, 5))
     )
-    assert verify(ROCKER, task, replace(ANY, same_branch=False)).ok
-
-
-def test_a_double_rocker_has_two_circuits_for_one_assembly() -> None:
-    task = task_of(DOUBLE_ROCKER, [60, 65, -65, -60])
-    verdict = verify(DOUBLE_ROCKER, task, ANY)
+    assert verdict.ok
     assert verdict.grashof_class is GrashofClass.DOUBLE_ROCKER
-    assert (verdict.assembly == 1).all()
-    assert (verdict.circuit_ok, verdict.branch_ok) == (False, False)
-    assert only(verdict, "same_branch").what == "the number of circuits used"
-    one_range = task_of(DOUBLE_ROCKER, [60, 62, 64, 66])
-    assert verify(DOUBLE_ROCKER, one_range, replace(ANY, link_length=(0, 5))).ok
 
 
 @pytest.mark.parametrize(("linkage", "requirements"), [(CRANK_ROCKER, Requirements()), (ROCKER, ANY)])
