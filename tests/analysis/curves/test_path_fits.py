@@ -2,15 +2,11 @@
 
 import numpy as np
 import pytest
+from report_tracks import centre, theta2_of
 
-from grashof.analysis import FittedPath, PathFit, solve_position
+from grashof.analysis import FittedPath, PathFit
 from grashof.analysis.curves.path_fits import DEGREES, OF_THETA2, Y_OF_X
-from grashof.problems import load_linkage
-from grashof.problems.values.arrays import FloatArray
 
-LUGGAGE = load_linkage("luggage-report")
-FIRST = float(LUGGAGE.theta1) + np.radians(74.03230655 - 51.4499)
-STEP = (2 * np.pi + np.radians(121.9353869)) / 100
 # Audited, of the eleven points that the report fits: for link 3 with its own code's places, 1e-4 off.
 R2 = {
     2: (0.53159789, 0.59217648, 0.60457722, 0.63715119),
@@ -21,16 +17,8 @@ SLOPES = {2: 0.98387, 3: 1.03078, 4: 1.05768}
 PARAMETRIC = {2: 0.0031, 3: 0.0103, 4: 0.0098}
 
 
-def centre(link: int, theta2: FloatArray) -> FloatArray:
-    state = solve_position(LUGGAGE, theta2)
-    still = (np.broadcast_to(pivot, state.a.shape) for pivot in (LUGGAGE.o2, LUGGAGE.o4))
-    o2, o4 = still
-    first, second = {2: (o2, state.a), 3: (state.a, state.b), 4: (o4, state.b)}[link]
-    return (first + second) / 2
-
-
 def path_of(link: int) -> FittedPath:
-    theta2, fine = FittedPath.angles(FIRST, FIRST + 30 * STEP, 11)
+    theta2, fine = FittedPath.angles(*theta2_of([0, 30]), 11)
     return FittedPath(f"g{link}", f"link {link}", theta2, centre(link, theta2), fine, centre(link, fine))
 
 
