@@ -44,6 +44,12 @@ def task_of(linkage: FourBar, degrees: list[float], assembly: npt.ArrayLike | No
     return MotionTask(state.p, state.theta3 + linkage.body_angle)
 
 
+def off_at_the_third(shift: tuple[float, float], angle_length: float) -> MotionTask:
+    right = task_of(CRANK_ROCKER, DEGREES)
+    shifts = np.array([(0.0, 0.0), (0.0, 0.0), shift, (0.0, 0.0)])
+    return MotionTask(right.positions + shifts, right.angles, angle_length=angle_length)
+
+
 def judged(requirements: Requirements, linkage: FourBar = CRANK_ROCKER) -> Verdict:
     return verify(linkage, task_of(linkage, DEGREES), requirements)
 
@@ -104,21 +110,14 @@ def test_planted_linkages_have_no_defect(seed: int, poses: int) -> None:
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK])
 @pytest.mark.parametrize("assembly", [1, -1])
 def test_designs_of_these_tests_have_no_defect_of_their_own(linkage: FourBar, assembly: int) -> None:
-    own = FourBar(
-        linkage.o2, linkage.o4, linkage.r2, linkage.r3, linkage.r4,
-        linkage.coupler_point, assembly, linkage.body_angle,
-    )  # fmt: skip
-    verdict = judged(Requirements(), own)
+    verdict = judged(Requirements(), replace(linkage, assembly=assembly))
     assert verdict.ok
     assert (verdict.assembly == assembly).all()
     np.testing.assert_allclose(np.degrees(verdict.theta2), DEGREES, rtol=1e-12)
 
 
 def test_a_wrong_position_is_not_exact() -> None:
-    right = task_of(CRANK_ROCKER, DEGREES)
-    shift = np.zeros((4, 2))
-    shift[2] = [3e-4, 4e-4]
-    task = MotionTask(right.positions + shift, right.angles, angle_length=1e-3)
+    task = off_at_the_third((3e-4, 4e-4), angle_length=1e-3)
     defect = only(verify(CRANK_ROCKER, task, Requirements()), "exact")
     assert defect.what == "the largest position error"
     assert 0 < defect.found <= 5e-4
@@ -141,10 +140,7 @@ def test_a_wrong_angle_is_not_exact() -> None:
 
 
 def test_tolerance_is_inclusive() -> None:
-    right = task_of(CRANK_ROCKER, DEGREES)
-    shift = np.zeros((4, 2))
-    shift[2] = [1e-3, 0]
-    task = MotionTask(right.positions + shift, right.angles, angle_length=1e-6)
+    task = off_at_the_third((1e-3, 0), angle_length=1e-6)
     found = verify(CRANK_ROCKER, task, Requirements(tolerance=1)).error_max / task.size
     assert verify(CRANK_ROCKER, task, Requirements(tolerance=found * (1 + 1e-15))).ok
     assert not verify(CRANK_ROCKER, task, Requirements(tolerance=found * (1 - 1e-9))).ok

@@ -96,13 +96,16 @@ def test_all_of_a_closed_curve_is_near() -> None:
     assert frechet < 0.02
 
 
-def test_a_closed_path_needs_a_driver_that_turns() -> None:
-    task = PathTask(solve_position(ROCKER, [0.6, 0.7, 0.85]).p)
-    assert defects(ROCKER, task, rotatability="any") == []
-    closed = PathTask(task.points, closed=True)
-    verdict = verify(ROCKER, closed, Requirements(rotatability="any"))  # type: ignore[arg-type]
-    assert [defect.requirement for defect in verdict.defects] == ["rotatability"]
-    assert "a closed path takes a whole turn" in str(verdict.defects[0])
+@pytest.mark.parametrize("poses", [False, True])
+def test_a_closed_task_needs_a_driver_that_turns(poses: bool) -> None:
+    state = solve_position(ROCKER, [0.6, 0.7, 0.85])
+    for closed in (False, True):
+        path = PathTask(state.p, closed=closed)
+        task = MotionTask(state.p, state.theta3, closed=closed) if poses else path
+        verdict = verify(ROCKER, task, Requirements(rotatability="any"))  # type: ignore[arg-type]
+        assert [defect.requirement for defect in verdict.defects] == ["rotatability"] * closed
+        whole = f"a closed {task.kind} takes a whole turn"
+        assert all(whole in str(defect) for defect in verdict.defects)
 
 
 def test_a_driver_that_does_not_cover_the_timing_is_refused_though_nothing_is_exact() -> None:
