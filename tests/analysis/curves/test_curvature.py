@@ -1,6 +1,7 @@
 """Curvature against circles through neighbours; cusps planted at instant centres."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -62,9 +63,7 @@ def with_cusp(linkage: FourBar, theta2: float) -> FourBar:
     along = np.linalg.solve(np.column_stack([crank, -rocker]), linkage.o4 - linkage.o2)[0]
     centre = linkage.o2 + along * crank
     arm = complex(*(centre - state.a)) * np.exp(-1j * state.theta3)
-    return FourBar(
-        linkage.o2, linkage.o4, linkage.r2, linkage.r3, linkage.r4, (arm.real, arm.imag), linkage.assembly
-    )
+    return replace(linkage, coupler_point=(arm.real, arm.imag))
 
 
 @pytest.mark.quick("double-crank", "non-Grashof")

@@ -4,10 +4,10 @@ import warnings
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from report_tracks import ELEVEN, centre, theta2_of
 
 from grashof.analysis import driver_ranges, solve_position
 from grashof.analysis.curves.fit import (
@@ -21,15 +21,8 @@ from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
 
-Floats = npt.NDArray[np.float64]
 
-
-@given(
-    degree=st.integers(1, 4),
-    low=st.floats(-10, 10),
-    width=st.floats(0.5, 10),
-    seed=st.integers(0, 2**16),
-)
+@given(st.integers(1, 4), st.floats(-10, 10), st.floats(0.5, 10), st.integers(0, 2**16))
 def test_polynomials_are_recovered(degree: int, low: float, width: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
     powers = rng.uniform(1, 3, (degree + 1, 2))
@@ -104,47 +97,26 @@ def test_bad_input_is_named() -> None:
         coupler_fit_r2(FourBar((0, 0), (4, 0), 1, 4, 3), 0, 1, degree=31)
 
 
-def report_tracks(golden: dict[str, Any], every: Floats) -> dict[str, Floats]:
-    """Centres of links 2, 3 and 4 (halfway), as the luggage report samples them.
-
-    Its 101 samples run from pose 1 over pose 4 and a turn, 481.935 deg in steps of 4.81935. Regression
-    and interpolation take 11 of them, every third from the first: 144.58 deg. Lengths of its table 7,
-    ground at 51.45 deg, O2 in the origin, from the driver angle of pose 1.
-    """
-    report = golden["report_figures"]["motion"]["table7"]
-    ground = report["r1"] * np.exp(1j * np.radians(51.45))
-    linkage = FourBar((0, 0), (ground.real, ground.imag), report["r2"], report["r3"], report["r4"])
-    step = (360 + report["beta_deg"][2]) / 100
-    start = float(golden["bag_mechanism_exact"]["theta2_pose1_deg"])
-    state = solve_position(linkage, np.radians(start + step * every))
-    return {"2": state.a / 2, "3": (state.a + state.b) / 2, "4": (linkage.o4 + state.b) / 2}
-
-
-ELEVEN = np.arange(0.0, 31, 3)
-
-
 def test_regression_of_the_report_is_reproduced(golden: dict[str, Any]) -> None:
     """R2 of y(x), links 2, 3, 4: to 2e-7, 1.1e-4 and 2e-6; that of link 3 is not known more closely."""
     printed = golden["report_figures"]["motion"]["R2_y_of_x_deg1_4"]
     slopes = golden["report_figures"]["motion"]["linear_coefs_hard_coded"]
-    for link, within in (("2", 2e-7), ("3", 1.1e-4), ("4", 2e-6)):
-        track = report_tracks(golden, ELEVEN)[link]
+    for link, within in ((2, 2e-7), (3, 1.1e-4), (4, 2e-6)):
+        track = centre(link, theta2_of(ELEVEN))
         with pytest.warns(NotAFunctionWarning):
             fits = [regression(track, degree) for degree in range(1, 5)]
-        np.testing.assert_allclose([fit.r2 for fit in fits], printed[link], rtol=0, atol=within)
-        assert fits[0].powers[1] == pytest.approx(slopes[link][0], abs=3e-4)
+        np.testing.assert_allclose([fit.r2 for fit in fits], printed[str(link)], rtol=0, atol=within)
+        assert fits[0].powers[1] == pytest.approx(slopes[str(link)][0], abs=3e-4)
 
 
-def test_both_coordinates_against_the_driver_angle_fit_the_tracks_of_the_report(
-    golden: dict[str, Any],
-) -> None:
+def test_both_coordinates_against_the_driver_angle_fit_the_tracks_of_the_report() -> None:
     """Degree 4 errs by 0.0031, 0.0103 and 0.0098, over a fine grid; the report's link 3: 0.0098."""
     fine = np.linspace(0, 30, 601)
     errors = []
-    for link, track in report_tracks(golden, ELEVEN).items():
-        fit = fit_polynomial(ELEVEN, track, 4)
+    for link in (2, 3, 4):
+        fit = fit_polynomial(ELEVEN, centre(link, theta2_of(ELEVEN)), 4)
         assert fit.r2 > 0.9999
-        errors.append(greatest_error(fit, fine, report_tracks(golden, fine)[link]))
+        errors.append(greatest_error(fit, fine, centre(link, theta2_of(fine))))
     np.testing.assert_allclose(errors, [0.0031, 0.0103, 0.0098], atol=5e-5)
 
 
@@ -200,10 +172,7 @@ def test_r2_of_a_crank_pin_is_that_of_an_arc() -> None:
 
 def test_r2_of_a_batch_is_that_of_each() -> None:
     linkages = [random_full_crank(np.random.default_rng(seed)) for seed in range(4)]
-    batch = FourBar(**{
-        name: np.stack([getattr(one, name) for one in linkages])
-        for name in ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
-    })  # fmt: skip
+    batch = FourBar(*(np.stack([getattr(one, name) for one in linkages]) for name in FourBar.__slots__))
     start, end = np.array([0.0, 1, 2, 3]), np.array([1.0, 3, 1, 9])
     single = [coupler_fit_r2(*one) for one in zip(linkages, start, end, strict=True)]
     np.testing.assert_array_equal(coupler_fit_r2(batch, start, end), single)

@@ -75,9 +75,7 @@ CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(5)]
 
 
 @pytest.mark.quick("linkage0", "linkage2", "linkage3", "linkage5")
-@pytest.mark.parametrize(
-    "linkage", [NEARLY_DEAD, *(random_full_crank(np.random.default_rng(s)) for s in range(5))]
-)
+@pytest.mark.parametrize("linkage", [NEARLY_DEAD, *CRANKS])
 def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None:
     """However close it comes to a change point: against adaptive quadrature and a dense search."""
     first = coupler_harmonics(linkage, top=4)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from report_tracks import ELEVEN, centre, theta2_of
 from scipy.optimize import brentq
 
 from grashof.analysis import solve_position
@@ -13,9 +14,7 @@ from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
 
 CRANK_ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
-LENGTHS = (3.91882993, 3.2349043, 4.09244415, 3.70202612)  # table 7 of the luggage report
-STEP = (360 + 121.9353869) / 100  # deg: its 101 samples, of which it takes every third, eleven in all
-# Greatest error of its degree-4 polynomials y(x), by link, and how closely it is reproduced.
+# Greatest error of the luggage report's degree-4 polynomials y(x), by link, and how closely it is reproduced.
 REPORTED = {2: (7.578427646663461, 1e-5), 3: (24.762292531509868, 1.5e-3), 4: (51.883117888363046, 2e-4)}
 
 
@@ -41,28 +40,20 @@ def test_divided_differences_by_hand() -> None:
     assert newton_interpolation([1, 2, 4], [1, 4, 16]).coefficients.tolist() == [1, 3, 1]
 
 
-def centre(link: int, sample: float) -> np.ndarray:
-    r1, r2, r3, r4 = LENGTHS
-    ground = np.radians(51.45)
-    linkage = FourBar((0, 0), (r1 * np.cos(ground), r1 * np.sin(ground)), r2, r3, r4)
-    state = solve_position(linkage, np.radians(74.03230655 + STEP * sample))
-    return {2: state.a, 3: state.a + state.b, 4: linkage.o4 + state.b}[link] / 2
-
-
 @pytest.mark.parametrize("link", REPORTED)
 def test_interpolation_of_the_report_is_reproduced(link: int) -> None:
     """y(x) through five of its eleven points each, judged halfway (in x) between the first two of them."""
-    points = np.array([centre(link, 3 * k) for k in range(11)])
+    points = centre(link, theta2_of(ELEVEN))
     errors = []
     for first in range(7):
         halfway = points[first : first + 2, 0].mean()
 
         def beyond(sample: float, x: float = halfway) -> float:
-            return float(centre(link, sample)[0] - x)
+            return float(centre(link, theta2_of(sample))[0] - x)
 
         there = brentq(beyond, 3 * first, 3 * first + 3, xtol=1e-13)
         curve = newton_interpolation(*points[first : first + 5].T)
-        errors.append(greatest_error(curve, [halfway], [centre(link, there)[1]]))
+        errors.append(greatest_error(curve, [halfway], [centre(link, theta2_of(there))[1]]))
     value, within = REPORTED[link]
     assert max(errors) == pytest.approx(value, rel=within)
 
@@ -70,8 +61,8 @@ def test_interpolation_of_the_report_is_reproduced(link: int) -> None:
 @pytest.mark.parametrize("link", REPORTED)
 def test_against_the_driver_angle_interpolation_is_harmless(link: int) -> None:
     samples, fine = np.linspace(0, 30, 5), np.linspace(0, 30, 301)
-    curve = newton_interpolation(samples, [centre(link, k) for k in samples])
-    assert greatest_error(curve, fine, [centre(link, k) for k in fine]) < 0.02
+    curve = newton_interpolation(samples, centre(link, theta2_of(samples)))
+    assert greatest_error(curve, fine, centre(link, theta2_of(fine))) < 0.02
 
 
 def test_a_spline_passes_through_its_samples_and_converges_with_the_fourth_power() -> None:

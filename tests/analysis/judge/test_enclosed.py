@@ -132,10 +132,6 @@ def test_listed_luggage_designs_are_verified() -> None:
 
     found = synthesize(load("luggage"), enough=5)
     problem, designs = found.problem, found.candidates
-    shown = enclose(
-        [each.linkage for each in designs],
-        problem.task,
-        problem.requirements,
-        [each.verdict for each in designs],
-    )
+    linkages, verdicts = ([getattr(each, name) for each in designs] for name in ("linkage", "verdict"))
+    shown = enclose(linkages, problem.task, problem.requirements, verdicts)
     assert all(each.holds for each in shown)

@@ -22,6 +22,10 @@ DEGREES = (20.0, 60.0, 110.0, 150.0)
 STATE = solve_position(LINKAGE, np.radians(DEGREES))
 TASK = MotionTask(STATE.p, STATE.theta3 + 0.3)
 WAY = solve_position(LINKAGE, np.radians(np.linspace(20, 150, 20001)))
+LINES = {
+    "link O2A": ("o2", "a"), "link AB": ("a", "b"), "link O4B": ("o4", "b"), "line AP": ("a", "p"),
+    "line BP": ("b", "p"),
+}  # fmt: skip
 
 
 def inside(polygon: Points, points: Points) -> npt.NDArray[np.bool_]:
@@ -134,17 +138,12 @@ def test_a_corner_clipped_between_two_samples_is_found() -> None:
 
 def test_links_between_the_targets() -> None:
     a, b, p = (getattr(WAY, name)[9000] for name in ("a", "b", "p"))
-    lines = {
-        "link O2A": (LINKAGE.o2, a),
-        "link AB": (a, b),
-        "link O4B": (LINKAGE.o4, b),
-        "line AP": (a, p),
-        "line BP": (b, p),
-    }
-    for link, (one, other) in lines.items():
-        found = depths(judged([box(*(0.4 * one + 0.6 * other), half=0.01)], "links"))
+    ends = {"o2": LINKAGE.o2, "o4": LINKAGE.o4, "a": a, "b": b, "p": p}
+    for link, (one, other) in LINES.items():
+        inside_it = box(*(0.4 * ends[one] + 0.6 * ends[other]), half=0.01)
+        found = depths(judged([inside_it], "links"))
         assert found[link] == pytest.approx(0.01, abs=3e-3)
-        assert judged([box(*(0.4 * one + 0.6 * other), half=0.01)], "o2", "o4").ok
+        assert judged([inside_it], "o2", "o4").ok
     assert judged([box(2.4, -3)], "links").ok
 
 
@@ -152,18 +151,9 @@ def test_links_against_brute_force() -> None:
     polygon = np.array([[1.0, 0.6], [2.4, 0.2], [2.0, 1.4]])
     expected: dict[str, float] = {}
     state = solve_position(LINKAGE, np.radians(np.linspace(20, 150, 261)))
-    places = {
-        "O2": np.broadcast_to(LINKAGE.o2, state.a.shape),
-        "O4": np.broadcast_to(LINKAGE.o4, state.a.shape),
-    }
-    places |= {"A": state.a, "B": state.b, "P": state.p}
-    for link, one, other in (
-        ("link O2A", "O2", "A"),
-        ("link AB", "A", "B"),
-        ("link O4B", "O4", "B"),
-        ("line AP", "A", "P"),
-        ("line BP", "B", "P"),
-    ):
+    places = {"a": state.a, "b": state.b, "p": state.p}
+    places |= {name: np.broadcast_to(getattr(LINKAGE, name), state.a.shape) for name in ("o2", "o4")}
+    for link, (one, other) in LINES.items():
         shares = np.linspace(0, 1, 61)[:, None, None]
         deep = signed(polygon, places[one] + shares * (places[other] - places[one])).max()
         if deep > 0.01:

@@ -14,6 +14,7 @@ from grashof.analysis.judge.measures import MEASURES, PARTS, Values
 from grashof.analysis.judge.over_task import over_task
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.judge.tolerance import made_linkages
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (
     DynamicsSpec,
@@ -130,20 +131,13 @@ def test_torque_and_forces_are_those_of_the_analysis(values: Values) -> None:
         assert values[key] == pytest.approx(getattr(found, key), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["r1", "r2", "r3", "r4", "u", "v"])
-def test_moves_are_differences(name: str) -> None:
+def test_moves_are_differences() -> None:
     values, step = planted(1, "path"), 1e-6
     linkage, theta2 = values.linkage, values.verdict.theta2
-    given = {key: np.array(getattr(linkage, key)) for key in ("o2", "o4", "r2", "r3", "r4", "coupler_point")}
-    if name == "r1":
-        given["o4"] += step * np.array([np.cos(linkage.theta1), np.sin(linkage.theta1)])
-    elif name in "uv":
-        given["coupler_point"]["uv".index(name)] += step
-    else:
-        given[name] += step
-    changed = type(linkage)(**given, assembly=linkage.assembly)
-    moved = solve_position(changed, theta2).p - solve_position(linkage, theta2).p
-    assert values[f"move_{name}"] == pytest.approx(np.hypot(*moved.T).max() / step, rel=1e-4)
+    made, _ = made_linkages(linkage, step * np.eye(6))
+    moved = solve_position(made[:, None], theta2).p - solve_position(linkage, theta2).p
+    for name, ways in zip(("r1", "r2", "r3", "r4", "u", "v"), moved, strict=True):
+        assert values[f"move_{name}"] == pytest.approx(np.hypot(*ways.T).max() / step, rel=1e-4)
 
 
 def test_what_the_problem_does_not_state_has_no_value(values: Values) -> None:

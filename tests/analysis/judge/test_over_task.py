@@ -1,4 +1,4 @@
-"""Figures of the motion used: the reports', dense sampling, units, dead positions."""
+"""Figures of the motion used: the reports', dense sampling, units, dead positions, all that acts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import (
+    DriverLaw,
     Kinematics,
     Loads,
     Verdict,
@@ -18,6 +19,7 @@ from grashof.analysis import (
     over_task,
     solve_kinematics,
     solve_position,
+    stated_loads,
     stated_masses,
     verify,
 )
@@ -25,8 +27,20 @@ from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_motion
 from grashof.analysis.judge.sampled_motion import motion_ends
-from grashof.problems import DynamicsSpec, FourBar, PathTask, Problem, Requirements, load
+from grashof.problems import (
+    DynamicsSpec,
+    FourBar,
+    InvertedSliderCrank,
+    Linkage,
+    PathTask,
+    Problem,
+    Requirements,
+    SliderCrank,
+    load,
+)
 from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
 KINEMATICS = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
@@ -35,10 +49,13 @@ CRANK_ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2,
 ANY = Requirements(rotatability="any")
 
 
-def judged(linkage: FourBar, theta2: Any, closed: bool = False, spec: Any = BARS) -> tuple[Problem, Verdict]:
+def judged(
+    linkage: Linkage, theta2: Any, spec: DynamicsSpec = BARS, unit: str = "m", *, closed: bool = False
+) -> tuple[Problem, Verdict]:
     """A task of points that the linkage passes at these driver angles, and the verdict on it."""
     task = PathTask(solve_position(linkage, theta2).p, closed=closed)
-    problem = Problem(task=task, requirements=ANY, length_unit="m", dynamics=spec)
+    word = linkage.mechanism.word
+    problem = Problem(task=task, requirements=ANY, length_unit=unit, dynamics=spec, mechanism=word)
     return problem, verify(linkage, task, ANY)
 
 
@@ -141,23 +158,17 @@ def test_the_driver_turns_at_one_radian_a_second_or_at_its_speed() -> None:
 @pytest.mark.parametrize(("unit", "units"), [("mm", 1000.0), ("in", 1 / 0.0254), ("ft", 1 / 0.3048)])
 def test_torque_and_forces_do_not_depend_on_the_length_unit(unit: str, units: float) -> None:
     """The same linkage in another unit: lengths, kg per length and kg length^2 change, N m and N do not."""
-    scaled = FourBar(
-        o2=(0, 0), o4=(4 * units, 0), r2=units, r3=4 * units, r4=3 * units,
-        coupler_point=(2 * units, units), assembly=CRANK_ROCKER.assembly,
-    )  # fmt: skip
+    scaled = CRANK_ROCKER.scaled(units, np.zeros(2))
     known = {"payload": 3.0, "speed_rpm": 25.0, "gravity": (1.0, -9.0)}
+    masses, inertias = {"masses": (1, 2, 3)}, np.array([0.1, 0.3, 0.2])
     pairs: list[tuple[Any, Any]] = [
         ({"mass_per_length": 2.0}, {"mass_per_length": 2.0 / units}),
-        (
-            {"masses": (1, 2, 3), "inertias": (0.1, 0.3, 0.2)},
-            {"masses": (1, 2, 3), "inertias": tuple(units**2 * np.array([0.1, 0.3, 0.2]))},
-        ),
+        (masses | {"inertias": tuple(inertias)}, masses | {"inertias": tuple(units**2 * inertias)}),
     ]
     for in_metres, in_units in pairs:
-        problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5], spec=DynamicsSpec(**in_metres, **known))
+        problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5], DynamicsSpec(**in_metres, **known))
         expected = over_task(CRANK_ROCKER, problem, verdict)
-        other, verdict = judged(scaled, [0.3, 1.0, 2.5], spec=DynamicsSpec(**in_units, **known))
-        found = over_task(scaled, replace(other, length_unit=unit), verdict)
+        found = over_task(scaled, *judged(scaled, [0.3, 1.0, 2.5], DynamicsSpec(**in_units, **known), unit))
         for name in (*DYNAMICS, "omega4_max", "coupler_fit_r2"):
             assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
         for name in ("point_speed_max", "point_acceleration_max"):
@@ -194,9 +205,8 @@ def test_the_motion_is_on_the_assembly_that_meets_the_targets() -> None:
     found, expected = over_task(CRANK_ROCKER, problem, other), over_task(mirrored, problem, verdict)
     for name in (*KINEMATICS, *DYNAMICS):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
-    assert Values(CRANK_ROCKER, other, problem)["torque_peak"] == pytest.approx(
-        expected.torque_peak, rel=1e-9
-    )
+    peak = Values(CRANK_ROCKER, other, problem)["torque_peak"]
+    assert peak == pytest.approx(expected.torque_peak, rel=1e-9)
 
 
 def test_no_motion_no_figures() -> None:
@@ -235,12 +245,112 @@ def test_one_target_angle_is_no_motion_but_a_place() -> None:
 
 
 def test_a_payload_and_gravity_are_felt() -> None:
-    problem, verdict = judged(
-        CRANK_ROCKER,
-        [0.3, 1.0, 2.5],
-        spec=DynamicsSpec(1e-9, payload=5.0, gravity=(0, -9.81), speed_rpm=1e-3),
-    )
-    found = over_task(CRANK_ROCKER, problem, verdict)
+    heavy = DynamicsSpec(1e-9, payload=5.0, gravity=(0, -9.81), speed_rpm=1e-3)
+    found = over_task(CRANK_ROCKER, *judged(CRANK_ROCKER, [0.3, 1.0, 2.5], heavy))
     theta2 = np.linspace(0.3, 2.5, 20_001)
     height = solve_kinematics(CRANK_ROCKER, theta2).p.velocity[:, 1]  # per radian of the driver
     assert found.torque_peak == pytest.approx(5 * 9.81 * np.abs(height).max(), rel=1e-6)
+
+
+# Everything that acts, against dense samples in time
+
+ACTING = DynamicsSpec(
+    2.0,
+    speed_rpm=30,
+    gravity=(0, -9.81),
+    loads=(
+        LoadSpec(3, (0.3, 0.1), values=((0, 0, -9), (90, 1, -20), (180, 0, -20), (360, 0, -9))),
+        LoadSpec(4, values=((0, 3.0), (1, -3), (4, 2)), over="time"),
+    ),
+    springs=(SpringSpec((Place(1, (0, 1)), Place(4, (0.5, 0))), 20, 0.5),),
+    dampers=(DamperSpec((Place(1, (0, 1)), Place(3, (0.5, 0))), 3),),
+    friction=FrictionSpec(0.1, 0.02, viscous=0.3),
+)
+MOTORS = {
+    "steady": None,
+    "trapezoid": MotorSpec("trapezoid"),
+    "cycloid": MotorSpec("cycloid"),
+    "measured": MotorSpec(values=((0, 0), (0.5, 30), (1.5, 40), (2, 100))),
+}
+
+
+@pytest.mark.quick("0-steady", "2-steady")
+@pytest.mark.parametrize("motor", MOTORS)
+@pytest.mark.parametrize("seed", range(3))
+def test_peaks_and_means_are_those_of_dense_samples_in_time(motor: str, seed: int) -> None:
+    task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
+    spec = replace(ACTING, motor=MOTORS[motor])
+    problem = Problem(task=task, length_unit="m", dynamics=spec)
+    verdict = verify(linkage, task, problem.requirements)
+    found = over_task(linkage, problem, verdict)
+    start, rotation = float(verdict.theta2[0]), float(verdict.theta2[-1] - verdict.theta2[0])
+    law = DriverLaw(start, rotation, np.copysign(np.pi, rotation), spec.motor or MotorSpec())
+    beside = (law.corners[:, None] + [-1e-9, 1e-9]).ravel()
+    share = np.unique(np.concatenate([np.linspace(0, 1, 80_001), beside]))
+    time = share[(share > 0) & (share < 1)] * law.duration  # at rest friction may be anything
+    state = solve_kinematics(linkage, *law.at_time(time), assembly=verdict.assembly[0])
+    loads = stated_loads(spec, 1.0, lambda _: time)
+    dynamics = inverse_dynamics(state, stated_masses(linkage, spec), loads)
+    rms = np.sqrt(np.trapezoid(dynamics.torque**2, time) / law.duration)
+    force = max(dynamics.joint_force(joint).max() for joint in joints_of(linkage))
+    assert found.torque_rms == pytest.approx(rms, rel=2e-6)
+    assert found.torque_peak == pytest.approx(np.abs(dynamics.torque).max(), rel=1e-6)
+    assert found.joint_force_peak == pytest.approx(force, rel=1e-6)
+    assert found.omega4_max == pytest.approx(np.abs(state.omega4).max(), rel=1e-6)
+    assert found.point_acceleration_max == pytest.approx(state.p.acceleration_magnitude.max(), rel=1e-6)
+
+
+def test_friction_and_dampers_depend_on_the_sense() -> None:
+    """The same linkage and targets, met the other way round: what resists is on the other side."""
+    task, linkage = planted_motion(np.random.default_rng(1), poses=4)
+    back = replace(task, positions=task.positions[::-1], angles=task.angles[::-1])
+    peaks = []
+    for each in (task, back):
+        problem = Problem(task=each, length_unit="m", dynamics=replace(ACTING, loads=ACTING.loads[:1]))
+        peaks.append(over_task(linkage, problem, verify(linkage, each, problem.requirements)).torque_peak)
+    assert abs(peaks[0] - peaks[1]) > 1e-3 * max(peaks)
+
+
+# Slides, under loads over their travel
+
+ENGINE = SliderCrank((0.3, 0), 0.4, 1.5, 0.2, 0.7, (0.5, 0.2))
+SHAPER = InvertedSliderCrank((0, 0), (0, -1.6), 0.6, 0.2, (2.5, 0.3))
+SPEC = DynamicsSpec(
+    masses=(1.0, 2.0, 3.0),
+    inertias=(0.1, 0.3, 0.2),
+    payload=0.5,
+    speed_rpm=25.0,
+    gravity=(1.0, -9.0),
+    loads=(LoadSpec(4, values=((-5, 3, 1), (1.2, -6, 2), (5, 2, 2)), over="travel"),),
+    friction=FrictionSpec(viscous=0.2, slide_viscous=0.3, slide_force=0.1),
+)
+IN_MILLIMETRES = replace(
+    SPEC,
+    inertias=(0.1e6, 0.3e6, 0.2e6),
+    loads=(LoadSpec(4, values=((-5e3, 3, 1), (1.2e3, -6, 2), (5e3, 2, 2)), over="travel"),),
+)
+
+
+@pytest.mark.quick("1-linkage0-1.0", "1-linkage1-1.0", "-1-linkage0-0.001", "-1-linkage1-0.001")
+@pytest.mark.parametrize("metre", [1.0, 1e-3])
+@pytest.mark.parametrize("linkage", [ENGINE, SHAPER])
+@pytest.mark.parametrize("sense", [1, -1])
+def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre: float) -> None:
+    own, unit = linkage.scaled(1 / metre, np.zeros(2)), "m" if metre == 1 else "mm"
+    at, spec = 0.4 + sense * np.array([0.0, 0.9, 2.1, 3.0]), SPEC if metre == 1 else IN_MILLIMETRES
+    problem, verdict = judged(own, at, spec, unit)
+    found = over_task(own, problem, verdict)
+    start, end = motion_ends(problem.task, verdict)
+    assert np.sign(end - start) == sense
+    theta2 = np.linspace(start, end, 20_001)
+    state = solve_kinematics(own, theta2, sense * spec.omega2)
+    dynamics = inverse_dynamics(state, stated_masses(own, spec, metre), stated_loads(spec, metre))
+    torque = dynamics.torque * metre**2
+    force = max(float(dynamics.joint_force(joint).max()) for joint in joints_of(own)) * metre
+    assert found.torque_peak == pytest.approx(np.abs(torque).max(), rel=1e-6)
+    assert found.torque_rms == pytest.approx(np.sqrt((torque**2).mean()), rel=1e-3)
+    assert found.joint_force_peak == pytest.approx(force, rel=1e-6)
+    assert Values(own, verdict, problem)["torque_peak"] == found.torque_peak
+    if metre != 1:  # the same machine in another unit
+        whole = over_task(linkage, *judged(linkage, at, SPEC))
+        assert found.torque_peak == pytest.approx(whole.torque_peak, rel=1e-8)

@@ -11,7 +11,7 @@ from grashof.analysis.judge.planted import planted_motion, random_full_crank, un
 CHECKED = settings(max_examples=60)
 
 
-def test_random_linkages_turn_fully_and_spread_as_promised() -> None:
+def test_random_linkages_turn_fully_either_way_and_spread_as_promised() -> None:
     rng = np.random.default_rng(0)
     linkages = [random_full_crank(rng) for _ in range(400)]
     kinds = {grashof_class(linkage) for linkage in linkages}
@@ -24,6 +24,7 @@ def test_random_linkages_turn_fully_and_spread_as_promised() -> None:
     assert lengths.max() > 5
     assert lengths.min() < 0.15
     assert {float(linkage.assembly) for linkage in linkages} == {1.0, -1.0}
+    assert {np.sign(np.diff(uneven_driver_angles(rng, 3))[0]) for _ in range(40)} == {1.0, -1.0}
 
 
 @given(seed=st.integers(0, 2**32), count=st.integers(2, 12))
@@ -35,12 +36,6 @@ def test_driver_angles_go_one_way_with_uneven_gaps(seed: int, count: int) -> Non
     assert gaps.max() <= 4 * gaps.min() * (1 + 1e-9)
     assert np.radians(70) <= gaps.sum() * (1 + 1e-12)
     assert gaps.sum() <= np.radians(340) * (1 + 1e-12)
-
-
-def test_both_senses_occur() -> None:
-    rng = np.random.default_rng(1)
-    senses = [np.sign(np.diff(uneven_driver_angles(rng, 3))[0]) for _ in range(40)]
-    assert set(senses) == {1.0, -1.0}
 
 
 @given(seed=st.integers(0, 2**32), poses=st.integers(2, 12))

@@ -44,6 +44,12 @@ def task_of(linkage: FourBar, degrees: list[float], assembly: npt.ArrayLike | No
     return MotionTask(state.p, state.theta3 + linkage.body_angle)
 
 
+def off_at_the_third(shift: tuple[float, float], angle_length: float) -> MotionTask:
+    right = task_of(CRANK_ROCKER, DEGREES)
+    shifts = np.array([(0.0, 0.0), (0.0, 0.0), shift, (0.0, 0.0)])
+    return MotionTask(right.positions + shifts, right.angles, angle_length=angle_length)
+
+
 def judged(requirements: Requirements, linkage: FourBar = CRANK_ROCKER) -> Verdict:
     return verify(linkage, task_of(linkage, DEGREES), requirements)
 
@@ -104,21 +110,14 @@ def test_planted_linkages_have_no_defect(seed: int, poses: int) -> None:
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK])
 @pytest.mark.parametrize("assembly", [1, -1])
 def test_designs_of_these_tests_have_no_defect_of_their_own(linkage: FourBar, assembly: int) -> None:
-    own = FourBar(
-        linkage.o2, linkage.o4, linkage.r2, linkage.r3, linkage.r4,
-        linkage.coupler_point, assembly, linkage.body_angle,
-    )  # fmt: skip
-    verdict = judged(Requirements(), own)
+    verdict = judged(Requirements(), replace(linkage, assembly=assembly))
     assert verdict.ok
     assert (verdict.assembly == assembly).all()
     np.testing.assert_allclose(np.degrees(verdict.theta2), DEGREES, rtol=1e-12)
 
 
 def test_a_wrong_position_is_not_exact() -> None:
-    right = task_of(CRANK_ROCKER, DEGREES)
-    shift = np.zeros((4, 2))
-    shift[2] = [3e-4, 4e-4]
-    task = MotionTask(right.positions + shift, right.angles, angle_length=1e-3)
+    task = off_at_the_third((3e-4, 4e-4), angle_length=1e-3)
     defect = only(verify(CRANK_ROCKER, task, Requirements()), "exact")
     assert defect.what == "the largest position error"
     assert 0 < defect.found <= 5e-4
@@ -141,10 +140,7 @@ def test_a_wrong_angle_is_not_exact() -> None:
 
 
 def test_tolerance_is_inclusive() -> None:
-    right = task_of(CRANK_ROCKER, DEGREES)
-    shift = np.zeros((4, 2))
-    shift[2] = [1e-3, 0]
-    task = MotionTask(right.positions + shift, right.angles, angle_length=1e-6)
+    task = off_at_the_third((1e-3, 0), angle_length=1e-6)
     found = verify(CRANK_ROCKER, task, Requirements(tolerance=1)).error_max / task.size
     assert verify(CRANK_ROCKER, task, Requirements(tolerance=found * (1 + 1e-15))).ok
     assert not verify(CRANK_ROCKER, task, Requirements(tolerance=found * (1 - 1e-9))).ok
@@ -182,43 +178,44 @@ def test_a_closed_motion_ends_where_it_began() -> None:
     assert verdict.transmission_min_task == pytest.approx(verdict.transmission_min_cycle, rel=1e-12)
 
 
-def test_two_poses_take_the_shorter_way() -> None:
-    for degrees, direction in (([20.0, 150.0], 1), ([20.0, 240.0], -1)):
-        verdict = verify(CRANK_ROCKER, task_of(CRANK_ROCKER, degrees), Requirements())
-        assert verdict.ok
-        assert verdict.direction == direction
-        assert abs(verdict.theta2[1] - verdict.theta2[0]) < np.pi
+@pytest.mark.parametrize(
+    ("linkage", "degrees", "assembly", "wanted", "circuit_ok", "counted"),
+    [
+        (CRANK_ROCKER, DEGREES, [1, 1, -1, 1], Requirements(), False, "circuits used"),
+        (
+            ROCKER,
+            [-60, 10, 40, 80],
+            [1, 1, -1, -1],
+            ANY,
+            True,
+            "branches used (a dead position lies between)",
+        ),
+        (DOUBLE_ROCKER, [60, 65, -65, -60], [1, 1, 1, 1], ANY, False, "circuits used"),
+    ],
+    ids=["both assemblies of a crank", "both of a rocker", "both ranges of a double-rocker"],
+)
+def test_targets_on_several_circuits_or_branches(
+    linkage: FourBar,
+    degrees: list[float],
+    assembly: list[int],
+    wanted: Requirements,
+    circuit_ok: bool,
+    counted: str,
+) -> None:
+    task = task_of(linkage, degrees, assembly)
+    verdict = verify(linkage, task, wanted)
+    assert (verdict.circuit_ok, verdict.branch_ok) == (circuit_ok, False)
+    assert verdict.assembly.tolist() == assembly
+    assert str(only(verdict, "same_branch")) == f"same_branch: the number of {counted} is 2, allowed: 1"
+    assert verify(linkage, task, replace(wanted, same_branch=False)).ok
 
 
-def test_targets_on_both_assemblies_of_a_crank_are_a_circuit_defect() -> None:
-    task = task_of(CRANK_ROCKER, DEGREES, [1, 1, -1, 1])
-    verdict = verify(CRANK_ROCKER, task, Requirements())
-    assert (verdict.circuit_ok, verdict.branch_ok) == (False, False)
-    assert verdict.assembly.tolist() == [1, 1, -1, 1]
-    assert str(only(verdict, "same_branch")) == "same_branch: the number of circuits used is 2, allowed: 1"
-    assert verify(CRANK_ROCKER, task, Requirements(same_branch=False)).ok
-
-
-def test_targets_on_both_assemblies_of_a_rocker_are_a_branch_defect() -> None:
-    task = task_of(ROCKER, [-60, 10, 40, 80], [1, 1, -1, -1])
-    verdict = verify(ROCKER, task, ANY)
-    assert (verdict.circuit_ok, verdict.branch_ok) == (True, False)
-    found = str(only(verdict, "same_branch"))
-    assert found == (
-        "same_branch: the number of branches used (a dead position lies between) is 2, allowed: 1"
+def test_one_range_of_a_double_rocker_is_one_circuit() -> None:
+    verdict = verify(
+        DOUBLE_ROCKER, task_of(DOUBLE_ROCKER, [60, 62, 64, 66]), replace(ANY, link_length=(0, 5))
     )
-    assert verify(ROCKER, task, replace(ANY, same_branch=False)).ok
-
-
-def test_a_double_rocker_has_two_circuits_for_one_assembly() -> None:
-    task = task_of(DOUBLE_ROCKER, [60, 65, -65, -60])
-    verdict = verify(DOUBLE_ROCKER, task, ANY)
+    assert verdict.ok
     assert verdict.grashof_class is GrashofClass.DOUBLE_ROCKER
-    assert (verdict.assembly == 1).all()
-    assert (verdict.circuit_ok, verdict.branch_ok) == (False, False)
-    assert only(verdict, "same_branch").what == "the number of circuits used"
-    one_range = task_of(DOUBLE_ROCKER, [60, 62, 64, 66])
-    assert verify(DOUBLE_ROCKER, one_range, replace(ANY, link_length=(0, 5))).ok
 
 
 @pytest.mark.parametrize(("linkage", "requirements"), [(CRANK_ROCKER, Requirements()), (ROCKER, ANY)])

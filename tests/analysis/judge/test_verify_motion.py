@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof.analysis import Design, verify
+from grashof.analysis import Design, Verdict, verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Requirements
 
@@ -120,6 +120,19 @@ def test_poses_out_of_order_are_a_defect_when_exact_and_cost_least_squares() -> 
     assert checked >= 8
 
 
+def seen(linkage: FourBar, task: MotionTask, wanted: Requirements) -> tuple[Design, Verdict]:
+    """What a constraint is shown, and the verdict."""
+    shown: list[Design] = []
+
+    def look(design: Design) -> float:
+        shown.append(design)
+        return -1.0
+
+    verdict = verify(linkage, task, wanted, [look])
+    (design,) = shown
+    return design, verdict
+
+
 def long_driver(design: Design) -> Any:
     return 2.0 - design.r2
 
@@ -154,14 +167,7 @@ def test_the_greatest_of_several_values_counts_and_nan_is_not_met() -> None:
 
 def test_a_design_shows_where_everything_stands_at_the_targets() -> None:
     task, linkage = planted(5, 5)
-    seen: list[Design] = []
-
-    def look(design: Design) -> float:
-        seen.append(design)
-        return -1.0
-
-    verdict = verify(linkage, task, EXACT, [look])
-    (design,) = seen
+    design, verdict = seen(linkage, task, EXACT)
     np.testing.assert_allclose(design.p, task.positions, atol=1e-9 * task.size)
     np.testing.assert_allclose(design.theta2, verdict.theta2)
     assert (design.r1, design.r2, design.r3, design.r4) == pytest.approx(linkage.lengths, rel=1e-12)
@@ -177,16 +183,10 @@ def test_a_design_is_seen_in_the_order_of_visit() -> None:
     task, linkage = planted(6, 5)
     visit = [3, 0, 4, 1, 2]
     mixed = MotionTask(task.positions[visit], task.angles[visit])
-    seen: list[Design] = []
-
-    def look(design: Design) -> float:
-        seen.append(design)
-        return -1.0
-
-    verify(linkage, mixed, replace(EXACT, order=False), [look])
-    steps = np.diff(np.array(seen[0].theta2))
+    design, _ = seen(linkage, mixed, replace(EXACT, order=False))
+    steps = np.diff(np.array(design.theta2))
     assert (steps > 0).all() or (steps < 0).all()
-    where = [int(np.argmin(np.hypot(*(task.positions - p).T))) for p in seen[0].p]
+    where = [int(np.argmin(np.hypot(*(task.positions - p).T))) for p in design.p]
     ring = [*range(5), *range(5)]
     around = ring + ring[::-1]
     assert any(around[k : k + 5] == where for k in range(len(around) - 4))

@@ -35,16 +35,10 @@ class Similarity:
         return np.stack([moved.real, moved.imag], axis=-1)
 
     def linkage(self, given: FourBar) -> FourBar:
-        return FourBar(
-            o2=self.points(given.o2),
-            o4=self.points(given.o4),
-            r2=self.scale * given.r2,
-            r3=self.scale * given.r3,
-            r4=self.scale * given.r4,
-            coupler_point=self.scale * given.coupler_point * [1, self.sense],
-            assembly=self.sense * given.assembly,
-            body_angle=self.sense * given.body_angle,
-        )
+        bars = (self.scale * length for length in given.lengths[1:])
+        point = self.scale * given.coupler_point * [1, self.sense]
+        signs = self.sense * given.assembly, self.sense * given.body_angle
+        return FourBar(self.points(given.o2), self.points(given.o4), *bars, point, *signs)
 
     def task(self, given: MotionTask) -> MotionTask:
         return MotionTask(

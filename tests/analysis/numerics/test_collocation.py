@@ -75,11 +75,7 @@ def test_where_there_is_no_motion() -> None:
         integrate_motion(lambda t, x, v, a: np.where(x < 0.5, 1.0, np.nan), 0.0, 9.0, 0.0, 1.0)
     # An event before that place ends it in time.
     path = integrate_motion(
-        lambda t, x, v, a: np.where(x < 0.5, 0.0, np.nan),
-        0.0,
-        9.0,
-        0.0,
-        1.0,
+        lambda t, x, v, a: np.where(x < 0.5, 0.0, np.nan), 0.0, 9.0, 0.0, 1.0,
         events=lambda x, v: 0.49 - x[None],
-    )
+    )  # fmt: skip
     assert path.end == pytest.approx(0.49, rel=1e-12)

@@ -58,12 +58,7 @@ def test_near_the_end_of_a_range_square_roots_are_no_hindrance() -> None:
     def model(t: FloatArray) -> Model:
         root = np.sqrt(t)
         with np.errstate(divide="ignore"):
-            return (
-                (root - 1e-3) ** 2,
-                (root - 1e-3) / root,
-                1e-3 / (2 * root**3),
-                1 / (2 * t),
-            )
+            return (root - 1e-3) ** 2, (root - 1e-3) / root, 1e-3 / (2 * root**3), 1 / (2 * t)
 
     angle, value = lowest(model, np.array([0.7]), np.array([0.0]), np.array([2.0]))
     np.testing.assert_allclose(angle, 1e-6, rtol=1e-6)

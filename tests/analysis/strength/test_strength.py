@@ -47,17 +47,13 @@ WELL = AppliedForce(4, (-4.572, 0), (0.0, -20000.0))
 
 def over_all(structure: Structure, linkage: FourBar, omega2: float = 2.0) -> StrengthSummary:
     low, high = (0.0, TURN) if full_rotation(linkage) else driver_ranges(linkage)[0]
-    return strength_over(
-        structure,
-        lambda theta2: solve_kinematics(linkage, theta2, omega2),
-        [driver_samples(linkage, low, high)],
-    )
+    motion = [driver_samples(linkage, low, high)]
+    return strength_over(structure, lambda theta2: solve_kinematics(linkage, theta2, omega2), motion)
 
 
-# A press by hand: a crank of 2 m upright, a coupler 3-4-5, an output of 5 m upright, pushed by 1000 N halfway
-# up (test_section_forces.py has its section forces). Here it is drawn in several units.
 @pytest.mark.parametrize("unit", ["m", "mm", "in"])
 def test_a_press_by_hand(unit: str) -> None:
+    """Crank upright, coupler 3-4-5, output upright and pushed by 1000 N halfway up, in several units."""
     metre = metres(unit)
     linkage = FourBar(o2=(0, 0), o4=(4 / metre, 0), r2=2 / metre, r3=5 / metre, r4=5 / metre)
     pushed = Loads(forces=(AppliedForce(4, (2.5 / metre, 0), (-1000 / metre, 0)),))
@@ -92,17 +88,13 @@ def test_a_press_by_hand(unit: str) -> None:
         (2, "deflection"): 1000 * 2**2 / (9 * np.sqrt(3) * 210e9 * inertia) / metre,
     }
     for (link, key), value in expected.items():
-        scale = 1e-12 * (1 + abs(value)) if value == 0 else 0
-        assert float(found.bars[link][key].value) == pytest.approx(
-            value, rel=1e-9, abs=max(scale, 1e-6 * (value == 0))
-        )
+        nothing = 1e-6 if value == 0 else 0
+        assert float(found.bars[link][key].value) == pytest.approx(value, rel=1e-9, abs=nothing)
     assert float(found.bars[4]["moment"].at) == pytest.approx(2.5 / metre)
     assert float(found.worst_link) == 4
-    for joint, force in ((Joint.O2, 625), (Joint.A, 625), (Joint.B, 625), (Joint.O4, 625)):
-        pins = {key: float(value) for key, value in found.pins[joint].items()}
-        assert pins == pytest.approx(
-            {"pin_force": force, "pin_shear": force / (np.pi * 0.01**2 / 4), "bearing": force / (0.01 * 0.02)}
-        )
+    borne = {"pin_force": 625, "pin_shear": 625 / (np.pi * 0.01**2 / 4), "bearing": 625 / (0.01 * 0.02)}
+    for joint in (Joint.O2, Joint.A, Joint.B, Joint.O4):
+        assert {key: float(value) for key, value in found.pins[joint].items()} == pytest.approx(borne)
 
 
 def test_a_bar_that_is_only_pulled_is_not_bent_by_rounding() -> None:
@@ -130,8 +122,7 @@ def test_what_is_not_known_is_left_out() -> None:
     state = solve_kinematics(JACK, np.linspace(0, 6, 5), 2.0)
     bars = uniform_bars(JACK, 312.0)
     tube = SectionSpec(area=0.04, inertia=1e-4, extreme_fibre=0.1)
-    keys = [measure.key for measure in BAR_MEASURES]
-    pins = [measure.key for measure in PIN_MEASURES]
+    keys, pins = ([measure.key for measure in each] for each in (BAR_MEASURES, PIN_MEASURES))
     for section, strength, last, pin in (
         (None, None, "moment", "pin_force"),
         (tube, None, "stress", "pin_force"),
@@ -179,14 +170,12 @@ def test_stocky_bars_buckle_as_johnson_says(metre: float) -> None:
 def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
     """A push along the bar from beyond A to A is no thrust between the joints."""
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=5, r4=5)
-    push = AppliedForce(2, (3.0, 0), (-80.0, 0.0), turning=True)
-    found = strength_at(solve_kinematics(linkage, np.pi / 2, 0.0), Structure(NO_MASS, Loads(forces=(push,))))
-    assert float(found.bars[2]["compression"].value) == pytest.approx(80)
-    assert float(found.bars[2]["thrust"].value) == pytest.approx(80)
-    held = Loads(forces=(push, AppliedForce(2, (2.0, 0), (80.0, 0.0), turning=True)))
-    found = strength_at(solve_kinematics(linkage, np.pi / 2, 0.0), Structure(NO_MASS, held))
-    assert float(found.bars[2]["compression"].value) == pytest.approx(80)
-    assert float(found.bars[2]["thrust"].value) == pytest.approx(0, abs=1e-9)
+    state = solve_kinematics(linkage, np.pi / 2, 0.0)
+    push, hold = (AppliedForce(2, (u, 0), (n, 0.0), turning=True) for u, n in ((3.0, -80.0), (2.0, 80.0)))
+    for forces, thrust in (((push,), 80), ((push, hold), 0)):
+        crank = strength_at(state, Structure(NO_MASS, Loads(forces=forces))).bars[2]
+        assert float(crank["compression"].value) == pytest.approx(80)
+        assert float(crank["thrust"].value) == pytest.approx(thrust, abs=1e-9)
 
 
 def test_shear_counts_close_to_the_joint_of_a_deep_bar() -> None:
@@ -216,8 +205,7 @@ def dense(
         normal, shear, moment = (np.stack(each) * factor for each, factor in zip(
             zip(*sides, strict=True),
             (structure.in_si("N"), structure.in_si("N"), structure.in_si("N m")), strict=True))  # fmt: skip
-        part = f"link {link}"
-        metre = structure.metre
+        part, metre = f"link {link}", structure.metre
         axial = np.abs(normal) / (own.area * metre**2)
         bending = np.abs(moment) * own.extreme_fibre / (own.inertia * metre**3)
         sheared = np.abs(shear) * own.shear_factor / (own.area * metre**2)
@@ -280,9 +268,9 @@ def test_peaks_are_stationary_to_rounding() -> None:
 
 
 def test_safety_factors_are_limits_over_peaks() -> None:
-    strength = replace_pins(STEEL, 0.1)
-    structure = Structure(uniform_bars(JACK, 312.0), Loads(gravity=(0, -9.81), forces=(WELL,)),
-                          SectionSpec(0.2, 0.2), strength)  # fmt: skip
+    strength = replace(STEEL, pin_diameter=0.1)
+    loads = Loads(gravity=(0, -9.81), forces=(WELL,))
+    structure = Structure(uniform_bars(JACK, 312.0), loads, SectionSpec(0.2, 0.2), strength)
     summary = over_all(structure, JACK, TURN / 3)
     by_part = {(factor.key, factor.part): factor for factor in summary.factors}
     assert len(by_part) == len(summary.factors) == 3 * 3 + 4 * 2
@@ -298,17 +286,12 @@ def test_safety_factors_are_limits_over_peaks() -> None:
     assert summary.worst_bar.value == pytest.approx(1 / by_part["yield", "link 4"].value)
 
 
-def replace_pins(strength: StrengthSpec, diameter: float) -> StrengthSpec:
-    return StrengthSpec(**{**strength.stated, "pin_diameter": diameter})
-
-
 def test_the_worst_bar_is_told_without_sections_too() -> None:
-    summary = over_all(Structure(NO_MASS, Loads(forces=(WELL,))), JACK)
-    assert (summary.worst, summary.factors) == (None, ())
-    assert (summary.worst_bar.part, summary.worst_bar.key) == ("link 4", "moment")
     thin = SectionSpec(width=[0.02, 0.2, 0.2], height=0.2)
-    summary = over_all(Structure(NO_MASS, Loads(forces=(WELL,)), thin), JACK)
-    assert (summary.worst_bar.part, summary.worst_bar.key) == ("link 2", "stress")
+    for section, *worst in ((None, "link 4", "moment"), (thin, "link 2", "stress")):
+        summary = over_all(Structure(NO_MASS, Loads(forces=(WELL,)), section), JACK)
+        assert [summary.worst_bar.part, summary.worst_bar.key] == worst
+        assert (summary.worst, summary.factors) == (None, ())
 
 
 @pytest.mark.slow
@@ -323,8 +306,8 @@ def test_the_worst_bar_is_told_without_sections_too() -> None:
 )
 @pytest.mark.parametrize("omega2", [2.0, -2.0, 0.0])
 def test_dead_positions_are_infinite(linkage: FourBar, omega2: float) -> None:
-    structure = Structure(uniform_bars(linkage, 2.0), Loads(gravity=(0, -9.81)), SectionSpec(0.1, 0.1),
-                          replace_pins(STEEL, 0.01))  # fmt: skip
+    weight = Loads(gravity=(0, -9.81))
+    structure = Structure(uniform_bars(linkage, 2.0), weight, SectionSpec(0.1, 0.1), STEEL)
     summary = over_all(structure, linkage, omega2)
     for peak in summary.peaks:
         assert peak.value == np.inf
@@ -346,12 +329,9 @@ def test_a_linkage_without_loads_bears_nothing() -> None:
 
 def test_a_motion_that_cannot_close_is_refused() -> None:
     rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
+    structure, motion = Structure(NO_MASS, Loads()), [np.linspace(0, 3, 50)]
     with pytest.raises(AssemblyError, match="cannot close at driver angle"):
-        strength_over(
-            Structure(NO_MASS, Loads()),
-            lambda theta2: solve_kinematics(rocker, theta2),
-            [np.linspace(0, 3, 50)],
-        )
+        strength_over(structure, lambda theta2: solve_kinematics(rocker, theta2), motion)
 
 
 def test_a_motion_over_time_may_be_uneven() -> None:
@@ -364,8 +344,7 @@ def test_a_motion_over_time_may_be_uneven() -> None:
 
     found = strength_over(Structure(bars, Loads()), motion, [np.linspace(0, 1, 200)])
     moment = found.peak("moment", "link 2")
-    length = 1.1938
-    assert moment.value == pytest.approx(5 * length**3 / 3 * TURN, rel=1e-12)
+    assert moment.value == pytest.approx(5 * 1.1938**3 / 3 * TURN, rel=1e-12)
     assert moment.place in (pytest.approx(0.25), pytest.approx(0.75))
 
 
@@ -382,17 +361,17 @@ def test_units_do_not_matter(four_bars: Drawer, data: st.DataObject) -> None:
 
     def bearing(unit: float) -> dict[str, Floats]:
         own = linkage.scaled(1 / unit, np.zeros(2))
-        loads = Loads(gravity=np.array([1.0, -9.8]) / unit,
-                      forces=(AppliedForce(4, (-size / unit, 0.1 / unit), force / unit),))  # fmt: skip
+        pushed = AppliedForce(4, (-size / unit, 0.1 / unit), force / unit)
+        loads = Loads(gravity=np.array([1.0, -9.8]) / unit, forces=(pushed,))
         strength = StrengthSpec(235e6, 210e9, pin_diameter=0.1 * size / unit)
         section = SectionSpec(0.1 * size / unit, 0.2 * size / unit)
         structure = Structure(uniform_bars(own, 2.0 * unit, 3.0), loads, section, strength, unit)
         found = strength_at(solve_kinematics(own, theta2, 3.0), structure)
-        bars = {f"{key} {link}": along.value * (unit if key == "deflection" else 1.0)
-                for link, each in found.bars.items() for key, along in each.items()}  # fmt: skip
-        return bars | {
-            f"{key} {joint}": value for joint, each in found.pins.items() for key, value in each.items()
-        }
+        every = {f"{key} {link}": along.value * (unit if key == "deflection" else 1.0)
+                 for link, each in found.bars.items() for key, along in each.items()}  # fmt: skip
+        for joint, each in found.pins.items():
+            every |= {f"{key} {joint}": value for key, value in each.items()}
+        return every
 
     one, other = bearing(1.0), bearing(metre)
     assert one.keys() == other.keys()
@@ -413,8 +392,7 @@ def test_loads_at_rest_are_borne_in_proportion(four_bars: Drawer, data: st.DataO
         strength_at(state, Structure(NO_MASS, Loads(forces=(each,)), SectionSpec(0.1, 0.1), STEEL))
         for each in (pushed, more)
     )
-    units = {key: max(along.value.max() for along in (each[key] for each in one.bars.values()))
-             for key in one.bars[2]}  # fmt: skip
+    units = {key: max(each[key].value.max() for each in one.bars.values()) for key in one.bars[2]}
     for link, measures in one.bars.items():
         for key, along in measures.items():
             expected, rounding = times * along.value, 1e-9 * times * units[key]

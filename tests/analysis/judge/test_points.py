@@ -1,6 +1,7 @@
 """Where a linkage comes nearest to points: planted paths, and the least sums found anew on dense samples."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,30 +23,12 @@ CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_
 STILL = [[0, 0], [1, 0], [0, 1]]
 
 
-def nearest_to_points(
-    linkage: FourBar,
-    task: PathTask,
-    *,
-    ordered: bool = True,
-    same_branch: bool = True,
-    start_deg: float | None = None,
-) -> tuple[Targets, TaskMotion]:
-    wanted = Requirements(order=ordered, same_branch=same_branch, theta2_start_deg=start_deg)
-    return meet(linkage, task, wanted)
+def nearest(linkage: FourBar, task: PathTask, **wanted: Any) -> tuple[Targets, TaskMotion]:
+    return meet(linkage, task, Requirements(**wanted))
 
 
-def sse(
-    linkage: FourBar,
-    task: PathTask,
-    *,
-    ordered: bool = True,
-    same_branch: bool = True,
-    start_deg: float | None = None,
-) -> float:
-    targets, _ = nearest_to_points(
-        linkage, task, ordered=ordered, same_branch=same_branch, start_deg=start_deg
-    )
-    return float((targets.position_error**2).sum())
+def sse(linkage: FourBar, task: PathTask, **wanted: Any) -> float:
+    return float((nearest(linkage, task, **wanted)[0].position_error ** 2).sum())
 
 
 def assert_in_order(way: TaskMotion) -> None:
@@ -66,7 +49,7 @@ def a_range(linkage: FourBar, rng: np.random.Generator) -> tuple[float, float]:
 def test_planted_points_are_met_to_rounding(count: int) -> None:
     for seed in range(12):
         task, linkage = planted_path(np.random.default_rng([count, seed]), count)
-        targets, way = nearest_to_points(linkage, task)
+        targets, way = nearest(linkage, task)
         assert targets.position_error.max() < 1e-13 * task.size
         assert (targets.assembly == linkage.assembly).all()
         assert np.isnan(targets.angle_error).all()
@@ -79,12 +62,12 @@ def test_planted_timing_is_found_in_its_sense(count: int) -> None:
         rng = np.random.default_rng([count, seed])
         linkage, theta2 = random_full_crank(rng), uneven_driver_angles(rng, count)
         task = PathTask(solve_position(linkage, theta2).p, timing=np.abs(theta2 - theta2[0]))
-        targets, way = nearest_to_points(linkage, task)
+        targets, way = nearest(linkage, task)
         assert targets.position_error.max() < 1e-13 * task.size
         assert way.direction == np.sign(theta2[1] - theta2[0])
         np.testing.assert_allclose(np.exp(1j * way.theta2), np.exp(1j * theta2), atol=1e-7)
         backwards = PathTask(task.points, timing=-np.asarray(task.timing))
-        again, _ = nearest_to_points(linkage, backwards)
+        again, _ = nearest(linkage, backwards)
         np.testing.assert_allclose(again.theta2, targets.theta2, atol=1e-7)
 
 
@@ -106,8 +89,8 @@ def test_every_class_meets_what_it_was_taken_from(
     # A point at a cusp is met to the square root of rounding in its angle, not in its place.
     for task in (free, timed):
         assert sse(linkage, task) < (1e-10 * task.size) ** 2
-        assert sse(linkage, task, start_deg=float(np.degrees(theta2[0]))) < (1e-10 * task.size) ** 2
-    assert sse(linkage, free, ordered=False) < (1e-10 * free.size) ** 2
+        assert sse(linkage, task, theta2_start_deg=float(np.degrees(theta2[0]))) < (1e-10 * task.size) ** 2
+    assert sse(linkage, free, order=False) < (1e-10 * free.size) ** 2
 
 
 def disturbed(rng: np.random.Generator, linkage: FourBar, count: int) -> Array:
@@ -133,11 +116,8 @@ def least_in_order(squared: Array) -> float:
 
 
 def dense(low: float, high: float) -> Array:
-    return np.unique(
-        np.concatenate(
-            [np.linspace(low, high, 500), low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, 500))) / 2]
-        )
-    )
+    at_ends = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, 500))) / 2
+    return np.unique(np.concatenate([np.linspace(low, high, 500), at_ends]))
 
 
 def brute_in_order(linkage: FourBar, points: Array) -> float:
@@ -156,16 +136,9 @@ def brute_in_order(linkage: FourBar, points: Array) -> float:
 
 def any_four_bar(rng: np.random.Generator) -> FourBar:
     while True:
-        lengths, direction = np.exp(rng.uniform(np.log(0.2), 0, 4)), rng.uniform(-np.pi, np.pi)
-        linkage = FourBar(
-            o2=(0, 0),
-            o4=lengths[0] * np.array([np.cos(direction), np.sin(direction)]),
-            r2=lengths[1],
-            r3=lengths[2],
-            r4=lengths[3],
-            coupler_point=rng.normal(0, 0.6, 2),
-            assembly=rng.choice([-1, 1]),
-        )
+        (r1, *others), direction = np.exp(rng.uniform(np.log(0.2), 0, 4)), rng.uniform(-np.pi, np.pi)
+        o4 = r1 * np.array([np.cos(direction), np.sin(direction)])
+        linkage = FourBar((0, 0), o4, *others, rng.normal(0, 0.6, 2), rng.choice([-1, 1]))
         if np.isfinite(driver_ranges(linkage)).any():
             return linkage
 
@@ -175,7 +148,7 @@ def test_in_order_no_sampled_order_is_better(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng) if seed % 2 else any_four_bar(rng)
     points = disturbed(rng, linkage, int(rng.integers(3, 12)))
-    targets, way = nearest_to_points(linkage, PathTask(points))
+    targets, way = nearest(linkage, PathTask(points))
     assert (targets.position_error**2).sum() <= brute_in_order(linkage, points) * (1 + 1e-9)
     assert_in_order(way)
     # The errors are those of the angles that are given.
@@ -205,7 +178,7 @@ def test_unordered_no_sampled_point_is_closer(seed: int, same_branch: bool) -> N
     rng = np.random.default_rng(seed)
     linkage = any_four_bar(rng)
     points = disturbed(rng, linkage, 7)
-    found = sse(linkage, PathTask(points), ordered=False, same_branch=same_branch)
+    found = sse(linkage, PathTask(points), order=False, same_branch=same_branch)
     ends = driver_ranges(linkage)
     by_range = []
     for low, high in ends[np.isfinite(ends[:, 0])]:
@@ -222,7 +195,7 @@ def test_a_given_start_is_kept_and_nothing_in_order_after_it_is_better(seed: int
     linkage = random_full_crank(rng)
     points, start_deg = disturbed(rng, linkage, 6), float(rng.uniform(-180, 180))
     start = float(np.radians(start_deg))
-    targets, way = nearest_to_points(linkage, PathTask(points), start_deg=start_deg)
+    targets, way = nearest(linkage, PathTask(points), theta2_start_deg=start_deg)
     assert way.theta2[0] == start
     assert_in_order(way)
     first = ((solve_position(linkage, start).p - points[0]) ** 2).sum()
@@ -231,11 +204,9 @@ def test_a_given_start_is_kept_and_nothing_in_order_after_it_is_better(seed: int
         rest = least_in_order(((p[:, None] - points[1:]) ** 2).sum(axis=-1))
         assert (targets.position_error**2).sum() <= (first + rest) * (1 + 1e-9)
     timed = PathTask(points, timing=np.arange(6) * 0.5)
-    _, way = nearest_to_points(linkage, timed, start_deg=start_deg)
+    _, way = nearest(linkage, timed, theta2_start_deg=start_deg)
     np.testing.assert_array_equal(way.theta2, start + way.direction * np.arange(6) * 0.5)
-    _, way = nearest_to_points(
-        linkage, PathTask(points), ordered=False, same_branch=True, start_deg=start_deg
-    )
+    _, way = nearest(linkage, PathTask(points), order=False, same_branch=True, theta2_start_deg=start_deg)
     assert abs((way.theta2[0] - start + np.pi) % TURN - np.pi) < 1e-12
 
 
@@ -244,8 +215,8 @@ def test_reversed_points_turn_the_driver_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
     points = disturbed(rng, linkage, 8)
-    there, way = nearest_to_points(linkage, PathTask(points))
-    back, way_back = nearest_to_points(linkage, PathTask(points[::-1]))
+    there, way = nearest(linkage, PathTask(points))
+    back, way_back = nearest(linkage, PathTask(points[::-1]))
     assert (back.position_error**2).sum() == pytest.approx((there.position_error**2).sum(), rel=1e-9)
     assert way.direction == -way_back.direction
 
@@ -259,7 +230,7 @@ def test_a_last_point_that_repeats_the_first_takes_the_whole_turn(closed: bool) 
         points = solve_position(linkage, rng.uniform(-3, 3) + sense * np.linspace(0, TURN, 12)).p
         points[-1] = points[0]
         task = PathTask(points, closed=closed)
-        targets, way = nearest_to_points(linkage, task)
+        targets, way = nearest(linkage, task)
         assert targets.position_error.max() < 1e-12 * task.size
         assert way.direction == sense
         assert way.theta2[-1] - way.theta2[0] == pytest.approx(sense * TURN, abs=1e-9)
@@ -269,9 +240,9 @@ def test_the_motion_of_a_closed_path_is_the_whole_turn() -> None:
     task, linkage = planted_path(np.random.default_rng(1), 7)
     for timing in (None, np.arange(7) * 0.1):
         closed = PathTask(task.points, timing=timing, closed=True)
-        _, way = nearest_to_points(linkage, closed)
+        _, way = nearest(linkage, closed)
         assert way.end - way.start == pytest.approx(way.direction * TURN)
-    _, way = nearest_to_points(linkage, task)
+    _, way = nearest(linkage, task)
     assert (way.start, way.end) == (way.theta2[0], way.theta2[-1])
 
 
@@ -282,8 +253,8 @@ def test_a_linkage_that_cannot_be_assembled_is_infinitely_far(
     timing: list[float] | None, ordered: bool, start_deg: float | None
 ) -> None:
     apart = FourBar(o2=(0, 0), o4=(10, 0), r2=1, r3=2, r4=3)
-    targets, way = nearest_to_points(
-        apart, PathTask(STILL, timing=timing), ordered=ordered, same_branch=True, start_deg=start_deg
+    targets, way = nearest(
+        apart, PathTask(STILL, timing=timing), order=ordered, same_branch=True, theta2_start_deg=start_deg
     )
     assert np.isinf(targets.position_error).all()
     assert np.isfinite(way.theta2).all()
@@ -292,7 +263,7 @@ def test_a_linkage_that_cannot_be_assembled_is_infinitely_far(
 def test_a_rocker_that_swings_too_little_for_the_timing_is_infinitely_far_at_some_points() -> None:
     rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=3, r3=1, r4=3, coupler_point=(0.5, 1))
     task = PathTask.from_degrees(STILL, timing_deg=[0, 150, 300])
-    targets, _ = nearest_to_points(rocker, task)
+    targets, _ = nearest(rocker, task)
     assert np.isinf(targets.position_error).any()
 
 
@@ -306,14 +277,8 @@ def test_errors_move_turn_and_grow_with_task_and_linkage(
     points = disturbed(rng, linkage, 5)
     timing = [0, 1, 2, 3, 3.5] if timed else None
     turn = scale * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    twin = FourBar(
-        o2=turn @ linkage.o2,
-        o4=turn @ linkage.o4,
-        r2=scale * linkage.r2,
-        r3=scale * linkage.r3,
-        r4=scale * linkage.r4,
-        coupler_point=scale * linkage.coupler_point,
-        assembly=linkage.assembly,
-    )
+    bars = (scale * length for length in linkage.lengths[1:])
+    point = scale * linkage.coupler_point
+    twin = FourBar(turn @ linkage.o2, turn @ linkage.o4, *bars, point, linkage.assembly)
     moved = sse(twin, PathTask(points @ turn.T, timing=timing))
     assert moved == pytest.approx(scale**2 * sse(linkage, PathTask(points, timing=timing)), rel=1e-6)
