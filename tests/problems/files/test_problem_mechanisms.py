@@ -4,7 +4,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import Objective, PathTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_file import problem_of
@@ -49,35 +49,20 @@ def test_a_problem_for_four_bars_is_written_as_ever() -> None:
     assert "mechanism" not in problem_toml(Problem(task=TASK))
 
 
-@pytest.mark.parametrize(
-    ("given", "line"),
-    [
-        ('"slider-crnk"', "mechanism is 'slider-crnk'; did you mean slider-crank?"),
-        ('"Slider-Crank"', "mechanism is 'Slider-Crank'; did you mean slider-crank?"),
-        ('["four-bar", "foubar"]', "mechanism[1] is 'foubar'; did you mean four-bar?"),
-        (
-            '"wheel"',
-            "mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-        ('["four-bar", "four-bar"]', "mechanism has four-bar 2 times"),
-        (
-            "[]",
-            "mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
-        ),
-        (
-            "4",
-            "mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
-        ),
-        (
-            "[4]",
-            "mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-        (
-            '[["four-bar"]]',
-            "mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-    ],
-)
+NO_KINDS = """
+"slider-crnk" | mechanism is 'slider-crnk'; did you mean slider-crank?
+"Slider-Crank" | mechanism is 'Slider-Crank'; did you mean slider-crank?
+["four-bar", "foubar"] | mechanism[1] is 'foubar'; did you mean four-bar?
+"wheel" | mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank
+["four-bar", "four-bar"] | mechanism has four-bar 2 times
+[] | mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
+4 | mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
+[4] | mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank
+[["four-bar"]] | mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank
+"""
+
+
+@pytest.mark.parametrize(("given", "line"), rows(NO_KINDS))
 def test_what_is_no_kind_is_refused_in_one_line(given: str, line: str) -> None:
     assert message(given) == line
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from refusals import MOTION, POSES, message, problem
+from refusals import MOTION, POSES, message, problem, rows
 
 from grashof.problems import (
     Box,
@@ -378,32 +378,23 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
     assert fixed == CylinderSpec(base=Box((1, 1), (2, 2)))
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (
-            "closed = [9, 3]",
-            "driver.cylinder.closed is [9, 3]: lo exceeds hi; it must be [lo, hi] with lo <= hi",
-        ),
-        ("closed = [0, 0]", "driver.cylinder.closed is [0, 0]; its greatest length must be above zero"),
-        ("closed = [nan, 1]", "driver.cylinder.closed[0] is nan; it must be a finite number"),
-        (
-            "ratio_max = 2.5",
-            "driver.cylinder.ratio_max is 2.5; it must be above 1 and below 2: "
-            "a rod is no longer than its cylinder",
-        ),
-        (
-            "ratio_max = 1",
-            "driver.cylinder.ratio_max is 1; it must be above 1 and below 2: "
-            "a rod is no longer than its cylinder",
-        ),
-        ("on = []", "driver.cylinder.on is []; it must be a list of some of driver, coupler, output"),
-        ('on = ["ground"]', "driver.cylinder.on[0] is 'ground'; it must be one of driver, coupler, output"),
-        ("base = { x = [3, 1] }", "driver.cylinder.base.x is [3, 1]; it must be [lo, hi] with lo <= hi"),
-        ("bore = 3", "driver.cylinder.bore is unknown; the keys are closed, ratio_max, on, base"),
-        ("base = { xx = [3, 1] }", "driver.cylinder.base.xx is unknown; did you mean x?"),
-    ],
-)
+BAD_CYLINDERS = """
+closed = [9, 3] | driver.cylinder.closed is [9, 3]: lo exceeds hi; it must be [lo, hi] with lo <= hi
+closed = [0, 0] | driver.cylinder.closed is [0, 0]; its greatest length must be above zero
+closed = [nan, 1] | driver.cylinder.closed[0] is nan; it must be a finite number
+ratio_max = 2.5 |
+    driver.cylinder.ratio_max is 2.5; it must be above 1 and below 2: a rod is no longer than its cylinder
+ratio_max = 1 |
+    driver.cylinder.ratio_max is 1; it must be above 1 and below 2: a rod is no longer than its cylinder
+on = [] | driver.cylinder.on is []; it must be a list of some of driver, coupler, output
+on = ["ground"] | driver.cylinder.on[0] is 'ground'; it must be one of driver, coupler, output
+base = { x = [3, 1] } | driver.cylinder.base.x is [3, 1]; it must be [lo, hi] with lo <= hi
+bore = 3 | driver.cylinder.bore is unknown; the keys are closed, ratio_max, on, base
+base = { xx = [3, 1] } | driver.cylinder.base.xx is unknown; did you mean x?
+"""
+
+
+@pytest.mark.parametrize(("text", "line"), rows(BAD_CYLINDERS))
 def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) -> None:
     assert message(f"{MOTION}[driver]\ncylinder = {{ {text} }}\n") == line
 

@@ -1,7 +1,7 @@
 """Problem files with wrong structure, unknown keys or senseless values: one line names the key."""
 
 import pytest
-from refusals import MOTION, POSES, message, problem
+from refusals import MOTION, POSES, message, problem, rows
 
 from grashof.problems.files.problem_writing import problem_toml
 
@@ -96,62 +96,48 @@ def test_a_wrong_value_names_its_key(table: str, line: str, said: str) -> None:
     assert message(MOTION + text) == f"{table}.{line.partition(' =')[0]}{said}"
 
 
-OTHERS = [
-    (f"[motion]\n{POSES}", "kind is missing"),
-    ('kind = "motion"', "motion is missing"),
-    ('kind = "motion"\n[motion]', "motion.poses is missing"),
-    ('kind = "motion"\nmotion = 5', "motion is 5; it must be a table"),
-    (f'kind = "dance"\n[motion]\n{POSES}', "kind is 'dance'; it must be motion, path, stroke or function"),
-    (f"kind = 3\n[motion]\n{POSES}", "kind is 3; it must be a string"),
-    ("title = 3\n" + MOTION, "title is 3; it must be a string"),
-    (MOTION + "[[requirements]]\norder = true", "requirements is [{'order': True}]; it must be a table"),
-    (
-        'kind = "stroke"\nmechanism = "slider-crank"\n[stroke]\nstroke = 4\ntime_ratio = 1.2\n'
-        "[requirements]\nslide_angle_deg = [0, 9]",
-        "requirements.slide_angle_deg is a range; of a stroke it must be a single angle",
-    ),
-    (MOTION + "[requirement]\nr1 = [1, 2]", "requirement is unknown; did you mean requirements?"),
-    ("link_length = [1, 2]\n" + MOTION, "link_length is unknown; did you mean requirements.link_length?"),
-    (f'kinds = "motion"\n[motion]\n{POSES}', "kinds is unknown; did you mean kind?\nkind is missing"),
-]
+OTHERS = r"""
+[motion]\n<POSES> | kind is missing
+kind = "motion" | motion is missing
+kind = "motion"\n[motion] | motion.poses is missing
+kind = "motion"\nmotion = 5 | motion is 5; it must be a table
+kind = "dance"\n[motion]\n<POSES> | kind is 'dance'; it must be motion, path, stroke or function
+kind = 3\n[motion]\n<POSES> | kind is 3; it must be a string
+title = 3\n<MOTION> | title is 3; it must be a string
+<MOTION>[[requirements]]\norder = true | requirements is [{'order': True}]; it must be a table
+kind = "stroke"\nmechanism = "slider-crank"\n[stroke]\nstroke = 4\ntime_ratio = 1.2\n
+    [requirements]\nslide_angle_deg = [0, 9] |
+    requirements.slide_angle_deg is a range; of a stroke it must be a single angle
+<MOTION>[requirement]\nr1 = [1, 2] | requirement is unknown; did you mean requirements?
+link_length = [1, 2]\n<MOTION> | link_length is unknown; did you mean requirements.link_length?
+kinds = "motion"\n[motion]\n<POSES> | kinds is unknown; did you mean kind?\nkind is missing
+"""
 
 
-@pytest.mark.parametrize(("text", "expected"), OTHERS)
+@pytest.mark.parametrize(("text", "expected"), rows(OTHERS, MOTION=MOTION, POSES=POSES))
 def test_what_is_wrong_with_a_file(text: str, expected: str) -> None:
     assert message(text) == expected
 
 
-POSES_TEXT = [
-    ("5", "motion.poses is 5; it must be a list of poses [x, y, angle in degrees], or a .csv or .xlsx file"),
-    ("[]", "motion.poses has 0 poses; it must have two or more"),
-    ("[[1, 2, 3]]", "motion.poses has 1 pose; it must have two or more"),
-    ("[[1, 2, 3], 5]", "motion.poses[1] is 5; it must be a pose [x, y, angle in degrees]"),
-    (
-        "[[1, 2, 3], [3.5, 4]]",
-        "motion.poses[1] is [3.5, 4], 2 numbers; it must be a pose [x, y, angle in degrees]",
-    ),
-    ("[[1, 2, 3], [1, 2, '3']]", "motion.poses[1][2] is '3'; it must be a finite number"),
-    ("[[1, 2, 3], [1, 2, true]]", "motion.poses[1][2] is True; it must be a finite number"),
-    ("[[1, nan, 3], [1, 2, 3]]", "motion.poses[0] is [1, nan, 3]; all numbers must be finite"),
-    ("[[1, 2, 3], [1, 2, -inf]]", "motion.poses[1] is [1, 2, -inf]; all numbers must be finite"),
-    (
-        "[[1, 2, 3], [1, 2, 363]]",
-        "motion.poses[0] and motion.poses[1] are equal; consecutive poses must differ",
-    ),
-    (
-        "[[1, 2, 3], [1, 2, 9]]",
-        "motion.angle_length is missing: poses at a single place have no size to take it from",
-    ),
-    (
-        "[[1, 2, 3], { x = 2, z = 3 }]",
-        "motion.poses[1].z is unknown; the keys are x, y, angle",
-    ),
-    ("[[1, 2, 3], { x = 2 }]", "motion.poses[1] has one of x and y; it must have both or neither"),
-    ("[[1, 2, 3], {}]", "motion.poses[1] has neither position nor angle"),
-]
+POSES_TEXT = """
+5 | motion.poses is 5; it must be a list of poses [x, y, angle in degrees], or a .csv or .xlsx file
+[] | motion.poses has 0 poses; it must have two or more
+[[1, 2, 3]] | motion.poses has 1 pose; it must have two or more
+[[1, 2, 3], 5] | motion.poses[1] is 5; it must be a pose [x, y, angle in degrees]
+[[1, 2, 3], [3.5, 4]] | motion.poses[1] is [3.5, 4], 2 numbers; it must be a pose [x, y, angle in degrees]
+[[1, 2, 3], [1, 2, '3']] | motion.poses[1][2] is '3'; it must be a finite number
+[[1, 2, 3], [1, 2, true]] | motion.poses[1][2] is True; it must be a finite number
+[[1, nan, 3], [1, 2, 3]] | motion.poses[0] is [1, nan, 3]; all numbers must be finite
+[[1, 2, 3], [1, 2, -inf]] | motion.poses[1] is [1, 2, -inf]; all numbers must be finite
+[[1, 2, 3], [1, 2, 363]] | motion.poses[0] and motion.poses[1] are equal; consecutive poses must differ
+[[1, 2, 3], [1, 2, 9]] | motion.angle_length is missing: poses at a single place have no size to take it from
+[[1, 2, 3], { x = 2, z = 3 }] | motion.poses[1].z is unknown; the keys are x, y, angle
+[[1, 2, 3], { x = 2 }] | motion.poses[1] has one of x and y; it must have both or neither
+[[1, 2, 3], {}] | motion.poses[1] has neither position nor angle
+"""
 
 
-@pytest.mark.parametrize(("poses", "expected"), POSES_TEXT)
+@pytest.mark.parametrize(("poses", "expected"), rows(POSES_TEXT))
 def test_bad_poses(poses: str, expected: str) -> None:
     assert message(f'kind = "motion"\n[motion]\nposes = {poses}') == expected
 

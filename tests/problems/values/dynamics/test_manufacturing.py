@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import Manufacturing, MotionTask, Problem, ProblemError, load, problem_text
 from grashof.problems.files.problem_schema import problem_from
@@ -51,30 +51,24 @@ def test_a_copied_problem_with_the_table_added_comes_back_from_its_file(tmp_path
 
 
 LENGTH = "it must be greater than zero"
-BAD = [
-    ("", "manufacturing.length_tolerance is missing"),
-    ("band = 0.1", "manufacturing.length_tolerance is missing"),
-    ("length_tolerance = 0", f"manufacturing.length_tolerance is 0; {LENGTH}"),
-    ("length_tolerance = -0.1", f"manufacturing.length_tolerance is -0.1; {LENGTH}"),
-    ("length_tolerance = '0.1'", "manufacturing.length_tolerance is '0.1'; it must be a number"),
-    ("length_tolerance = true", "manufacturing.length_tolerance is true; it must be a number"),
-    ("length_tolerance = inf", "manufacturing.length_tolerance is inf; it must be a finite number"),
-    ("length_tolerance = nan", "manufacturing.length_tolerance is nan; it must be a finite number"),
-    ("length_tolerance = 0.1\nband = 0", f"manufacturing.band is 0; {LENGTH}"),
-    ("length_tolerance = 0.1\nband = -2", f"manufacturing.band is -2; {LENGTH}"),
-    ("length_tolerance = 0.1\nband = [1, 2]", "manufacturing.band is [1, 2]; it must be a number"),
-    (
-        "length_tolerance = 0.1\nsamples = 9",
-        "manufacturing.samples is unknown; the keys are length_tolerance, band",
-    ),
-    (
-        "tolerance = 0.1\nlength_tolerance = 0.1",
-        "manufacturing.tolerance is unknown; did you mean length_tolerance?",
-    ),
-]
+BAD = r"""
+# | manufacturing.length_tolerance is missing
+band = 0.1 | manufacturing.length_tolerance is missing
+length_tolerance = 0 | manufacturing.length_tolerance is 0; <LENGTH>
+length_tolerance = -0.1 | manufacturing.length_tolerance is -0.1; <LENGTH>
+length_tolerance = '0.1' | manufacturing.length_tolerance is '0.1'; it must be a number
+length_tolerance = true | manufacturing.length_tolerance is true; it must be a number
+length_tolerance = inf | manufacturing.length_tolerance is inf; it must be a finite number
+length_tolerance = nan | manufacturing.length_tolerance is nan; it must be a finite number
+length_tolerance = 0.1\nband = 0 | manufacturing.band is 0; <LENGTH>
+length_tolerance = 0.1\nband = -2 | manufacturing.band is -2; <LENGTH>
+length_tolerance = 0.1\nband = [1, 2] | manufacturing.band is [1, 2]; it must be a number
+length_tolerance = 0.1\nsamples = 9 | manufacturing.samples is unknown; the keys are length_tolerance, band
+tolerance = 0.1\nlength_tolerance = 0.1 | manufacturing.tolerance is unknown; did you mean length_tolerance?
+"""
 
 
-@pytest.mark.parametrize(("table", "expected"), BAD)
+@pytest.mark.parametrize(("table", "expected"), rows(BAD, LENGTH=LENGTH))
 def test_bad_tables(table: str, expected: str) -> None:
     assert refusal(stated, table) == expected
 
