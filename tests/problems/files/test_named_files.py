@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,9 @@ import openpyxl
 import pytest
 import shapely
 from refusals import refusal
+from same_values import check_same
 
-from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Task, load
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError, load
 from grashof.problems.files.drawing_files import areas_of
 
 POSES = "x,y,angle_deg\n0,0,10\n1,,\n"
@@ -39,23 +39,17 @@ def refused(folder: Path, text: str, **files: str | bytes) -> list[str]:
     return refusal(written, folder, text, **files).replace(f"{folder}/", "").splitlines()
 
 
-def same(task: Task, other: Task) -> None:
-    assert type(task) is type(other)
-    for field in fields(task):
-        np.testing.assert_array_equal(getattr(task, field.name), getattr(other, field.name))
-
-
 def test_poses_of_a_table_are_those_of_the_list(tmp_path: Path) -> None:
     table = "x, y, angle_deg\n0,0,10\n3.5,1e1,-20\n7,8,\n,,45\n"
     task = written(tmp_path, MOTION.format("poses.csv"), poses__csv=table).task
     listed = MotionTask.from_degrees([[0, 0, 10], [3.5, 10, -20], {"x": 7, "y": 8}, {"angle": 45}])
-    same(task, listed)
+    check_same(task, listed)
 
 
 def test_timing_of_a_table(tmp_path: Path) -> None:
     table = "\ufeffX,Y,Timing_deg\n0,0,0\n10,5,30\n20,3,60\n"
     task = written(tmp_path, PATH.format("mm", "points.csv"), points__csv=table).task
-    same(task, PathTask.from_degrees(POINTS, timing_deg=[0, 30, 60]))
+    check_same(task, PathTask.from_degrees(POINTS, timing_deg=[0, 30, 60]))
     both = PATH.format("mm", "points.csv") + "timing_deg = [0, 1, 2]\n"
     said = refused(tmp_path, both)
     assert said == [
@@ -72,7 +66,7 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
         second.append(row)
     book.save(tmp_path / "points.xlsx")
     task = written(tmp_path, PATH.format("mm", "points.xlsx#mine")).task
-    same(task, PathTask(points=POINTS))
+    check_same(task, PathTask(points=POINTS))
     assert refused(tmp_path, PATH.format("mm", "points.xlsx#other")) == [
         "task.toml: path.points: points.xlsx: has no sheet 'other'; it has Sheet, mine"
     ]

@@ -14,6 +14,7 @@ WRONG = {
         ("angle_length = 0", " is 0; it must be greater than zero"),
         ("angle_length = 1e300", " is 1e+300; it must be from 1e-20 to 1e+20"),
         ("body = [[0, 0], [1, 1e21]]", "[1] is [1.0, 1e+21]; its numbers must be at most 1e+20"),
+        ("weights = [1, 1, 1, 'heavy']", "[3] is 'heavy'; it must be a number"),
         ("weights = [1, 1, 1, 1e308]", "[3] is 1e+308; it must be a number from 1e-09 to 1e+09"),
         ("body = [[0, 0], [1, inf]]", "[1] is [1.0, inf]; all numbers must be finite"),
         ("title = 'below its table'", " is unknown; did you mean title?"),

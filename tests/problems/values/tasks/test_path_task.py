@@ -1,6 +1,5 @@
 """Path tasks: points, timing, and what both kinds of task share."""
 
-import pickle
 
 import numpy as np
 import pytest
@@ -36,14 +35,6 @@ def test_arrays_are_read_only_copies() -> None:
     for array in (task.points, task.timing):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 9
-
-
-def test_a_task_pickles() -> None:
-    task = PathTask(LINE, timing=[0, -1, -2, -3], closed=True)
-    twin = pickle.loads(pickle.dumps(task))
-    assert twin.points.tolist() == task.points.tolist()
-    assert twin.timing.tolist() == [0, -1, -2, -3]
-    assert twin.closed
 
 
 @pytest.mark.parametrize(
