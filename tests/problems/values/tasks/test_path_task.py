@@ -1,6 +1,5 @@
 """Path tasks: points, timing, and what both kinds of task share."""
 
-
 import numpy as np
 import pytest
 from hypothesis import given

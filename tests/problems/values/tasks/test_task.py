@@ -1,6 +1,5 @@
 """Motion tasks."""
 
-
 import numpy as np
 import pytest
 from hypothesis import given
