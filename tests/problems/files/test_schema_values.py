@@ -185,3 +185,93 @@ def test_a_direction_is_an_angle_or_a_range_that_comes_back_from_a_file() -> Non
         made = problem(MOTION + f"[requirements]\nground_angle_deg = {stated}")
         assert made.requirements.ground_angle_deg == value
         assert problem(problem_toml(made)).requirements.ground_angle_deg == value
+
+
+SEVERAL = """
+kind = "path"
+title = "a\\u0007"
+length_unit = "ell"
+titles = "red"
+[motion]
+poses = [[0, 0, 0], [1, 2], { x = 1, angel = 3 }, [1, 2, nan]]
+weights = [1, 0, 1]
+angle_length = -1
+body = [[0, 0]]
+[scene]
+outlines = [[[0, 0]], [[0, 0], [1, 1]], [[0, 0], [1, inf]]]
+[requirements]
+tolerance = "1"
+order = 1
+link_ratio_max = 0
+r1 = [3, 2]
+o2 = { x = [2, 1], y = [4, 3] }
+keep_out_for = ["o3"]
+[objective]
+maximise = { torque = -1, compactness = 1e10 }
+[dynamics]
+masses = [1, -2, 3]
+payload = -1
+[manufacturing]
+band = 0
+[search]
+starts = 0
+seed = -1
+"""
+
+
+def test_all_errors_are_told_a_line_each() -> None:
+    assert message(SEVERAL).splitlines() == [
+        "title has control character U+0007; it must be plain text",
+        "motion.poses[1] is [1, 2], 2 numbers; it must be a pose [x, y, angle in degrees]",
+        "motion.poses[2].angel is unknown; did you mean angle?",
+        "motion.poses[3] is [1, 2, nan]; all numbers must be finite",
+        "motion.weights[1] is 0.0; it must be a number from 1e-09 to 1e+09",
+        "motion.angle_length is -1; it must be greater than zero",
+        "motion.body has 1 corner; it must have two or more",
+        "scene.outlines[0] has 1 corner; it must have two or more",
+        "scene.outlines[2][1] is [1.0, inf]; all numbers must be finite",
+        "requirements.tolerance is '1'; it must be a number",
+        "requirements.order is 1; it must be true or false",
+        "requirements.r1 is [3, 2]: lo exceeds hi; it must be [lo, hi] with lo <= hi",
+        "requirements.link_ratio_max is 0; it must be from 1 to 1e+06",
+        "requirements.o2.x is [2, 1]; it must be [lo, hi] with lo <= hi",
+        "requirements.o2.y is [4, 3]; it must be [lo, hi] with lo <= hi",
+        "requirements.keep_out_for[0] is 'o3'; it must be one of o2, o4, a, b, p, links, body",
+        "objective.maximise.compactness is 10000000000; it must be from 0 to 1e+09",
+        "objective.maximise.torque is -1; it must be from 0 to 1e+09",
+        "dynamics.masses[1] is -2; it must be a number from zero",
+        "dynamics.payload is -1; it must be a number from zero",
+        "manufacturing.band is 0; it must be greater than zero",
+        "search.starts is 0; it must be a whole number from 1",
+        "search.seed is -1; it must be a whole number from 0",
+        "titles is unknown; did you mean title?",
+        "manufacturing.length_tolerance is missing",
+        'motion does not belong to kind = "path"',
+        "length_unit is 'ell'; it must be one of mm, cm, m, in, ft with dynamics",
+    ]
+
+
+def test_long_values_are_shortened_and_stay_on_one_line() -> None:
+    text = message("title = [" + "1, " * 500 + "]\n" + MOTION)
+    assert text.startswith("title is [1, 1, 1,")
+    assert len(text) < 100
+    assert "\n" not in message(MOTION + '[requirements]\ntolerance = """a\nb"""')
+
+
+@pytest.mark.parametrize("key", ["title", "source", "length_unit"])
+def test_control_characters_are_refused(key: str) -> None:
+    said = f"{key} has control character U+001B; it must be plain text"
+    assert message(f'{key} = "red \\u001b[31m"\n{MOTION}') == said
+
+
+def test_tables_that_do_not_go_together_are_all_told() -> None:
+    text = (
+        MOTION
+        + "[dynamics]\nspeed_rpm = -1\n[objective]\nmaximise = 'torque'\n[requirements]\nsame_branch = false"
+    )
+    assert message("length_unit = 'm'\n" + text).splitlines() == [
+        "dynamics.speed_rpm is -1; it must be a number greater than zero",
+        "dynamics has no mass; mass_per_length is needed, masses and inertias, density or payload, "
+        "or else loads, springs or friction",
+        "requirements.same_branch is false; it must be true when objective.maximise.torque is given",
+    ]
