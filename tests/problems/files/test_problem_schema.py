@@ -202,19 +202,6 @@ def test_empty_tables_change_nothing() -> None:
     assert problem(text).objective == Objective()
 
 
-@pytest.mark.parametrize(
-    ("maximise", "expected"),
-    [
-        ('"transmission"', Objective(1, 0)),
-        ('"compactness"', Objective(0, 1)),
-        ("{ compactness = 3 }", Objective(0, 3)),
-        ("{ transmission = 0.5 }", Objective(0.5, 0)),
-    ],
-)
-def test_objective(maximise: str, expected: Objective) -> None:
-    assert problem(MOTION + f"[objective]\nmaximise = {maximise}").objective == expected
-
-
 @pytest.mark.parametrize("count", [2, 3, 7])
 def test_other_numbers_of_poses_load(count: int) -> None:
     poses = [[n, n * n, 10 * n] for n in range(count)]
@@ -242,12 +229,16 @@ DRIVEN = 'length_unit = "m"\n{}\n[objective]\nmaximise = {}\n[dynamics]\nmass_pe
 @pytest.mark.parametrize(
     ("maximise", "expected"),
     [
+        ("'transmission'", Objective(1, 0)),
+        ("'compactness'", Objective(0, 1)),
+        ("{ compactness = 3 }", Objective(0, 3)),
+        ("{ transmission = 0.5 }", Objective(0.5, 0)),
         ("'torque'", Objective(0, 0, 1)),
         ("{ transmission = 1, torque = 0.1 }", Objective(1, 0, 0.1)),
         ("{ torque = 2, compactness = 1 }", Objective(0, 1, 2)),
     ],
 )
-def test_the_torque_is_an_objective(maximise: str, expected: Objective) -> None:
+def test_objective(maximise: str, expected: Objective) -> None:
     assert problem_from(tomllib.loads(DRIVEN.format(MOTION, maximise)), "test").objective == expected
 
 
@@ -309,22 +300,21 @@ def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) ->
     assert message(f"{MOTION}[driver]\ncylinder = {{ {text} }}\n") == line
 
 
-def test_what_a_cylinder_cannot_do_is_refused_in_a_line() -> None:
-    driven = "[driver]\ncylinder = {}\n"
-    assert message(f'{MOTION}{driven}[requirements]\nrotatability = "full-crank"\n') == (
-        "requirements.rotatability is full-crank; it must be any with driver.cylinder, "
-        "which turns nothing fully"
-    )
-    assert message(f"{MOTION}closed = true\n{driven}") == (
-        "motion.closed is true; it must be false with driver.cylinder, which reverses"
-    )
-    assert message(f"{MOTION}{driven}[requirements]\nsame_branch = false\n") == (
-        "requirements.same_branch is false; it must be true with driver.cylinder"
-    )
-    assert message(f"{MOTION}[requirements]\ncylinder_angle_min_deg = 20\n") == (
-        "driver.cylinder is missing; requirements.cylinder_angle_min_deg needs it"
-    )
-    assert message(f"{MOTION}[driver]\n") == "driver.cylinder is missing"
+NOT_BY_CYLINDERS = r"""
+<DRIVEN>[requirements]\nrotatability = "full-crank" |
+    requirements.rotatability is full-crank; it must be any with driver.cylinder, which turns nothing fully
+closed = true\n<DRIVEN> | motion.closed is true; it must be false with driver.cylinder, which reverses
+<DRIVEN>[requirements]\nsame_branch = false |
+    requirements.same_branch is false; it must be true with driver.cylinder
+[requirements]\ncylinder_angle_min_deg = 20 |
+    driver.cylinder is missing; requirements.cylinder_angle_min_deg needs it
+[driver] | driver.cylinder is missing
+"""
+
+
+@pytest.mark.parametrize(("text", "said"), rows(NOT_BY_CYLINDERS, DRIVEN="[driver]\ncylinder = {}\n"))
+def test_what_a_cylinder_cannot_do_is_refused_in_a_line(text: str, said: str) -> None:
+    assert message(MOTION + text) == said
 
 
 def test_a_cylinder_drives_every_kind_but_no_strokes() -> None:
