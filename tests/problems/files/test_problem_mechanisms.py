@@ -67,21 +67,22 @@ def test_what_is_no_kind_is_refused_in_one_line(given: str, line: str) -> None:
     assert message(given) == line
 
 
-def test_requirements_that_no_kind_has_are_refused_with_those_that_have_them() -> None:
-    assert message('"slider-crank"', "r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3").splitlines() == [
-        "requirements.r4 does not go with mechanism slider-crank; only four-bar has it",
-        "requirements.o4 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank "
-        "have it",
-        "requirements.ground_angle_deg does not go with mechanism slider-crank; only four-bar and "
-        "inverted-slider-crank have it",
-    ]
-    assert message("", "stroke = [1, 2]") == (
-        "requirements.stroke does not go with mechanism four-bar; only slider-crank has it"
-    )
-    assert message('["slider-crank", "inverted-slider-crank"]', 'rotatability = "crank-rocker"') == (
-        'requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and '
-        "inverted-slider-crank; only four-bar has it"
-    )
+NOT_OF_A_KIND = r"""
+"slider-crank" | r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3 |
+    requirements.r4 does not go with mechanism slider-crank; only four-bar has it\n
+    requirements.o4 does not go with mechanism slider-crank; only <BOTH>\n
+    requirements.ground_angle_deg does not go with mechanism slider-crank; only <BOTH>
+# | stroke = [1, 2] | requirements.stroke does not go with mechanism four-bar; only slider-crank has it
+["slider-crank", "inverted-slider-crank"] | rotatability = "crank-rocker" |
+    requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and
+    inverted-slider-crank; only four-bar has it
+"""
+BOTH = "four-bar and inverted-slider-crank have it"
+
+
+@pytest.mark.parametrize(("given", "requirements", "lines"), rows(NOT_OF_A_KIND, BOTH=BOTH))
+def test_requirements_that_no_kind_has_are_refused(given: str, requirements: str, lines: str) -> None:
+    assert message(given, requirements) == lines
 
 
 def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:

@@ -109,6 +109,10 @@ title = 3\n<MOTION> | title is 3; it must be a string
 kind = "stroke"\nmechanism = "slider-crank"\n[stroke]\nstroke = 4\ntime_ratio = 1.2\n
     [requirements]\nslide_angle_deg = [0, 9] |
     requirements.slide_angle_deg is a range; of a stroke it must be a single angle
+<MOTION>[requirements]\nkeep_out_for = ['o2', 'o3'] |
+    requirements.keep_out_for[1] is 'o3'; it must be one of o2, o4, a, b, p, links, body
+<MOTION>[requirements]\nkeep_out_for = [] |
+    requirements.keep_out_for is []; it must be a list of o2, o4, a, b, p, links and body
 <MOTION>[requirement]\nr1 = [1, 2] | requirement is unknown; did you mean requirements?
 link_length = [1, 2]\n<MOTION> | link_length is unknown; did you mean requirements.link_length?
 kinds = "motion"\n[motion]\n<POSES> | kinds is unknown; did you mean kind?\nkind is missing
