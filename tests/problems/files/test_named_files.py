@@ -80,18 +80,12 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
     ("table", "said"),
     [
         ("", f"poses.csv: is empty; {MISSED}"),
-        (
-            "x,y\n1,2\n",
-            f"poses.csv: has the columns 'x,y'; {MISSED}",
-        ),
+        ("x,y\n1,2\n", f"poses.csv: has the columns 'x,y'; {MISSED}"),
         ("x,y,angle\n1,2,a\n", "poses.csv: row 1 is '1,2,a'; it must be numbers"),
         ("x,y,angle\n1,,3\n", "poses.csv: row 1 has one of x and y; it must have both or neither"),
         ("x,y,angle\n1,2,3,4\n", "poses.csv: row 1 has 4 cells; it must have 3"),
         ("x,y,angle\n1,2,nan\n", "row 1"),
-        (
-            "x,y,angle,timing_deg\n1,2,3,4\n5,6,7,\n",
-            "row 2 has no timing_deg; all rows must have it",
-        ),
+        ("x,y,angle,timing_deg\n1,2,3,4\n5,6,7,\n", "row 2 has no timing_deg; all rows must have it"),
     ],
 )
 def test_a_bad_table_is_refused_in_a_line(tmp_path: Path, table: str, said: str) -> None:
@@ -179,12 +173,7 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" {size} viewBox="0 0 100 50">
 
 
 @pytest.mark.parametrize(
-    ("size", "unit", "factor"),
-    [
-        ("", "mm", 1.0),
-        (TWICE, "mm", 2.0),
-        (TWICE, "m", 2e-3),
-    ],
+    ("size", "unit", "factor"), [("", "mm", 1.0), (TWICE, "mm", 2.0), (TWICE, "m", 2e-3)]
 )
 def test_areas_of_an_svg(tmp_path: Path, size: str, unit: str, factor: float) -> None:
     """y runs upwards in a problem, and downwards in the file."""

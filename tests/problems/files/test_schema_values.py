@@ -85,9 +85,7 @@ WRONG = {
         ("starts = 0", " is 0; it must be a whole number from 1"),
         ("workers = 2", " is unknown; the keys are starts, enough, seed, effort"),
     ],
-    "manufacturing": [
-        ("length_tolerance = 1e300", " is 1e+300; it must be at most 1e+20"),
-    ],
+    "manufacturing": [("length_tolerance = 1e300", " is 1e+300; it must be at most 1e+20")],
 }
 
 

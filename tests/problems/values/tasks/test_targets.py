@@ -79,10 +79,7 @@ def test_the_last_point_may_repeat_the_first() -> None:
         ([0, 1, 2], "path.timing_deg has 3 angles for 4 points"),
         ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; it must be 0, at the first point"),
         ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; the angles must only grow, or only fall"),
-        (
-            [0, 1, -3, 4],
-            r"path.timing_deg\[2\] is -3 after 1; the angles must only grow, or only fall",
-        ),
+        ([0, 1, -3, 4], r"path.timing_deg\[2\] is -3 after 1; the angles must only grow, or only fall"),
         ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; the angles must .*"),
         ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; it must be at most one turn, 360"),
         ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; it must be at most one turn, 360"),
