@@ -80,12 +80,16 @@ def test_finite_number_takes_every_kind_of_number(value: float) -> None:
     assert finite_number(value, "here") == positive_number(value, "here") == 3.0
 
 
+def from_one(value: Any, name: str) -> int:
+    return whole_number(value, 1, name)
+
+
 FINITE = [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400]
 POSITIVE, WHOLE = [0, -1.5, float("nan")], [0, -1, 1.0, True, "1", None]
 REFUSED: list[tuple[Any, Any, str]] = [
     *((finite_number, value, "a finite number") for value in FINITE),
     *((positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
-    *((lambda value, name: whole_number(value, 1, name), value, "a whole number from 1") for value in WHOLE),
+    *((from_one, value, "a whole number from 1") for value in WHOLE),
 ]
 
 
