@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable
 from typing import Any
@@ -34,3 +35,15 @@ def message(text: str) -> str:
         problem(text)
     assert caught.value.__cause__ is None
     return str(caught.value)
+
+
+def rows(table: str, **texts: str) -> list[tuple[str, ...]]:
+    r"""The rows of a table with ` | ` between its cells; an indented line goes on with the row above.
+
+    In a cell, `\n` is the end of a line, `#` alone no text, and `<NAME>` the text of that name.
+    """
+    for name, text in texts.items():
+        table = table.replace(f"<{name}>", text.replace("\n", r"\n"))
+    whole = re.sub(r"(\\n| ?)\n +", lambda end: end[1] or " ", table.strip("\n"))
+    lines = (line.split(" | ") for line in whole.splitlines())
+    return [tuple(cell.removeprefix("#").replace(r"\n", "\n") for cell in line) for line in lines]

@@ -11,6 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
+from live_pages import searched
+from playwright.sync_api import Browser, Page
 
 
 @pytest.fixture(scope="package")
@@ -47,3 +49,23 @@ def run() -> Callable[[Coroutine[Any, Any, Any]], Any]:
             return thread.submit(asyncio.run, coroutine).result()
 
     return in_thread
+
+
+@pytest.fixture(scope="module")
+def window(browser: Browser) -> Iterator[Page]:
+    opened = browser.new_page(viewport={"width": 1440, "height": 900})
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def page(window: Page, served: str) -> Iterator[Page]:
+    """A fresh live page whose first search is done; nothing may have been complained of."""
+    complaints: list[str] = []
+    window.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
+    window.on("pageerror", lambda error: complaints.append(str(error)))
+    window.goto("about:blank")
+    window.goto(served)
+    searched(window)
+    yield window
+    assert complaints == []

@@ -1,4 +1,4 @@
-"""`grashof analyse`: the figures of two real machines, limited ranges, files, exit codes."""
+"""`grashof analyse`: the figures of two real machines, limited ranges, ways of a driver."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from grashof.analysis import (
     solve_kinematics,
     uniform_bars,
 )
+from grashof.output.analysis_files import print_report
 from grashof.output.run_files import write_run
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, MotionTask, ProblemError, load_linkage_spec
 from grashof.survey import Asked, LinkageReport, report_on
@@ -116,6 +117,13 @@ def test_the_table_is_the_motion(jack: LinkageReport) -> None:
     assert table["theta4_deg"].max() - table["theta4_deg"].min() == pytest.approx(46.65, abs=0.01)
 
 
+def test_straightest_half_turn_of_the_pumpjack(jack: LinkageReport) -> None:
+    found = facts(jack)
+    assert found["straight_from_deg"] == pytest.approx(270.83080434, abs=1e-7)
+    assert found["straight_deviation"] == pytest.approx(0.39612851729, abs=1e-10)
+    assert found["straight_width"] / found["straight_length"] == pytest.approx(0.22186223374, abs=1e-10)
+
+
 def test_what_is_constant_is_least_and_largest_nowhere(jack: LinkageReport) -> None:
     table = extremes(jack)
     speed = table.loc["a_speed"]
@@ -207,74 +215,6 @@ def test_a_parallelogram_keeps_its_speed() -> None:
     assert turning[["min", "max"]].to_numpy().ravel().tolist() == pytest.approx([1, 1], abs=1e-6)
 
 
-def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Path) -> None:
-    (tmp_path / "far.toml").write_text("o4 = [9, 0]\nr2 = 1\nr3 = 1\nr4 = 1\n")
-    done = grashof("analyse", "far.toml")
-    assert done.exit_code == 2
-    assert "closes at no driver angle" in done.stderr
-    assert not (tmp_path / "far-analysis").exists()
-
-
-@pytest.fixture
-def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Pictures as empty files: saving them takes most of the time."""
-    monkeypatch.setattr(grashof.figures.files, "save", lambda _, paths: [path.touch() for path in paths])
-
-
-TABLES = {
-    "kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html",
-}  # fmt: skip
-
-
-def section_tables(name: str) -> set[str]:
-    sections = report_on(load_linkage_spec(name)).sections
-    return {f"table-{table}.csv" for section in sections for table in section.tables}
-
-
-def pictures(*names: str) -> set[str]:
-    return {f"{name}.{kind}" for name in names for kind in ("png", "svg")}
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("unsaved")
-def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
-    done = grashof("analyse", "pumpjack")
-    assert done.exit_code == 0, done.output
-    folder = tmp_path / "pumpjack-analysis"
-    kinematic = pictures("path", "angles", "velocities", "accelerations")
-    expected = TABLES | {"dynamics.csv"} | kinematic | pictures("torque", "forces")
-    expected |= section_tables("pumpjack")
-    assert {path.name for path in folder.iterdir()} == expected
-    assert "46.65" in done.stdout
-    assert "no limit" not in done.stdout
-    assert max(map(len, done.stdout.splitlines())) <= 100
-    summary = json.loads((folder / "summary.json").read_text())
-    assert FourBar(**summary["linkage"]) == load_linkage_spec("pumpjack").linkage
-    swing = pd.read_csv(folder / "summary.csv").set_index("quantity").loc["output_swing_deg", "value"]
-    assert float(swing) == summary["facts"]["output_swing_deg"]["value"]
-    # Without masses the files about them go; what is not Grashof's own stays.
-    (folder / "notes.txt").write_text("mine")
-    again = grashof("analyse", "lufkin-c912d", "--out", folder, "--speed-rpm", "6.5")
-    assert again.exit_code == 0
-    expected = TABLES | section_tables("lufkin-c912d") | kinematic | {"notes.txt"}
-    assert {path.name for path in folder.iterdir()} == expected
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("unsaved")
-def test_designs_of_a_list_beside_the_list(grashof: Grashof, few: Result, tmp_path: Path) -> None:
-    folder = tmp_path / "luggage-designs"
-    write_run(folder, few, {}, 0)
-    lists = {path.name for path in folder.iterdir()}
-    done = grashof("analyse", "luggage-designs/candidates.json#2", "--out", folder)
-    assert done.exit_code == 0, done.output
-    assert lists < {path.name for path in folder.iterdir()}
-    row = pd.read_csv(folder / "candidates.csv").iloc[1]
-    summary = json.loads((folder / "summary.json").read_text())["facts"]
-    expected = pytest.approx(row["transmission_min_cycle_deg"])
-    assert summary["transmission_min_deg"]["value"] == expected
-
-
 @pytest.mark.slow
 @pytest.mark.quick("1")
 @pytest.mark.parametrize("sense", [1, -1])
@@ -299,36 +239,6 @@ def test_a_design_is_analysed_as_the_list_drives_it(few: Result, tmp_path: Path,
         on_the_way = table.loc[used, columns].abs().to_numpy().max()
         assert 0.99 * row[name] < on_the_way <= row[name] * (1 + 1e-9)
         assert every.loc[columns, ["min", "max"]].abs().to_numpy().max() >= row[name] * (1 - 1e-9)
-
-
-def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "summary.csv").write_text("mine")
-    done = grashof("analyse", "pumpjack", "--out", out)
-    assert done.exit_code == 2
-    assert "summary.csv in it is not Grashof's own" in done.stderr
-    assert (out / "summary.csv").read_text() == "mine"
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("unsaved")
-def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
-    text = "o4 = [4, 0]\nr2 = 3\nr3 = 1\nr4 = 3\nlength_unit = 'mm'\n[dynamics]\nmass_per_length = 0.01\n"
-    (tmp_path / "rocker.toml").write_text(text)
-    done = grashof("analyse", "rocker.toml")
-    assert done.exit_code == 0, done.output
-    assert done.stderr.count("\n") == 3  # the note, the files, the page to open
-    assert "dead positions bound the driver's motion" in done.stderr
-    assert "no limit" in done.stdout
-    assert "infinite" in (tmp_path / "rocker-analysis" / "summary.json").read_text()
-
-
-@pytest.mark.parametrize("given", ["pumpjak", "no/such.toml", "x.json#1", "x.json"])
-def test_bad_input_is_one_line(grashof: Grashof, given: str) -> None:
-    done = grashof("analyse", given)
-    assert done.exit_code == 2
-    assert done.stderr.count("\n") == 1
 
 
 def test_given_masses_and_payload() -> None:
@@ -372,22 +282,6 @@ def test_a_driver_at_rest_and_backwards(speed: float) -> None:
     assert table.loc["f12", "min"] > 0
 
 
-@pytest.mark.quick("=1+1")
-@pytest.mark.usefixtures("unsaved")
-@pytest.mark.parametrize("unit", ["=1+1", "@SUM(A1)", "+1", "-1"])
-def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path, unit: str) -> None:
-    text = f'length_unit = "{unit}"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
-    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
-    assert grashof("analyse", "mine.toml").exit_code == 0
-    for name in ("summary.csv", "extremes.csv"):
-        table = pd.read_csv(tmp_path / "mine-analysis" / name, dtype=str, keep_default_na=False)
-        assert f"'{unit}" in set(table["unit"])
-        assert not table["unit"].str.startswith(tuple("=+-@")).any()
-    numbers = pd.read_csv(tmp_path / "mine-analysis" / "extremes.csv")["min"]
-    assert numbers.dtype == float
-    assert numbers.min() < 0
-
-
 @pytest.mark.slow
 def test_one_angle_is_counted_alike_everywhere() -> None:
     """Of a rocker that swings about 180 deg: where it turns back, the ends of its dwell, and its extremes."""
@@ -407,3 +301,27 @@ def test_one_angle_is_counted_alike_everywhere() -> None:
         np.testing.assert_allclose(toggles, [low, high], atol=1e-6)
         assert low - 1e-6 <= found["dwell_low_theta4_deg"] < found["dwell_high_theta4_deg"] <= high + 1e-6
     assert low < 180 < high
+
+
+def test_angles_that_turn_fully_have_no_extremes(capsys: pytest.CaptureFixture[str]) -> None:
+    report = report_on(LinkageSpec(FourBar((0, 0), (1, 0), 3, 2.8, 3.2), "double-crank"))
+    table = report.tables["extremes"].set_index("quantity")
+    for link in (3, 4):
+        row = table.loc[f"theta{link}_deg"]
+        assert row[["min", "theta2_min_deg", "max", "theta2_max_deg"]].isna().all()
+        assert row["what"].endswith(f"{link}, turns fully")
+    assert table.loc["mu_deg", ["min", "max"]].notna().all()
+    print_report(report)
+    shown = capsys.readouterr().out
+    assert shown.count("turns fully") == 3  # with the driver of the summary
+    assert "nan" not in shown
+
+
+def test_the_torque_factor_has_a_sign_beside_its_size() -> None:
+    spec = load_linkage_spec("lufkin-c912d")
+    table = report_on(spec, Asked(speed_rpm=-7.0)).tables["kinematics"]
+    np.testing.assert_allclose(np.abs(table["torque_factor_signed"]), table["torque_factor"], rtol=1e-14)
+    step = np.gradient(table["theta4_deg"], table["theta2_deg"], edge_order=2) * spec.output_arm
+    np.testing.assert_allclose(table["torque_factor_signed"], step, atol=0.02)
+    assert (table["torque_factor_signed"] < 0).any()
+    assert (table["torque_factor_signed"] > 0).any()

@@ -305,14 +305,6 @@ def test_torque_near_a_change_point_by_adaptive_quadrature() -> None:
 
 
 @pytest.mark.slow
-def test_straightest_half_turn_of_the_pumpjack() -> None:
-    found = facts(load_linkage_spec("pumpjack"))
-    assert found["straight_from_deg"] == pytest.approx(270.83080434, abs=1e-7)
-    assert found["straight_deviation"] == pytest.approx(0.39612851729, abs=1e-10)
-    assert found["straight_width"] / found["straight_length"] == pytest.approx(0.22186223374, abs=1e-10)
-
-
-@pytest.mark.slow
 def test_torque_under_a_tabled_load() -> None:
     """Curves through the rows meet there with different second derivatives: panels from row to row."""
     rows = [(0.0, 50.0), (13.7, -200.0), (101.3, -180.0), (211.9, 400.0), (214.0, -40.0), (360.0, 50.0)]
@@ -366,32 +358,6 @@ def test_dead_positions_are_met_to_rounding() -> None:
     for name in ("min", "max"):
         if swing[f"theta2_{name}_deg"] in np.round(ends["theta2_deg"], 9).to_numpy():
             assert np.abs(ends["theta4_deg"] - swing[name]).min() < 1e-12
-
-
-def test_angles_that_turn_fully_have_no_extremes(capsys: pytest.CaptureFixture[str]) -> None:
-    from grashof.output.analysis_files import print_report
-
-    report = report_on(LinkageSpec(FourBar((0, 0), (1, 0), 3, 2.8, 3.2), "double-crank"))
-    table = report.tables["extremes"].set_index("quantity")
-    for link in (3, 4):
-        row = table.loc[f"theta{link}_deg"]
-        assert row[["min", "theta2_min_deg", "max", "theta2_max_deg"]].isna().all()
-        assert row["what"].endswith(f"{link}, turns fully")
-    assert table.loc["mu_deg", ["min", "max"]].notna().all()
-    print_report(report)
-    shown = capsys.readouterr().out
-    assert shown.count("turns fully") == 3  # with the driver of the summary
-    assert "nan" not in shown
-
-
-def test_the_torque_factor_has_a_sign_beside_its_size() -> None:
-    spec = load_linkage_spec("lufkin-c912d")
-    table = report_on(spec, Asked(speed_rpm=-7.0)).tables["kinematics"]
-    np.testing.assert_allclose(np.abs(table["torque_factor_signed"]), table["torque_factor"], rtol=1e-14)
-    step = np.gradient(table["theta4_deg"], table["theta2_deg"], edge_order=2) * spec.output_arm
-    np.testing.assert_allclose(table["torque_factor_signed"], step, atol=0.02)
-    assert (table["torque_factor_signed"] < 0).any()
-    assert (table["torque_factor_signed"] > 0).any()
 
 
 @pytest.mark.study

@@ -4,7 +4,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import LinkageSpec, ProblemError, load, load_linkage_spec
 from grashof.problems.files.linkage_schema import linkage_from
@@ -193,122 +193,76 @@ def test_linkage_and_problem_files_of_slider_cranks_state_the_same_and_come_back
 
 LOAD = "[[loads]]\nlink = 4\n"
 JOINT = "two links of a joint: [1, 2], [2, 3], [3, 4] or [1, 4]"
-BAD = [
-    (LOAD, "loads[0].force is given by nothing; it must be by one of force, moment, values, table"),
-    (
-        LOAD + "force = [0, 1]\nmoment = 2",
-        "loads[0].force is given by force and moment; it must be by one of force, moment, values, table",
-    ),
-    ("[[loads]]\nlink = 5\nmoment = 1", "loads[0].link is 5; it must be 2, 3 or 4"),
-    ("[[loads]]\nlink = 1\nmoment = 1", "loads[0].link is 1; it must be 2, 3 or 4"),
-    (LOAD + "force = [0, 1, 2]", "loads[0].force has 3 entries; it must have 2 numbers"),
-    (LOAD + "force = 3", "loads[0].force is 3; it must be [fx, fy] in N"),
-    (LOAD + "moment = nan", "loads[0].moment is nan; it must be a finite number"),
-    (LOAD + 'moment = 1\nover = "time"', "loads[0].over does not go with a constant load"),
-    (LOAD + "moment = 1\nat = [1, 0]", "loads[0].at does not go with a moment"),
-    (LOAD + 'force = [1, 2]\nframe = "links"', "loads[0].frame is 'links'; it must be global or link"),
-    (
-        LOAD + 'values = [[0, 1], [1, 2]]\nover = "theta3"',
-        "loads[0].over is 'theta3'; it must be theta2, theta4, travel or time",
-    ),
-    (
-        LOAD + "values = [[0, 1], [350, 1]]",
-        "loads[0].values cover theta2 0 to 350 deg; they must cover a turn, as 0 to 360",
-    ),
-    (
-        LOAD + "values = [[0, 1], [360, 2]]",
-        "loads[0].values end otherwise than they begin; a turn ends as it begins",
-    ),
-    (
-        LOAD + "values = [[0, 1], [200, 2], [100, 2], [360, 1]]",
-        "loads[0].values[2] has theta2 100; it must rise from row to row",
-    ),
-    (LOAD + "values = [[0, 1]]", "loads[0].values has 1 rows; it must have two or more"),
-    (LOAD + "values = [[0]]", "loads[0].values[0] is [0.0]; it must be [theta2, fx, fy] or [theta2, moment]"),
-    (LOAD + 'table = "none.csv"', "loads[0].table is the file none.csv; here it must be values instead"),
-    (LOAD + "forces = [0, 1]", "loads[0].forces is unknown; did you mean force?"),
-    (
-        "[[springs]]\nbetween = [{ link = 2 }, { link = 2, at = [1, 0] }]\nstiffness = 1",
-        "springs[0].between joins link 2 to itself; it must be places of two different links",
-    ),
-    ("[[springs]]\nbetween = [{ link = 2 }]\nstiffness = 1", "springs[0].between is"),
-    ("[[springs]]\nbetween = [{ link = 2 }, { link = 3 }]", "springs[0].stiffness is missing"),
-    (
-        "[[springs]]\nbetween = [{ link = 2 }, { at = [0, 1] }]\nstiffness = 1",
-        "springs[0].between[1].link is missing",
-    ),
-    (
-        "[[springs]]\nbetween = [{ link = 2 }, { link = 3 }]\nstiffness = -1",
-        "springs[0].stiffness is -1; it must be a number from zero",
-    ),
-    (
-        "[[torsion_springs]]\nbetween = [2, 2]\nstiffness = 1",
-        "torsion_springs[0].between joins link 2 to itself; it must be two links of a joint",
-    ),
-    (
-        "[[torsion_springs]]\nbetween = [2, 4]\nstiffness = 1",
-        f"torsion_springs[0].between is [2, 4]; it must be {JOINT}",
-    ),
-    (
-        "[[counterweights]]\nlink = 2\nat = [1, 0]\nmass = -1",
-        "counterweights[0].mass is -1; it must be a number from zero",
-    ),
-    (
-        "[friction]\ncoulomb = 0.1",
-        "friction.pin_radius is missing; coulomb and pin_radius are needed together",
-    ),
-    (
-        "[friction]\nviscous = [1, 2]",
-        "friction.viscous is [1, 2]; it must be a number, or four: in O2, A, B, O4",
-    ),
-    ("[friction]\nviscous = 'x'", "friction.viscous is 'x'; it must be a finite number"),
-    (
-        '[motor]\nprofile = "sine"',
-        "motor.profile is 'sine'; it must be constant, trapezoid, cycloid, or the name",
-    ),
-    ("[motor]\nramp = 0.2", 'motor.ramp does not go with this profile; it needs profile = "trapezoid"'),
-    ("[motor]\ngear_efficiency = 1.2", "motor.gear_efficiency is 1.2; it must be from 0.01 to 1"),
-    ("[motor]\ngear_ratio = 0", "motor.gear_ratio is 0; it must be a number greater than zero"),
-    ("[dynamics]\ndensity = 7850", "section is missing; dynamics.density needs it"),
-    (
-        "[dynamics]\ncentres = [[0, 0], [1, 0], [0, 0]]",
-        "dynamics.masses is missing; centres are those of given masses",
-    ),
-    (
-        "[dynamics]\nmass_per_length = 2\ndensity = 7850",
-        "dynamics.mass_per_length does not go with density; give one or the other",
-    ),
-]
+BAD = r"""
+<LOAD> | loads[0].force is given by nothing; it must be by one of force, moment, values, table
+<LOAD>force = [0, 1]\nmoment = 2 |
+    loads[0].force is given by force and moment; it must be by one of force, moment, values, table
+[[loads]]\nlink = 5\nmoment = 1 | loads[0].link is 5; it must be 2, 3 or 4
+[[loads]]\nlink = 1\nmoment = 1 | loads[0].link is 1; it must be 2, 3 or 4
+<LOAD>force = [0, 1, 2] | loads[0].force has 3 entries; it must have 2 numbers
+<LOAD>force = 3 | loads[0].force is 3; it must be [fx, fy] in N
+<LOAD>moment = nan | loads[0].moment is nan; it must be a finite number
+<LOAD>moment = 1\nover = "time" | loads[0].over does not go with a constant load
+<LOAD>moment = 1\nat = [1, 0] | loads[0].at does not go with a moment
+<LOAD>force = [1, 2]\nframe = "links" | loads[0].frame is 'links'; it must be global or link
+<LOAD>values = [[0, 1], [1, 2]]\nover = "theta3" |
+    loads[0].over is 'theta3'; it must be theta2, theta4, travel or time
+<LOAD>values = [[0, 1], [350, 1]] |
+    loads[0].values cover theta2 0 to 350 deg; they must cover a turn, as 0 to 360
+<LOAD>values = [[0, 1], [360, 2]] | loads[0].values end otherwise than they begin; a turn ends as it begins
+<LOAD>values = [[0, 1], [200, 2], [100, 2], [360, 1]] |
+    loads[0].values[2] has theta2 100; it must rise from row to row
+<LOAD>values = [[0, 1]] | loads[0].values has 1 rows; it must have two or more
+<LOAD>values = [[0]] | loads[0].values[0] is [0.0]; it must be [theta2, fx, fy] or [theta2, moment]
+<LOAD>table = "none.csv" | loads[0].table is the file none.csv; here it must be values instead
+<LOAD>forces = [0, 1] | loads[0].forces is unknown; did you mean force?
+[[springs]]\nbetween = [{ link = 2 }, { link = 2, at = [1, 0] }]\nstiffness = 1 |
+    springs[0].between joins link 2 to itself; it must be places of two different links
+[[springs]]\nbetween = [{ link = 2 }]\nstiffness = 1 | springs[0].between is
+[[springs]]\nbetween = [{ link = 2 }, { link = 3 }] | springs[0].stiffness is missing
+[[springs]]\nbetween = [{ link = 2 }, { at = [0, 1] }]\nstiffness = 1 | springs[0].between[1].link is missing
+[[springs]]\nbetween = [{ link = 2 }, { link = 3 }]\nstiffness = -1 |
+    springs[0].stiffness is -1; it must be a number from zero
+[[torsion_springs]]\nbetween = [2, 2]\nstiffness = 1 |
+    torsion_springs[0].between joins link 2 to itself; it must be two links of a joint
+[[torsion_springs]]\nbetween = [2, 4]\nstiffness = 1 |
+    torsion_springs[0].between is [2, 4]; it must be two links of a joint: [1, 2], [2, 3], [3, 4] or [1, 4]
+[[counterweights]]\nlink = 2\nat = [1, 0]\nmass = -1 |
+    counterweights[0].mass is -1; it must be a number from zero
+[friction]\ncoulomb = 0.1 | friction.pin_radius is missing; coulomb and pin_radius are needed together
+[friction]\nviscous = [1, 2] | friction.viscous is [1, 2]; it must be a number, or four: in O2, A, B, O4
+[friction]\nviscous = 'x' | friction.viscous is 'x'; it must be a finite number
+[motor]\nprofile = "sine" | motor.profile is 'sine'; it must be constant, trapezoid, cycloid, or the name
+[motor]\nramp = 0.2 | motor.ramp does not go with this profile; it needs profile = "trapezoid"
+[motor]\ngear_efficiency = 1.2 | motor.gear_efficiency is 1.2; it must be from 0.01 to 1
+[motor]\ngear_ratio = 0 | motor.gear_ratio is 0; it must be a number greater than zero
+[dynamics]\ndensity = 7850 | section is missing; dynamics.density needs it
+[dynamics]\ncentres = [[0, 0], [1, 0], [0, 0]] | dynamics.masses is missing; centres are those of given masses
+[dynamics]\nmass_per_length = 2\ndensity = 7850 |
+    dynamics.mass_per_length does not go with density; give one or the other
+"""
 
 
-BAD_OF_SLIDERS = [
-    ("[friction]\nslide_mu = -1", "friction.slide_mu is -1"),
-    (
-        "[friction]\nslide_length = 3",
-        "friction.slide_mu is missing; slide_length is of no use without it",
-    ),
-    ("[friction]\nslide_m = 1", "friction.slide_m is unknown; did you mean slide_mu?"),
-    (
-        '[[loads]]\nlink = 4\nover = "theta4"\nvalues = [[0, 1], [360, 1]]',
-        "loads[0].over is 'theta4'; the slider of a slider-crank does not turn",
-    ),
-    ("[[torsion_springs]]\nbetween = [1, 4]\nstiffness = 2", "torsion_springs[0].between is [1, 4]; a"),
-    ("[friction]\nviscous = [0, 0, 0, 1]", "friction.viscous[3] is 1, in O4; a slider-crank has a slide"),
-    (
-        '[[loads]]\nlink = 4\nover = "travel"\nvalues = [[3, 1], [2, 1]]',
-        "loads[0].values[1] has travel 2",
-    ),
-]
+BAD_OF_SLIDERS = r"""
+[friction]\nslide_mu = -1 | friction.slide_mu is -1
+[friction]\nslide_length = 3 | friction.slide_mu is missing; slide_length is of no use without it
+[friction]\nslide_m = 1 | friction.slide_m is unknown; did you mean slide_mu?
+<LOAD>over = "theta4"\nvalues = [[0, 1], [360, 1]] |
+    loads[0].over is 'theta4'; the slider of a slider-crank does not turn
+[[torsion_springs]]\nbetween = [1, 4]\nstiffness = 2 | torsion_springs[0].between is [1, 4]; a
+[friction]\nviscous = [0, 0, 0, 1] | friction.viscous[3] is 1, in O4; a slider-crank has a slide
+<LOAD>over = "travel"\nvalues = [[3, 1], [2, 1]] | loads[0].values[1] has travel 2
+"""
 
 
-@pytest.mark.parametrize(("text", "expected"), BAD_OF_SLIDERS)
+@pytest.mark.parametrize(("text", "expected"), rows(BAD_OF_SLIDERS, LOAD=LOAD))
 def test_what_is_wrong_with_a_slider_crank_is_one_clear_line(text: str, expected: str) -> None:
     told = refusal(linkage_from, document_of(ENGINE + text, "mine"), "mine")
     assert told.startswith(expected)
     assert "\n" not in told
 
 
-@pytest.mark.parametrize(("text", "expected"), BAD)
+@pytest.mark.parametrize(("text", "expected"), rows(BAD, LOAD=LOAD))
 def test_what_is_wrong_is_one_clear_line(text: str, expected: str) -> None:
     for told in (refusal(linkage, text), refusal(problem_of, PROBLEM + text, "mine.toml", "mine")):
         line = told.removeprefix("mine.toml: ")

@@ -3,18 +3,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from refusals import refusal
+from refusals import message, rows
 
 from grashof.problems import FunctionTask, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 
 PAIRS = {"input_deg": [0, 20, 45, 90], "output_deg": [0, 12, 31, 80]}
-BESIDE = "function.input_deg does not go with function.law; give pairs or a law"
-UNKNOWN = "function.input_dg is unknown; did you mean input_deg?"
-CORNERS = [[0, 0], [1, 0], [1, 1]]
 TRAVEL = {"input_deg": [0, 20, 45, 90], "output": [0, 3.1, 9, 20]}
-LAW = {"law": "power", "exponent": 1.5, "x": [1, 4], "input_range_deg": 90, "output_range_deg": 90}
+RANGES = {"x": [1, 4], "input_range_deg": 90, "output_range_deg": 90}
+LAW = {**RANGES, "law": "power", "exponent": 1.5}
 
 
 @pytest.mark.parametrize(
@@ -23,24 +21,7 @@ LAW = {"law": "power", "exponent": 1.5, "x": [1, 4], "input_range_deg": 90, "out
         {**PAIRS, "sense": "either", "norm": "max"},
         LAW,
         {**LAW, "pairs": 5},
-        {**LAW, "law": "sampled", "exponent": None, "sampled": [0.0, 1.0, 3.0, 4.0, 6.0]},
-    ],
-)
-def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
-    table = {key: value for key, value in table.items() if value is not None}
-    wanted = {"structural_error_max_deg": [0, 2], "structural_error_rms_deg": [0, 1]}
-    document = {"kind": "function", "function": table, "requirements": wanted}
-    problem = problem_from(document, "a")
-    again = problem_from(tomllib.loads(problem_toml(problem)), "a")
-    assert np.array_equal(again.task.inputs, problem.task.inputs)  # type: ignore[attr-defined]
-    assert np.array_equal(again.task.outputs, problem.task.outputs)
-    assert again.requirements == problem.requirements
-    assert problem_toml(again) == problem_toml(problem)
-
-
-@pytest.mark.parametrize(
-    "table",
-    [
+        {**RANGES, "law": "sampled", "sampled": [0.0, 1.0, 3.0, 4.0, 6.0]},
         {**TRAVEL, "norm": "max"},
         {"law": "exp", "x": [0, 1], "input_range_deg": 60, "output_range": 80.0},
         {
@@ -52,147 +33,86 @@ def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
         },
     ],
 )
-def test_what_is_written_of_a_slide_comes_back(table: dict[str, Any]) -> None:
-    wanted = {"structural_error_max": [0, 2], "structural_error_rms": [0, 1]}
-    document = {
-        "kind": "function", "mechanism": "slider-crank", "function": table, "requirements": wanted,
-        "objective": {"maximise": {"structural_error_max": 1.0}},
-    }  # fmt: skip
-    if "law" in table:
-        del document["objective"]
+def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
+    slides = "output" in table or "output_range" in table
+    errors = [f"structural_error_{key}{'' if slides else '_deg'}" for key in ("max", "rms")]
+    document: dict[str, Any] = {"kind": "function", "function": table}
+    document["requirements"] = {errors[0]: [0, 2], errors[1]: [0, 1]}
+    if slides:
+        document["mechanism"] = "slider-crank"
+    if slides and "law" not in table:
+        document["objective"] = {"maximise": {errors[0]: 1.0}}
     problem = problem_from(document, "a")
     again = problem_from(tomllib.loads(problem_toml(problem)), "a")
+    assert isinstance(problem.task, FunctionTask)
     assert isinstance(again.task, FunctionTask)
-    assert again.task.travels
+    assert again.task.travels == slides
+    assert np.array_equal(again.task.inputs, problem.task.inputs)
     assert np.array_equal(again.task.outputs, problem.task.outputs)
     assert again.requirements == problem.requirements
     assert problem_toml(again) == problem_toml(problem)
-    assert [goal.column for goal, _ in problem.goals][-1:] != ["structural_error_max_deg"]
+    if slides:
+        assert [goal.column for goal, _ in problem.goals][-1:] != ["structural_error_max_deg"]
 
 
-SLIDER = {"mechanism": "slider-crank"}
+# Files of pairs, of laws and of travels, and what is added below them or above.
+TEXTS = {
+    "PAIRS": "[function]\ninput_deg = [0, 20, 45, 90]\noutput_deg = [0, 12, 31, 80]\n",
+    "LAW": '[function]\nlaw = "exp"\nx = [0, 1]\ninput_range_deg = 9\n',
+    "INPUT": "[function]\ninput_deg = [0, 20, 45, 90]\n",
+    "SLIDER": 'mechanism = "slider-crank"\n',
+}
+BAD = r"""
+<INPUT>output = [0, 3.1, 9, 20] |
+    function.output is a travel, which mechanism four-bar does not put out; it goes with slider-crank
+mechanism = ["slider-crank", "inverted-slider-crank"]\n<INPUT>output = [0, 3.1, 9, 20] |
+    function.output is a travel, which mechanism inverted-slider-crank does not put out;
+    it goes with slider-crank
+<SLIDER><PAIRS>output = [0, 1, 2, 3] | function.output_deg does not go with function.output;
+    an output turns or slides, give one of them
+<SLIDER><LAW>output_range_deg = 90\noutput_range = 3 |
+    function.output_range_deg does not go with function.output_range;
+    an output turns or slides, give one of them
+<SLIDER><INPUT>output = [0, 3.1, 9, 20]\n[requirements]\nstructural_error_max_deg = [0, 1] |
+    function has an output that slides, not one that turns;
+    requirements.structural_error_max_deg needs it
+mechanism = "four-bar"\n<PAIRS>[requirements]\nstructural_error_max = [0, 1] |
+    requirements.structural_error_max does not go with mechanism four-bar; only slider-crank has it\n
+    function has an output that turns, not one that slides; requirements.structural_error_max needs it
+<SLIDER><INPUT>output = [0, 1, 2] |
+    function.input_deg has 4 angles, function.output 3 travels; it must be as many
+<SLIDER><INPUT>output = [0, 0, 0, 0] | function.output does not move; the slide must travel
+<SLIDER><INPUT>output = [1, 2, 3, 4] | function.output[0] is 1; it must be 0, at the first pair
+<SLIDER><INPUT>output = 3 | function.output is 3; it must be a list of lengths
+<SLIDER><LAW>output_range = -8 | function.output_range is -8; it must be a number greater than zero
+<SLIDER><LAW> | function.output_range_deg is missing
+[function] | function.input_deg is missing\nfunction.output_deg is missing
+<PAIRS>law = "sin" | function.input_deg does not go with function.law; give pairs or a law
+<PAIRS>input_dg = [0, 1, 2] | function.input_dg is unknown; did you mean input_deg?
+<PAIRS>pairs = 5 | function.pairs goes with function.law only
+<PAIRS>[requirements]\ncoupler_arms = [1, 2] |
+    requirements.coupler_arms means nothing for a function; leave it out
+<PAIRS>[requirements]\na_on_body = [0, 0] | function has no angles; requirements.a_on_body needs it
+<PAIRS>[requirements]\norder = false | requirements.order is false; it must be true for a function
+<PAIRS>[requirements]\nkeep_out = [[[0, 0], [1, 0], [1, 1]]]\nkeep_out_for = ["p"] |
+    requirements.keep_out_for has p, which means nothing for a function; leave it out
+<PAIRS>[objective]\nmaximise = "coupler_fit_r2" |
+    objective.maximise.coupler_fit_r2 means nothing for a function; leave it out
+mechanism = ["four-bar", "slider-crank"]\n<PAIRS> |
+    function.output_deg is a rotation, which mechanism slider-crank does not put out;
+    it goes with four-bar and inverted-slider-crank
+<PAIRS>[driver]\ncylinder = {} | driver.cylinder does not go with function, whose driver is link 2
+"""
 
 
-@pytest.mark.parametrize(
-    ("document", "message"),
-    [
-        (
-            {"function": TRAVEL},
-            "function.output is a travel, which mechanism four-bar does not put out; "
-            "it goes with slider-crank",
-        ),
-        (
-            {"function": TRAVEL, "mechanism": ["slider-crank", "inverted-slider-crank"]},
-            "function.output is a travel, which mechanism inverted-slider-crank does not put out; "
-            "it goes with slider-crank",
-        ),
-        (
-            {"function": {**PAIRS, "output": [0, 1, 2, 3]}, **SLIDER},
-            "function.output_deg does not go with function.output; an output turns or slides, "
-            "give one of them",
-        ),
-        (
-            {"function": {**LAW, "output_range": 3}, **SLIDER},
-            "function.output_range_deg does not go with function.output_range; an output turns or slides, "
-            "give one of them",
-        ),
-        (
-            {"function": TRAVEL, **SLIDER, "requirements": {"structural_error_max_deg": [0, 1]}},
-            "function has an output that slides, not one that turns; "
-            "requirements.structural_error_max_deg needs it",
-        ),
-        (
-            {"function": PAIRS, "requirements": {"structural_error_max": [0, 1]}, "mechanism": "four-bar"},
-            "requirements.structural_error_max does not go with mechanism four-bar; "
-            "only slider-crank has it\n"
-            "function has an output that turns, not one that slides; "
-            "requirements.structural_error_max needs it",
-        ),
-        (
-            {"function": {**TRAVEL, "output": [0, 1, 2]}, **SLIDER},
-            "function.input_deg has 4 angles, function.output 3 travels; it must be as many",
-        ),
-        (
-            {"function": {**TRAVEL, "output": [0, 0, 0, 0]}, **SLIDER},
-            "function.output does not move; the slide must travel",
-        ),
-        (
-            {"function": {**TRAVEL, "output": [1, 2, 3, 4]}, **SLIDER},
-            "function.output[0] is 1; it must be 0, at the first pair",
-        ),
-        (
-            {"function": {**TRAVEL, "output": 3}, **SLIDER},
-            "function.output is 3; it must be a list of lengths",
-        ),
-        (
-            {"function": {"law": "exp", "x": [0, 1], "input_range_deg": 9, "output_range": -8}, **SLIDER},
-            "function.output_range is -8; it must be a number greater than zero",
-        ),
-        (
-            {"function": {"law": "exp", "x": [0, 1], "input_range_deg": 9}, **SLIDER},
-            "function.output_range_deg is missing",
-        ),
-    ],
-)
-def test_bad_files_of_slides_get_lines(document: dict[str, Any], message: str) -> None:
-    assert refusal(problem_from, {"kind": "function", **document}, "a") == message
+@pytest.mark.parametrize(("text", "said"), rows(BAD, **TEXTS))
+def test_bad_files_get_lines(text: str, said: str) -> None:
+    assert message(f'kind = "function"\n{text}') == said
 
 
-@pytest.mark.parametrize(
-    ("document", "message"),
-    [
-        ({"function": {}}, "function.input_deg is missing\nfunction.output_deg is missing"),
-        (
-            {"function": {**PAIRS, "law": "sin"}},
-            "function.input_deg does not go with function.law; give pairs or a law",
-        ),
-        (
-            {"function": {"input_dg": [0, 1, 2], **PAIRS}},
-            "function.input_dg is unknown; did you mean input_deg?",
-        ),
-        ({"function": {**PAIRS, "pairs": 5}}, "function.pairs goes with function.law only"),
-        (
-            {"function": PAIRS, "requirements": {"coupler_arms": [1, 2]}},
-            "requirements.coupler_arms means nothing for a function; leave it out",
-        ),
-        (
-            {"function": PAIRS, "requirements": {"a_on_body": [0, 0]}},
-            "function has no angles; requirements.a_on_body needs it",
-        ),
-        (
-            {"function": PAIRS, "requirements": {"order": False}},
-            "requirements.order is false; it must be true for a function",
-        ),
-        (
-            {
-                "function": PAIRS,
-                "requirements": {"keep_out": [[[0, 0], [1, 0], [1, 1]]], "keep_out_for": ["p"]},
-            },
-            "requirements.keep_out_for has p, which means nothing for a function; leave it out",
-        ),
-        (
-            {"function": PAIRS, "objective": {"maximise": "coupler_fit_r2"}},
-            "objective.maximise.coupler_fit_r2 means nothing for a function; leave it out",
-        ),
-        (
-            {"function": PAIRS, "mechanism": ["four-bar", "slider-crank"]},
-            "function.output_deg is a rotation, which mechanism slider-crank does not put out; "
-            "it goes with four-bar and inverted-slider-crank",
-        ),
-        (
-            {"function": PAIRS, "driver": {"cylinder": {}}},
-            "driver.cylinder does not go with function, whose driver is link 2",
-        ),
-        ({"function": PAIRS, "path": {"points": [[0, 0]]}}, None),
-    ],
-)
-def test_bad_files_get_lines(document: dict[str, Any], message: str | None) -> None:
-    with pytest.raises(ProblemError) as caught:
-        problem_from({"kind": "function", **document}, "a")
-    if message is None:
-        assert 'path does not belong to kind = "function"' in str(caught.value)
-    else:
-        assert str(caught.value) == message
+def test_the_table_of_another_task_does_not_belong() -> None:
+    text = f'kind = "function"\n{TEXTS["PAIRS"]}[path]\npoints = [[0, 0]]'
+    assert 'path does not belong to kind = "function"' in message(text)
 
 
 def test_a_path_has_no_structural_error() -> None:

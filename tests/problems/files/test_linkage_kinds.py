@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import (
     FourBar,
@@ -101,49 +101,35 @@ def test_an_inverted_slider_crank_by_length_and_angle_of_the_ground(tmp_path: Pa
     np.testing.assert_allclose(found.o4, [1, 3], rtol=1e-15)
 
 
+BAD = r"""
+<SLIDER>r4 = 3 | r4 does not go with mechanism slider-crank; only four-bar has it
+<SLIDER>o4 = [1, 1] | o4 does not go with mechanism slider-crank; only <BOTH>
+o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\noffset = 1 | offset does not go with mechanism four-bar; only <SLIDES>
+<INVERTED>slide_angle_deg = 3 |
+    slide_angle_deg does not go with mechanism inverted-slider-crank; only slider-crank has it
+mechanism = "slider-crank"\nr2 = 1\n | r3 is missing
+mechanism = "inverted-slider-crank"\nr2 = 1\n | o4 is missing; give it, or r1 with ground_angle_deg
+mechanism = "inverted-slider-crank"\no4 = [0, 0]\nr2 = 1\n |
+    o4 is where o2 is; the ground pivots must be distinct
+<SLIDER>ofset = 1 | ofset is unknown; did you mean offset?
+<SLIDER>offset = nan | offset is nan; all numbers must be finite
+<SLIDER>offset = 1e21 | offset is 1e+21; it must be from -1e+20 to 1e+20
+<SLIDER>slide_angle_deg = inf | slide_angle_deg is inf; it must be a finite number
+<SLIDER>output_arm = 3 | output_arm does not go with mechanism slider-crank; only <BOTH>
+mechanism = "slidercrank"\nr2 = 1\nr3 = 4\n | mechanism is 'slidercrank'; did you mean slider-crank?
+mechanism = 3\nr2 = 1\nr3 = 4\n | mechanism is 3; it must be <KINDS>
+mechanism = ["slider-crank"]\nr2 = 1\nr3 = 4\n | mechanism is ['slider-crank']; it must be <KINDS>
+mechanism = "slider-crank"\nr2 = -1\nr3 = 4\nr1 = 2\nassembly = 0 |
+    r1 does not go with mechanism slider-crank; only <BOTH>\n
+    r2 is -1.0; it must be greater than zero\nassembly is 0; it must be +1 or -1
+"""
+
+
 @pytest.mark.parametrize(
-    ("text", "lines"),
-    [
-        (SLIDER + "r4 = 3", ["r4 does not go with mechanism slider-crank; only four-bar has it"]),
-        (
-            SLIDER + "o4 = [1, 1]",
-            ["o4 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank have it"],
-        ),
-        (
-            "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\noffset = 1",
-            [f"offset does not go with mechanism four-bar; only {SLIDES}"],
-        ),
-        (INVERTED + "slide_angle_deg = 3", [
-            "slide_angle_deg does not go with mechanism inverted-slider-crank; only slider-crank has it"
-        ]),
-        (SLIDER.replace("r3 = 4\n", ""), ["r3 is missing"]),
-        (INVERTED.replace("o4 = [2, 0]\n", ""), ["o4 is missing; give it, or r1 with ground_angle_deg"]),
-        (INVERTED.replace("[2, 0]", "[0, 0]"), ["o4 is where o2 is; the ground pivots must be distinct"]),
-        (SLIDER + "ofset = 1", ["ofset is unknown; did you mean offset?"]),
-        (SLIDER + "offset = nan", ["offset is nan; all numbers must be finite"]),
-        (SLIDER + "offset = 1e21", ["offset is 1e+21; it must be from -1e+20 to 1e+20"]),
-        (SLIDER + "slide_angle_deg = inf", ["slide_angle_deg is inf; it must be a finite number"]),
-        (SLIDER + "output_arm = 3", [
-            f"output_arm does not go with mechanism slider-crank; only {BOTH}"
-        ]),
-        (SLIDER.replace("slider-crank", "slidercrank"), [
-            "mechanism is 'slidercrank'; did you mean slider-crank?"
-        ]),
-        (SLIDER.replace('"slider-crank"', "3"), [
-            f"mechanism is 3; it must be {KINDS}"
-        ]),
-        (SLIDER.replace('"slider-crank"', '["slider-crank"]'), [
-            f"mechanism is ['slider-crank']; it must be {KINDS}"
-        ]),
-        (SLIDER.replace("r2 = 1", "r2 = -1") + "r1 = 2\nassembly = 0", [
-            "r1 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank have it",
-            "r2 is -1.0; it must be greater than zero",
-            "assembly is 0; it must be +1 or -1",
-        ]),
-    ],
-)  # fmt: skip
-def test_what_a_file_may_not_say(tmp_path: Path, text: str, lines: list[str]) -> None:
-    assert message(tmp_path, text) == lines
+    ("text", "lines"), rows(BAD, SLIDER=SLIDER, INVERTED=INVERTED, KINDS=KINDS, BOTH=BOTH, SLIDES=SLIDES)
+)
+def test_what_a_file_may_not_say(tmp_path: Path, text: str, lines: str) -> None:
+    assert message(tmp_path, text) == lines.splitlines()
 
 
 def listed(linkage: Linkage, **changes: Any) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,9 @@ import openpyxl
 import pytest
 import shapely
 from refusals import refusal
+from same_values import check_same
 
-from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Task, load
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError, load
 from grashof.problems.files.drawing_files import areas_of
 
 POSES = "x,y,angle_deg\n0,0,10\n1,,\n"
@@ -39,23 +39,17 @@ def refused(folder: Path, text: str, **files: str | bytes) -> list[str]:
     return refusal(written, folder, text, **files).replace(f"{folder}/", "").splitlines()
 
 
-def same(task: Task, other: Task) -> None:
-    assert type(task) is type(other)
-    for field in fields(task):
-        np.testing.assert_array_equal(getattr(task, field.name), getattr(other, field.name))
-
-
 def test_poses_of_a_table_are_those_of_the_list(tmp_path: Path) -> None:
     table = "x, y, angle_deg\n0,0,10\n3.5,1e1,-20\n7,8,\n,,45\n"
     task = written(tmp_path, MOTION.format("poses.csv"), poses__csv=table).task
     listed = MotionTask.from_degrees([[0, 0, 10], [3.5, 10, -20], {"x": 7, "y": 8}, {"angle": 45}])
-    same(task, listed)
+    check_same(task, listed)
 
 
 def test_timing_of_a_table(tmp_path: Path) -> None:
     table = "\ufeffX,Y,Timing_deg\n0,0,0\n10,5,30\n20,3,60\n"
     task = written(tmp_path, PATH.format("mm", "points.csv"), points__csv=table).task
-    same(task, PathTask.from_degrees(POINTS, timing_deg=[0, 30, 60]))
+    check_same(task, PathTask.from_degrees(POINTS, timing_deg=[0, 30, 60]))
     both = PATH.format("mm", "points.csv") + "timing_deg = [0, 1, 2]\n"
     said = refused(tmp_path, both)
     assert said == [
@@ -72,7 +66,7 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
         second.append(row)
     book.save(tmp_path / "points.xlsx")
     task = written(tmp_path, PATH.format("mm", "points.xlsx#mine")).task
-    same(task, PathTask(points=POINTS))
+    check_same(task, PathTask(points=POINTS))
     assert refused(tmp_path, PATH.format("mm", "points.xlsx#other")) == [
         "task.toml: path.points: points.xlsx: has no sheet 'other'; it has Sheet, mine"
     ]
@@ -86,18 +80,12 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
     ("table", "said"),
     [
         ("", f"poses.csv: is empty; {MISSED}"),
-        (
-            "x,y\n1,2\n",
-            f"poses.csv: has the columns 'x,y'; {MISSED}",
-        ),
+        ("x,y\n1,2\n", f"poses.csv: has the columns 'x,y'; {MISSED}"),
         ("x,y,angle\n1,2,a\n", "poses.csv: row 1 is '1,2,a'; it must be numbers"),
         ("x,y,angle\n1,,3\n", "poses.csv: row 1 has one of x and y; it must have both or neither"),
         ("x,y,angle\n1,2,3,4\n", "poses.csv: row 1 has 4 cells; it must have 3"),
         ("x,y,angle\n1,2,nan\n", "row 1"),
-        (
-            "x,y,angle,timing_deg\n1,2,3,4\n5,6,7,\n",
-            "row 2 has no timing_deg; all rows must have it",
-        ),
+        ("x,y,angle,timing_deg\n1,2,3,4\n5,6,7,\n", "row 2 has no timing_deg; all rows must have it"),
     ],
 )
 def test_a_bad_table_is_refused_in_a_line(tmp_path: Path, table: str, said: str) -> None:
@@ -185,12 +173,7 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" {size} viewBox="0 0 100 50">
 
 
 @pytest.mark.parametrize(
-    ("size", "unit", "factor"),
-    [
-        ("", "mm", 1.0),
-        (TWICE, "mm", 2.0),
-        (TWICE, "m", 2e-3),
-    ],
+    ("size", "unit", "factor"), [("", "mm", 1.0), (TWICE, "mm", 2.0), (TWICE, "m", 2e-3)]
 )
 def test_areas_of_an_svg(tmp_path: Path, size: str, unit: str, factor: float) -> None:
     """y runs upwards in a problem, and downwards in the file."""

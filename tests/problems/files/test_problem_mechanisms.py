@@ -4,7 +4,7 @@ import tomllib
 from dataclasses import replace
 
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import Objective, PathTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_file import problem_of
@@ -49,54 +49,40 @@ def test_a_problem_for_four_bars_is_written_as_ever() -> None:
     assert "mechanism" not in problem_toml(Problem(task=TASK))
 
 
-@pytest.mark.parametrize(
-    ("given", "line"),
-    [
-        ('"slider-crnk"', "mechanism is 'slider-crnk'; did you mean slider-crank?"),
-        ('"Slider-Crank"', "mechanism is 'Slider-Crank'; did you mean slider-crank?"),
-        ('["four-bar", "foubar"]', "mechanism[1] is 'foubar'; did you mean four-bar?"),
-        (
-            '"wheel"',
-            "mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-        ('["four-bar", "four-bar"]', "mechanism has four-bar 2 times"),
-        (
-            "[]",
-            "mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
-        ),
-        (
-            "4",
-            "mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these",
-        ),
-        (
-            "[4]",
-            "mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-        (
-            '[["four-bar"]]',
-            "mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank",
-        ),
-    ],
-)
+NO_KINDS = """
+"slider-crnk" | mechanism is 'slider-crnk'; did you mean slider-crank?
+"Slider-Crank" | mechanism is 'Slider-Crank'; did you mean slider-crank?
+["four-bar", "foubar"] | mechanism[1] is 'foubar'; did you mean four-bar?
+"wheel" | mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank
+["four-bar", "four-bar"] | mechanism has four-bar 2 times
+[] | mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
+4 | mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
+[4] | mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank
+[["four-bar"]] | mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank
+"""
+
+
+@pytest.mark.parametrize(("given", "line"), rows(NO_KINDS))
 def test_what_is_no_kind_is_refused_in_one_line(given: str, line: str) -> None:
     assert message(given) == line
 
 
-def test_requirements_that_no_kind_has_are_refused_with_those_that_have_them() -> None:
-    assert message('"slider-crank"', "r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3").splitlines() == [
-        "requirements.r4 does not go with mechanism slider-crank; only four-bar has it",
-        "requirements.o4 does not go with mechanism slider-crank; only four-bar and inverted-slider-crank "
-        "have it",
-        "requirements.ground_angle_deg does not go with mechanism slider-crank; only four-bar and "
-        "inverted-slider-crank have it",
-    ]
-    assert message("", "stroke = [1, 2]") == (
-        "requirements.stroke does not go with mechanism four-bar; only slider-crank has it"
-    )
-    assert message('["slider-crank", "inverted-slider-crank"]', 'rotatability = "crank-rocker"') == (
-        'requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and '
-        "inverted-slider-crank; only four-bar has it"
-    )
+NOT_OF_A_KIND = r"""
+"slider-crank" | r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3 |
+    requirements.r4 does not go with mechanism slider-crank; only four-bar has it\n
+    requirements.o4 does not go with mechanism slider-crank; only <BOTH>\n
+    requirements.ground_angle_deg does not go with mechanism slider-crank; only <BOTH>
+# | stroke = [1, 2] | requirements.stroke does not go with mechanism four-bar; only slider-crank has it
+["slider-crank", "inverted-slider-crank"] | rotatability = "crank-rocker" |
+    requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and
+    inverted-slider-crank; only four-bar has it
+"""
+BOTH = "four-bar and inverted-slider-crank have it"
+
+
+@pytest.mark.parametrize(("given", "requirements", "lines"), rows(NOT_OF_A_KIND, BOTH=BOTH))
+def test_requirements_that_no_kind_has_are_refused(given: str, requirements: str, lines: str) -> None:
+    assert message(given, requirements) == lines
 
 
 def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:

@@ -1,12 +1,10 @@
 """Problems written as files come back as they were."""
 
-from dataclasses import fields
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from same_values import check_same
 
 from grashof.problems import (
     Box,
@@ -25,21 +23,6 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1.0], [0, 1]])
-
-
-def check_same(one: Any, other: Any) -> None:
-    """Every number and word in two values is the same, to the last bit."""
-    if isinstance(one, np.ndarray):
-        np.testing.assert_array_equal(one, other, strict=True)
-    elif isinstance(one, tuple):
-        for parts in zip(one, other, strict=True):
-            check_same(*parts)
-    elif hasattr(one, "__dataclass_fields__"):
-        assert type(one) is type(other)
-        for field in fields(one):
-            check_same(getattr(one, field.name), getattr(other, field.name))
-    else:
-        assert one == other
 
 
 def again(problem: Problem) -> Problem:

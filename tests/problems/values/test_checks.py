@@ -20,7 +20,6 @@ from grashof.problems.values.checks import (
     plain_text,
     positive_number,
     readable,
-    span,
     whole_number,
 )
 
@@ -78,20 +77,26 @@ def test_outline_needs_two_corners() -> None:
 
 @pytest.mark.parametrize("value", [3, 3.0, np.float64(3), np.int64(3)])
 def test_finite_number_takes_every_kind_of_number(value: float) -> None:
-    assert finite_number(value, "here") == 3.0
+    assert finite_number(value, "here") == positive_number(value, "here") == 3.0
 
 
-@pytest.mark.parametrize("value", [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400])
-def test_finite_number_refuses(value: float) -> None:
-    with pytest.raises(ProblemError, match=r"^here is .*; it must be a finite number$"):
-        finite_number(value, "here")
+def from_one(value: Any, name: str) -> int:
+    return whole_number(value, 1, name)
 
 
-@pytest.mark.parametrize("value", [0, -1.5, float("nan")])
-def test_positive_number_refuses(value: float) -> None:
-    with pytest.raises(ProblemError, match="width is"):
-        positive_number(value, "width")
-    assert positive_number(0.5, "width") == 0.5
+FINITE = [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400]
+POSITIVE, WHOLE = [0, -1.5, float("nan")], [0, -1, 1.0, True, "1", None]
+REFUSED: list[tuple[Any, Any, str]] = [
+    *((finite_number, value, "a finite number") for value in FINITE),
+    *((positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
+    *((from_one, value, "a whole number from 1") for value in WHOLE),
+]
+
+
+@pytest.mark.parametrize(("check", "value", "meant"), REFUSED)
+def test_what_is_no_such_number_is_refused(check: Any, value: Any, meant: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^here is .*; it must be {meant}$"):
+        check(value, "here")
 
 
 def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
@@ -99,12 +104,6 @@ def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
     assert number_within(90, 0, 90, "here") == 90
     with pytest.raises(ProblemError, match=r"^here is 90.000000001; it must be from 0 to 90$"):
         number_within(90.000000001, 0, 90, "here")
-
-
-@pytest.mark.parametrize("value", [0, -1, 1.0, True, "1", None])
-def test_whole_number_refuses(value: int) -> None:
-    with pytest.raises(ProblemError, match=r"^here is .*; it must be a whole number from 1$"):
-        whole_number(value, 1, "here")
 
 
 def test_whole_number_takes_numpy_integers() -> None:
@@ -165,19 +164,3 @@ def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
 def test_text_of_all_languages_is_plain() -> None:
     for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
         assert plain_text(text, "title") == readable(text) == text
-
-
-@pytest.mark.parametrize("size", [1e-20, 1.0, 1e20])
-def test_span_of_many_points_is_the_greatest_distance(size: float) -> None:
-    rng = np.random.default_rng(0)
-    on_a_circle = np.exp(1j * rng.uniform(0, 6, 700))
-    for points in (rng.normal(size=700) + 1j * rng.normal(size=700), rng.normal(size=700) + 0j, on_a_circle):
-        rows = size * np.column_stack([points.real, points.imag])
-        assert span(rows) == pytest.approx(np.abs(np.subtract.outer(points, points)).max() * size, rel=1e-14)
-
-
-@pytest.mark.slow
-def test_span_of_as_many_points_as_no_memory_holds_the_pairs_of() -> None:
-    points = np.random.default_rng(0).uniform(-0.7, 0.7, (200_000, 2))
-    points[[77, 777]] = [[-3, -4], [3, 4]]
-    assert span(points) == 10

@@ -77,6 +77,13 @@ def test_memory_grows_with_the_points_not_with_their_pairs() -> None:
     assert peak < 30e6  # bytes; all pairs would take 6.4e9
 
 
+@pytest.mark.slow
+def test_span_of_as_many_points_as_no_memory_holds_the_pairs_of() -> None:
+    points = np.random.default_rng(0).uniform(-0.7, 0.7, (200_000, 2))
+    points[[77, 777]] = [[-3, -4], [3, 4]]
+    assert span(points) == 10
+
+
 def test_poses_without_positions_count_for_nothing() -> None:
     positions = drawn(6)
     positions[::2] = np.nan

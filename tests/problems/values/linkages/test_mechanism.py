@@ -14,8 +14,8 @@ LEG = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), d=(6, 2), r5=3, r6=2.5, hosts=(3
 PRESS = SixBar((1, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=3, slide_angle_2=0.5, hosts=(3, 1), point_link=6)
 EVERY = (
     FourBar((0, 1), (4, 0), 1, 4, 3, (1, 2), -1, 0.3),
-    SliderCrank((0, 1), 1, 4, 0.5, 0.2, (1, 2), -1, 0.3),
-    InvertedSliderCrank((0, 1), (4, 0), 1, 0.5, (1, 2), -1, 0.3),
+    SliderCrank((0, 1.25), 1, np.pi, -0.25, 0.7, (0.1 + 0.2, -1e20), -1, 1e-300),
+    InvertedSliderCrank((0, 1.25), (4.5, -0.5), 1, -0.5, (0.3, 2), -1, 1e-300),
     LEG,
     PRESS,
 )
@@ -45,12 +45,18 @@ def test_points_lie_on_the_links_that_a_textbook_names() -> None:
 
 @pytest.mark.parametrize("linkage", EVERY, ids=lambda each: each.mechanism.word)
 def test_a_value_comes_back_from_pickle_json_index_scale_and_its_own_words(linkage: FourBar) -> None:
-    assert pickle.loads(pickle.dumps(linkage)) == linkage
+    twin = pickle.loads(pickle.dumps(linkage))
+    assert (twin, hash(twin)) == (linkage, hash(linkage))
+    with pytest.raises(ProblemError, match=r"r2 is -1; it must be greater than zero"):
+        linkage.changed(r2=-1)
     assert linkage_of(linkage.mechanism.word, linkage.stated) == linkage
     assert eval(repr(linkage), {type(linkage).__name__: type(linkage)}) == linkage  # noqa: S307
-    assert linkage.stacked([linkage, linkage])[1] == linkage
+    assert linkage.stacked([linkage, linkage])[1] == linkage[None, None][0, 0] == linkage
+    assert linkage[None, None].shape == (1, 1)
     shift = np.array([3.0, -2.0])
     there = linkage.scaled(2.0, shift)
+    for name in {"r2", "offset"} & {*linkage.columns}:
+        assert there.columns[name] == 2 * linkage.columns[name]  # type: ignore[operator]
     back = there.scaled(0.5, -2.0 * shift)
     for one, other in zip(back.parameters, linkage.parameters, strict=True):
         np.testing.assert_allclose(one, other, atol=1e-15)

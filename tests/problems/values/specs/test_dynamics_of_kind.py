@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from refusals import refusal
+from refusals import refusal, rows
 
 from grashof.problems import (
     DynamicsSpec,
@@ -147,77 +147,58 @@ JOINTS = "[1, 2], [2, 3], [3, 4], [1, 4], [3, 5], [5, 6] or [1, 6]"
 ROWS = ((0, 1), (360, 1))
 
 
-@pytest.mark.parametrize(
-    ("kind", "spec", "line"),
-    [
-        (
-            LEG,
-            DynamicsSpec(friction=FrictionSpec(viscous=(1, 2, 3, 4))),
-            "friction.viscous is [1.0, 2.0, 3.0, 4.0]; it must be a number, or seven: in O2, A, B, O4, C, "
-            "E, D",
-        ),
-        (
-            LEG,
-            DynamicsSpec(torsion_springs=(TorsionSpringSpec((4, 5), 1.0),)),
-            f"torsion_springs[0].between is [4, 5]; it must be two links of a joint: {JOINTS}",
-        ),
-        (
-            LEG,
-            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="travel"),)),
-            "loads[0].over is 'travel'; a stephenson-3 has no slide, so it must be theta2, theta4, theta6 "
-            "or time",
-        ),
-        (
-            LEG,
-            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="theta5"),)),
-            "loads[0].over is 'theta5'; it must be theta2, theta4, theta6, travel or time",
-        ),
-        (
-            PRESS,
-            DynamicsSpec(loads=(LoadSpec(6, values=ROWS, over="theta6"),)),
-            "loads[0].over is 'theta6'; the slider of a stephenson-3 does not turn, so it must be theta2, "
-            "theta4, travel or time",
-        ),
-        (
-            PRESS,
-            DynamicsSpec(torsion_springs=(TorsionSpringSpec((6, 1), 1.0),)),
-            "torsion_springs[0].between is [1, 6]; a stephenson-3 has a slide there, so it must be at a pin",
-        ),
-        (
-            PRESS,
-            DynamicsSpec(friction=FrictionSpec(moment=(0, 0, 0, 0, 0, 0, 3))),
-            "friction.moment[6] is 3, in D; a stephenson-3 has a slide there, so it must be 0 (slide_force "
-            "is for slides)",
-        ),
-        (
-            LEG,
-            DynamicsSpec(section=SectionSpec(width=[1, 2, 3], height=1)),
-            "section.width has 3 entries; it must be a number with mechanism stephenson-3",
-        ),
-        (
-            LEG,
-            DynamicsSpec(section=SectionSpec(1, 1), strength=StrengthSpec(1e8, pin_diameter=[1, 1, 1, 2])),
-            "strength.pin_diameter has 4 entries; it must be a number with mechanism stephenson-3",
-        ),
-        (
-            MECHANISMS[0],
-            DynamicsSpec(loads=(LoadSpec(4, values=ROWS, over="theta6"),)),
-            "loads[0].over is 'theta6'; it must be theta2, theta4, travel or time",
-        ),
-        (
-            MECHANISMS[0],
-            DynamicsSpec(torsion_springs=(TorsionSpringSpec((3, 5), 1.0),)),
-            "torsion_springs[0].between is [3, 5]; it must be two links of a joint: [1, 2], [2, 3], [3, 4] "
-            "or [1, 4]",
-        ),
-        (
-            MECHANISMS[0],
-            DynamicsSpec(masses=(1, 2, 3), inertias=(1, 2, 3), centres=((1, 2), (3, 4))),
-            "dynamics.centres is ((1, 2), (3, 4)); it must be three places [u, v], of links 2, 3 and 4",
-        ),
-    ],
-)
-def test_what_a_row_has_not_is_told_in_one_line(kind: Mechanism, spec: DynamicsSpec, line: str) -> None:
+def load(link: int, over: str) -> DynamicsSpec:
+    return DynamicsSpec(loads=(LoadSpec(link, values=ROWS, over=over),))
+
+
+def torsion(*between: int) -> DynamicsSpec:
+    return DynamicsSpec(torsion_springs=(TorsionSpringSpec(between, 1.0),))  # type: ignore[arg-type]
+
+
+VISCOUS = DynamicsSpec(friction=FrictionSpec(viscous=(1, 2, 3, 4)))
+MOMENT = DynamicsSpec(friction=FrictionSpec(moment=(0, 0, 0, 0, 0, 0, 3)))
+WIDTHS = DynamicsSpec(section=SectionSpec(width=[1, 2, 3], height=1))
+PINS = DynamicsSpec(section=SectionSpec(1, 1), strength=StrengthSpec(1e8, pin_diameter=[1, 1, 1, 2]))
+CENTRES = DynamicsSpec(masses=(1, 2, 3), inertias=(1, 2, 3), centres=((1, 2), (3, 4)))
+SPECS = {
+    "viscous": (LEG, VISCOUS),
+    "between 4 and 5": (LEG, torsion(4, 5)),
+    "travel": (LEG, load(4, "travel")),
+    "theta5": (LEG, load(4, "theta5")),
+    "theta6 of a slider": (PRESS, load(6, "theta6")),
+    "spring at a slide": (PRESS, torsion(6, 1)),
+    "moment at a slide": (PRESS, MOMENT),
+    "widths": (LEG, WIDTHS),
+    "pins": (LEG, PINS),
+    "theta6 of a four-bar": (MECHANISMS[0], load(4, "theta6")),
+    "between 3 and 5": (MECHANISMS[0], torsion(3, 5)),
+    "centres": (MECHANISMS[0], CENTRES),
+}
+MISPLACED = """
+viscous | friction.viscous is [1.0, 2.0, 3.0, 4.0]; it must be a number, or seven: in O2, A, B, O4, C, E, D
+between 4 and 5 | torsion_springs[0].between is [4, 5]; it must be two links of a joint: <JOINTS>
+travel | loads[0].over is 'travel'; a stephenson-3 has no slide, so it must be theta2, theta4, theta6 or time
+theta5 | loads[0].over is 'theta5'; it must be theta2, theta4, theta6, travel or time
+theta6 of a slider | loads[0].over is 'theta6';
+    the slider of a stephenson-3 does not turn, so it must be theta2, theta4, travel or time
+spring at a slide |
+    torsion_springs[0].between is [1, 6]; a stephenson-3 has a slide there, so it must be at a pin
+moment at a slide |
+    friction.moment[6] is 3, in D;
+    a stephenson-3 has a slide there, so it must be 0 (slide_force is for slides)
+widths | section.width has 3 entries; it must be a number with mechanism stephenson-3
+pins | strength.pin_diameter has 4 entries; it must be a number with mechanism stephenson-3
+theta6 of a four-bar | loads[0].over is 'theta6'; it must be theta2, theta4, travel or time
+between 3 and 5 |
+    torsion_springs[0].between is [3, 5]; it must be two links of a joint: [1, 2], [2, 3], [3, 4] or [1, 4]
+centres | dynamics.centres is ((1, 2), (3, 4));
+    it must be three places [u, v], of links 2, 3 and 4
+"""
+
+
+@pytest.mark.parametrize(("name", "line"), rows(MISPLACED, JOINTS=JOINTS))
+def test_what_a_row_has_not_is_told_in_one_line(name: str, line: str) -> None:
+    kind, spec = SPECS[name]
     assert misplaced(spec, kind) == [line]
 
 

@@ -1,7 +1,6 @@
 """Objective, search and the whole problem."""
 
 import math
-import pickle
 from typing import Any
 
 import numpy as np
@@ -83,15 +82,6 @@ def test_bad_weights(weights: tuple[float, ...], message: str) -> None:
 def test_bad_search(change: dict[str, int], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
         Search(**change)
-
-
-def test_a_problem_pickles() -> None:
-    problem = Problem(task=TASK, name="lift", outlines=([[0, 0], [1, 0]],), search=Search(seed=7))  # type: ignore[arg-type]
-    twin = pickle.loads(pickle.dumps(problem))
-    assert twin.name == "lift"
-    assert twin.search == Search(seed=7)
-    assert twin.task.positions.tolist() == TASK.positions.tolist()
-    assert twin.outlines[0].tolist() == [[0, 0], [1, 0]]
 
 
 @pytest.mark.parametrize(

@@ -99,10 +99,7 @@ def test_rotatability_is_any_unless_it_is_stated() -> None:
     ("given", "message"),
     [
         ({"input_deg": [0, 20], "output_deg": [0, 1]}, "function has 2 pairs; it must have three or more"),
-        (
-            {"input_deg": [0, 20, 10], "output_deg": [0, 1, 2]},
-            "function.input_deg[2] is 10 after 20",
-        ),
+        ({"input_deg": [0, 20, 10], "output_deg": [0, 1, 2]}, "function.input_deg[2] is 10 after 20"),
         ({"input_deg": [0, 20, 400], "output_deg": [0, 1, 2]}, "function.input_deg covers 400 deg"),
         ({"input_deg": [0, 20, 30], "output_deg": [0, 1, 400]}, "function.output_deg covers 400 deg"),
         ({"input_deg": [0, 20, 30], "output_deg": [0, 1]}, "function.input_deg has 3 angles"),

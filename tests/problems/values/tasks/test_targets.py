@@ -1,4 +1,4 @@
-"""The table of targets that every task is: its columns, and what follows from them."""
+"""Path tasks: points, timing; and the table of targets that every task is, with what follows from it."""
 
 import pickle
 from dataclasses import replace
@@ -6,20 +6,114 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from grashof.problems import MotionTask, PathTask, ProblemError, Task
+from grashof.problems import MotionTask, PathTask, ProblemError, Requirements, Task
 
-POINTS = [[0, 0], [3, 0], [3, 4], [1, 5]]
+LINE: list[list[float]] = [[0, 0], [3, 0], [3, 4], [0, 4]]
+
+
+def test_points_are_the_positions() -> None:
+    task = PathTask(LINE)
+    assert task.points.tolist() == task.positions.tolist() == LINE
+    assert len(task) == 4
+    assert task.size == 5.0
+    assert (task.timing, task.closed, task.kind) == (None, False, "path")
+    assert MotionTask.from_degrees([[0, 0, 0], [1, 0, 0]]).kind == "motion"
+
+
+def test_degrees_become_radians() -> None:
+    task = PathTask.from_degrees(LINE, timing_deg=[0, 90, 180, 360], closed=True)
+    assert task.timing is not None
+    assert task.timing.tolist() == [0, np.pi / 2, np.pi, 2 * np.pi]
+    assert task.closed
+
+
+def test_arrays_are_copies() -> None:
+    given = np.array(LINE)
+    task = PathTask(given, timing=[0, 1, 2, 3])
+    given[0] = 9
+    assert task.points[0].tolist() == [0, 0]
+
+
+def test_exact_is_checked() -> None:
+    with pytest.raises(ProblemError, match=r"^requirements.exact is 1; it must be true or false$"):
+        Requirements(exact=1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        ([], "path.points has 0 points; it must have three or more"),
+        ([[1, 2], [3, 4]], "path.points has 2 points; it must have three or more"),
+        ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; it must be a point \[x, y\]"),
+        ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
+        (
+            [[1e100, 0], [-1e100, 0], [0, 1]],
+            r"path.points\[0\] is \[1e\+100, 0\]; its numbers must be at most 1e\+20\n"
+            r"path.points\[1\] is \[-1e\+100, 0\]; its numbers must be at most 1e\+20",
+        ),
+        (
+            [[0, 0], [1e-150, 0], [0, 1e-150]],
+            r"path.points are at most 1.41421e-150 apart; two must be at least 1e-20 apart",
+        ),
+        (
+            [[1, 2], [1, 2], [5, 6]],
+            r"path.points\[0\] and path.points\[1\] are equal; consecutive points must differ",
+        ),
+    ],
+)
+def test_bad_points(points: list[list[float]], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        PathTask(points)
+
+
+def test_the_last_point_may_repeat_the_first() -> None:
+    assert len(PathTask([*LINE, LINE[0]], closed=True)) == 5
+
+
+@pytest.mark.parametrize(
+    ("timing", "message"),
+    [
+        ([0, 1, 2], "path.timing_deg has 3 angles for 4 points"),
+        ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; it must be 0, at the first point"),
+        ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; the angles must only grow, or only fall"),
+        ([0, 1, -3, 4], r"path.timing_deg\[2\] is -3 after 1; the angles must only grow, or only fall"),
+        ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; the angles must .*"),
+        ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; it must be at most one turn, 360"),
+        ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; it must be at most one turn, 360"),
+        ([0, 1, np.inf, 4], r"path.timing_deg\[2\] is inf; all numbers must be finite"),
+        ([0, "a", 2, 3], "path.timing_deg is .*; it must be a list of angles"),
+        ("soon", "path.timing_deg is 'soon'; it must be a list of angles"),
+        ([0, [1], 2, 3], "path.timing_deg is .*; it must be a list of angles"),
+        (7, "path.timing_deg is 7; it must be a list of angles"),
+        (True, "path.timing_deg is True; it must be a list of angles"),
+    ],
+)
+def test_bad_timing(timing: list[float], message: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^{message}$"):
+        PathTask.from_degrees(LINE, timing_deg=timing)
+
+
+@given(st.lists(st.integers(1, 50), min_size=2, max_size=7), st.sampled_from([-1, 1]))
+def test_any_monotone_timing_of_at_most_a_turn_is_kept(steps: list[int], sense: int) -> None:
+    timing = sense * np.concatenate([[0], np.cumsum(steps)])
+    task = PathTask.from_degrees([[k, k % 2] for k in range(len(timing))], timing_deg=timing)
+    assert task.timing is not None
+    assert task.timing.tolist() == np.radians(timing).tolist()
+
+
 POSES: list[Any] = [[0, 0, 10], {"x": 3, "y": 0}, {"angle": 40}, [1, 5, 50]]
 
 
 def test_a_path_has_the_columns_of_a_motion() -> None:
-    path, motion = PathTask(POINTS), MotionTask.from_degrees([{"x": x, "y": y} for x, y in POINTS])
+    path, motion = PathTask(LINE), MotionTask.from_degrees([{"x": x, "y": y} for x, y in LINE])
     for task in (path, motion):
         assert isinstance(task, Task)
         assert (task.only_points, task.is_whole, task.is_timed, task.closed) == (True, False, False, False)
         assert (task.size, task.angle_length, task.body, task.zones) == (path.size, path.size, None, None)
-        assert task.positions.tolist() == POINTS
+        assert task.positions.tolist() == LINE
         assert task.weights.tolist() == [1] * 4
         assert np.isnan(task.angles).all()
         assert np.isnan(task.driver_turns).all()
@@ -55,15 +149,15 @@ def test_zones_are_infinite_where_a_target_is_free() -> None:
     np.testing.assert_allclose(task.zones, [[2, 2, np.inf, 2], [0.2, np.inf, 0.2, 0.2]])
     assert list(task.stated_zones) == ["within"]
     assert task.without_zones().zones is None
-    path = PathTask(POINTS, timing=[0, 1, 2, 3], within=1.0, closed=True)
+    path = PathTask(LINE, timing=[0, 1, 2, 3], within=1.0, closed=True)
     np.testing.assert_array_equal(path.zones, [[1] * 4, [np.inf] * 4])
     plain = path.without_zones()
     assert (plain.zones, plain.closed, plain.is_timed) == (None, True, True)
 
 
 def test_a_task_may_return_to_its_first_target() -> None:
-    assert PathTask([*POINTS, POINTS[0]]).returns
-    assert not PathTask(POINTS).returns
+    assert PathTask([*LINE, LINE[0]]).returns
+    assert not PathTask(LINE).returns
     first, *rest = POSES
     assert MotionTask.from_degrees([first, *rest, [0, 0, 370]]).returns
     assert not MotionTask.from_degrees([first, *rest, [0, 0, 11]]).returns
@@ -75,10 +169,6 @@ def test_a_task_may_return_to_its_first_target() -> None:
     [
         ([0, 20, 40], r"motion.timing_deg has 3 angles for 4 poses"),
         ([5, 20, 40, 60], r"motion.timing_deg\[0\] is 5; it must be 0, at the first pose"),
-        ([0, 20, 10, 60], r"motion.timing_deg\[2\] is 10 after 20; the angles must only grow, .*"),
-        ([0, 20, 40, 361], r"motion.timing_deg\[3\] is 361; it must be at most one turn, 360"),
-        ([0, np.nan, 40, 60], r"motion.timing_deg\[1\] is nan; all numbers must be finite"),
-        ("soon", r"motion.timing_deg is 'soon'; it must be a list of angles"),
     ],
 )
 def test_a_bad_timing_of_poses(timing: Any, message: str) -> None:
@@ -89,3 +179,5 @@ def test_a_bad_timing_of_poses(timing: Any, message: str) -> None:
 def test_closed_is_true_or_false() -> None:
     with pytest.raises(ProblemError, match=r"^motion.closed is 1; it must be true or false$"):
         MotionTask.from_degrees(POSES, closed=1)  # type: ignore[arg-type]
+    with pytest.raises(ProblemError, match=r"^path.closed is 'yes'; it must be true or false$"):
+        PathTask(LINE, closed="yes")  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Sections of an analysis in files and on the terminal: facts by key, notes, pictures where asked for."""
+"""An analysis in files and on the terminal: facts by key, notes, pictures where asked for, exit codes."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import grashof.figures.files
 from grashof.figures.files import save
 from grashof.figures.survey_plots import section_pictures
 from grashof.output.analysis_files import print_report, write_report
 from grashof.output.folder import ANALYSIS_RECORD, is_own_name
-from grashof.problems import load_linkage_spec
+from grashof.output.run_files import write_run
+from grashof.problems import FourBar, load_linkage_spec
 from grashof.sections.mass_centres import mass_centres
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
+from grashof.synth import Result
 
 Grashof = Callable[..., Any]
 STRENGTH = Section(
@@ -131,11 +134,11 @@ def test_a_report_without_facts_of_sections_ends_with_the_extremes(
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("unsaved")
 def test_pictures_of_sections_are_written_when_they_are_asked_for(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("grashof.survey.report.sections_of", lambda study: (mass_centres(study),))
-    monkeypatch.setattr("grashof.figures.files.save", lambda _, paths: [path.touch() for path in paths])
     folder = tmp_path / "lufkin-c912d-analysis"
     done = grashof("analyse", "lufkin-c912d", "--pictures")
     assert done.exit_code == 0, done.output
@@ -171,3 +174,117 @@ def test_a_picture_of_curves_and_one_of_tracks(jack: LinkageReport, tmp_path: Pa
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
         assert "Pumpjack" in figure.axes[0].get_title()
     assert made["plot-track"].axes[0].get_title().endswith("track")
+
+
+def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Path) -> None:
+    (tmp_path / "far.toml").write_text("o4 = [9, 0]\nr2 = 1\nr3 = 1\nr4 = 1\n")
+    done = grashof("analyse", "far.toml")
+    assert done.exit_code == 2
+    assert "closes at no driver angle" in done.stderr
+    assert not (tmp_path / "far-analysis").exists()
+
+
+@pytest.fixture
+def unsaved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures as empty files: saving them takes most of the time."""
+    monkeypatch.setattr(grashof.figures.files, "save", lambda _, paths: [path.touch() for path in paths])
+
+
+TABLES = {
+    "kinematics.csv", "extremes.csv", "summary.csv", "summary.json", "analysis.json", "analysis.html",
+}  # fmt: skip
+
+
+def section_tables(name: str) -> set[str]:
+    sections = report_on(load_linkage_spec(name)).sections
+    return {f"table-{table}.csv" for section in sections for table in section.tables}
+
+
+def pictures(*names: str) -> set[str]:
+    return {f"{name}.{kind}" for name in names for kind in ("png", "svg")}
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("unsaved")
+def test_files_and_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    done = grashof("analyse", "pumpjack")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "pumpjack-analysis"
+    kinematic = pictures("path", "angles", "velocities", "accelerations")
+    expected = TABLES | {"dynamics.csv"} | kinematic | pictures("torque", "forces")
+    expected |= section_tables("pumpjack")
+    assert {path.name for path in folder.iterdir()} == expected
+    assert "46.65" in done.stdout
+    assert "no limit" not in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 100
+    summary = json.loads((folder / "summary.json").read_text())
+    assert FourBar(**summary["linkage"]) == load_linkage_spec("pumpjack").linkage
+    swing = pd.read_csv(folder / "summary.csv").set_index("quantity").loc["output_swing_deg", "value"]
+    assert float(swing) == summary["facts"]["output_swing_deg"]["value"]
+    # Without masses the files about them go; what is not Grashof's own stays.
+    (folder / "notes.txt").write_text("mine")
+    again = grashof("analyse", "lufkin-c912d", "--out", folder, "--speed-rpm", "6.5")
+    assert again.exit_code == 0
+    expected = TABLES | section_tables("lufkin-c912d") | kinematic | {"notes.txt"}
+    assert {path.name for path in folder.iterdir()} == expected
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("unsaved")
+def test_designs_of_a_list_beside_the_list(grashof: Grashof, few: Result, tmp_path: Path) -> None:
+    folder = tmp_path / "luggage-designs"
+    write_run(folder, few, {}, 0)
+    lists = {path.name for path in folder.iterdir()}
+    done = grashof("analyse", "luggage-designs/candidates.json#2", "--out", folder)
+    assert done.exit_code == 0, done.output
+    assert lists < {path.name for path in folder.iterdir()}
+    row = pd.read_csv(folder / "candidates.csv").iloc[1]
+    summary = json.loads((folder / "summary.json").read_text())["facts"]
+    expected = pytest.approx(row["transmission_min_cycle_deg"])
+    assert summary["transmission_min_deg"]["value"] == expected
+
+
+def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.csv").write_text("mine")
+    done = grashof("analyse", "pumpjack", "--out", out)
+    assert done.exit_code == 2
+    assert "summary.csv in it is not Grashof's own" in done.stderr
+    assert (out / "summary.csv").read_text() == "mine"
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("unsaved")
+def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
+    text = "o4 = [4, 0]\nr2 = 3\nr3 = 1\nr4 = 3\nlength_unit = 'mm'\n[dynamics]\nmass_per_length = 0.01\n"
+    (tmp_path / "rocker.toml").write_text(text)
+    done = grashof("analyse", "rocker.toml")
+    assert done.exit_code == 0, done.output
+    assert done.stderr.count("\n") == 3  # the note, the files, the page to open
+    assert "dead positions bound the driver's motion" in done.stderr
+    assert "no limit" in done.stdout
+    assert "infinite" in (tmp_path / "rocker-analysis" / "summary.json").read_text()
+
+
+@pytest.mark.parametrize("given", ["pumpjak", "no/such.toml", "x.json#1", "x.json"])
+def test_bad_input_is_one_line(grashof: Grashof, given: str) -> None:
+    done = grashof("analyse", given)
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.quick("=1+1")
+@pytest.mark.usefixtures("unsaved")
+@pytest.mark.parametrize("unit", ["=1+1", "@SUM(A1)", "+1", "-1"])
+def test_no_unit_is_a_formula_to_a_spreadsheet(grashof: Grashof, tmp_path: Path, unit: str) -> None:
+    text = f'length_unit = "{unit}"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    assert grashof("analyse", "mine.toml").exit_code == 0
+    for name in ("summary.csv", "extremes.csv"):
+        table = pd.read_csv(tmp_path / "mine-analysis" / name, dtype=str, keep_default_na=False)
+        assert f"'{unit}" in set(table["unit"])
+        assert not table["unit"].str.startswith(tuple("=+-@")).any()
+    numbers = pd.read_csv(tmp_path / "mine-analysis" / "extremes.csv")["min"]
+    assert numbers.dtype == float
+    assert numbers.min() < 0

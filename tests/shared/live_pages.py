@@ -1,0 +1,42 @@
+"""Shared by tests of the live page in a browser: what it shows, and waiting for it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from playwright.sync_api import Page
+
+from grashof.problems import Problem
+from grashof.problems.files.problem_schema import problem_from
+
+State = dict[str, Any]
+
+
+def shown(page: Page, condition: str) -> State:
+    """The page as soon as a condition holds for its state `s`."""
+    there = "const s = window.grashof && window.grashof.state(); return s && s.listed"
+    found: State = page.wait_for_function(
+        f"() => {{ {there} && {condition} && s; }}", timeout=200_000
+    ).json_value()
+    return found
+
+
+def searched(page: Page) -> State:
+    """The page once its newest task is searched."""
+    return shown(page, "s.listed.phase === 'found' && s.listed.version === s.version && !s.busy")
+
+
+def problem_of(found: State) -> Problem:
+    return problem_from(found["document"], "luggage")
+
+
+def linkages(found: State) -> list[dict[str, Any]]:
+    return [design["linkage"] for design in found["designs"]]
+
+
+def keys(found: State) -> list[int]:
+    return [design["key"] for design in found["designs"]]
+
+
+def stated(designs: Any) -> list[dict[str, Any]]:
+    return [{"mechanism": each.linkage.mechanism.word, **each.linkage.stated} for each in designs]
