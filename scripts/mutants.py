@@ -273,7 +273,7 @@ _SIX_BAR = (
     "coupler_point = [1, 1]\nassembly = -1\nbody_angle_deg = 30\npoint_link = 6\n"
 )
 _DYAD = '[dyad]\nkind = "RRR"\nhosts = [4, 1]\nc = [4, 1]\nd = [9, 0]\nr5 = 4\nr6 = 3\nassembly = -1\n'
-_PRESS = '[dyad]\nkind = "RRP"\nc = [4, 1]\nr5 = 7\noffset = -2\nslide_angle_deg = 30\n'
+_PRESS = '[dyad]\nkind = "RRP"\nhosts = [4, 1]\nc = [4, 1]\nr5 = 7\noffset = -2\nslide_angle_deg = 30\n'
 _ON_SIX = """
 [dynamics]
 masses = [1, 2, 3, 4, 5]

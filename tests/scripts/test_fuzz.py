@@ -119,14 +119,14 @@ def test_what_is_wrong_is_found(
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("number", range(17))
+@pytest.mark.parametrize("number", range(21))
 def test_every_seed_of_a_linkage_is_reported_on_whatever_is_asked(
     script: Callable[[str], ModuleType], number: int, tmp_path: Path
 ) -> None:
     """Every section of every kind with all keys that there are: none of them ends in another error."""
     mutants, fuzz = script("mutants"), script("fuzz")
     seeds = mutants.linkage_seeds()
-    assert len(seeds) == 17
+    assert len(seeds) == 21
     path = tmp_path / "seed.toml"
     path.write_text(mutants.toml_text(seeds[number].document), encoding="utf-8")
     figures: Counter[str] = Counter()
