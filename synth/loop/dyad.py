@@ -63,13 +63,7 @@ class ClosingDyad(ABC):
 
     @abstractmethod
     def closed(
-        self,
-        ground: Vector,
-        crank: Vector,
-        r3: Any,
-        r4: Any,
-        assembly: Any,
-        root: Root = np.sqrt,
+        self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
     ) -> Closed:
         """The loop over O2A; NaN where it is open, unless `root` has numbers for negative squares, too.
 
@@ -120,19 +114,23 @@ class ClosingDyad(ABC):
         return loop.along.cross(loop.across)
 
 
-class Bars(ClosingDyad):
+class _Pivoted(ClosingDyad):
+    """O4 is a pivot: the square of A-O4 decides the transmission angle."""
+
+    def reach(self, sizes: Sized, angle: Any) -> Any:
+        return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
+
+    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
+        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
+
+
+class Bars(_Pivoted):
     """RRR: bars A-B and O4-B."""
 
     bars = 2
 
     def closed(
-        self,
-        ground: Vector,
-        crank: Vector,
-        r3: Any,
-        r4: Any,
-        assembly: Any,
-        root: Root = np.sqrt,
+        self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
     ) -> Closed:  # closure: RRR
         diagonal = ground - crank
         square = diagonal.square
@@ -148,13 +146,6 @@ class Bars(ClosingDyad):
         bend = -crank - speed3**2 * coupler + speed4**2 * output
         rate3, rate4 = (-bend.dot(link) / sine for link in (output, coupler))
         return Rates(speed3, speed4, rate3, rate4)
-
-    def reach(self, sizes: Sized, angle: Any) -> Any:
-        """Square of A-O4."""
-        return _square_of_diagonal(sizes, angle)
-
-    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
-        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
 
     def cos_mu(self, sizes: Sized, reach: Any) -> Any:
         """By the law of cosines in A-B-O4."""
@@ -179,13 +170,7 @@ class Slider(ClosingDyad):
     bars = 1
 
     def closed(
-        self,
-        ground: Vector,
-        crank: Vector,
-        r3: Any,
-        r4: Any,
-        assembly: Any,
-        root: Root = np.sqrt,
+        self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
     ) -> Closed:  # closure: RRP
         apart = r4 - crank.dot(ground)
         ahead2 = (r3 - apart) * (r3 + apart)
@@ -218,19 +203,13 @@ class Slider(ClosingDyad):
         return moved.dot(loop.along)
 
 
-class Block(ClosingDyad):
+class Block(_Pivoted):
     """RPR: a rod from A through a block at O4; with l from A to B, O4 - A = (l - i offset) u."""
 
     bars = 0
 
     def closed(
-        self,
-        ground: Vector,
-        crank: Vector,
-        r3: Any,
-        r4: Any,
-        assembly: Any,
-        root: Root = np.sqrt,
+        self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
     ) -> Closed:  # closure: RPR
         diagonal = ground - crank
         square = diagonal.square
@@ -244,13 +223,6 @@ class Block(ClosingDyad):
         speed = -crank.left.dot(across) / rod
         rate = (crank.dot(across) + 2 * speed * crank.left.dot(along) + speed**2 * r4) / rod
         return Rates(speed, speed, rate, rate)
-
-    def reach(self, sizes: Sized, angle: Any) -> Any:
-        """Square of A-O4."""
-        return _square_of_diagonal(sizes, angle)
-
-    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
-        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
 
     def cos_mu(self, sizes: Sized, reach: Any) -> Any:
         return sizes.offset / np.sqrt(reach + 1e-300)
@@ -267,10 +239,6 @@ class Block(ClosingDyad):
 
     def driven_by(self, loop: Closed, moved: Vector) -> Any:
         return -moved.dot(loop.across)
-
-
-def _square_of_diagonal(sizes: Sized, angle: Any) -> Any:
-    return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
 
 def _both_ways(longer: Any, total: Any, offset: Any) -> tuple[Any, Any]:
