@@ -25,7 +25,7 @@ from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
 from grashof.synth.proof.functions.five_pairs import certified_functions
 from grashof.synth.proof.poses.five_poses import certified_of
 from grashof.synth.proof.provers import bounds_of
-from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.starts.functions.aims import FunctionAims
 
 EACH = 50
 _OVER = ("task", "cycle")

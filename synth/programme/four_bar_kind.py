@@ -16,7 +16,7 @@ from grashof.synth.loop.instant import FourBarInstant
 from grashof.synth.programme import formulas
 from grashof.synth.programme.kind import Kind, LoopOf, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
-from grashof.synth.theory.function_four_bar import FourBars
+from grashof.synth.theory.functions.four_bar import FourBars
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.instant import InvertedInstant
 from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
-from grashof.synth.theory.function_inverted import InvertedSliderCranks
+from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 
 
 @dataclass(frozen=True, slots=True)

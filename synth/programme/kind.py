@@ -23,7 +23,7 @@ from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import Part
 from grashof.synth.programme.frame import Frame
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.output import Generators
 
 # r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]

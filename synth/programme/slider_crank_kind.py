@@ -16,7 +16,7 @@ from grashof.synth.programme import slider_formulas
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Kind, LoopOf, Shapes, by_two
 from grashof.synth.theory.cognates import slider_crank_cognate
-from grashof.synth.theory.function_slider_crank import SliderCranks
+from grashof.synth.theory.functions.slider_crank import SliderCranks
 
 
 @dataclass(frozen=True, slots=True)

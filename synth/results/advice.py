@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.problems import Problem, StrokeTask
 from grashof.synth.programme.kinds import kind_of
-from grashof.synth.starts.limit_positions import places_of
+from grashof.synth.starts.strokes.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
 
 GOOD = float(np.radians(40))  # transmission angle that textbooks ask for (Norton, sec. 3.3)

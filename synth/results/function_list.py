@@ -25,8 +25,8 @@ from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Progress
 from grashof.synth.search.story import Asking, Story, now
 from grashof.synth.search.tally import DISTINCT, Tally
-from grashof.synth.starts.function_aims import FunctionAims
-from grashof.synth.starts.function_search import (
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.search import (
     LEAST,
     LOCAL,
     MET,

@@ -32,8 +32,8 @@ from grashof.synth.results.relaxed_limits import (
 )
 from grashof.synth.search.run import Run
 from grashof.synth.starts.finder import finder_for
-from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.selection import closest_starts
+from grashof.synth.starts.strokes.limit_positions import LimitPositions
 
 SOLVES = 6  # starts for each requirement
 DEAD = 1e-3  # rad: a transmission angle near a dead position

@@ -14,10 +14,10 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
-from grashof.synth.starts.function_search import FunctionPairs
+from grashof.synth.starts.functions.search import FunctionPairs
 from grashof.synth.starts.least_squares import LeastSquares
-from grashof.synth.starts.limit_positions import LimitPositions
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
+from grashof.synth.starts.strokes.limit_positions import LimitPositions
 
 # The first that suits a problem is taken.
 KINDS = (

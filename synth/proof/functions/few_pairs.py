@@ -25,10 +25,10 @@ from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmis
 from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
-from grashof.synth.starts.function_aims import FunctionAims
-from grashof.synth.starts.function_search import FoundFunction
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.search import FoundFunction
 from grashof.synth.theory.burmester import Displacements, Dyads
-from grashof.synth.theory.function_four_bar import FourBars
+from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.stopping import Stopped, give_way
 
 THREE, FOUR = 3, 4

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
-from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.stopping import Stopped
 

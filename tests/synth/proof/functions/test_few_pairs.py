@@ -13,10 +13,10 @@ from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
 from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
-from grashof.synth.starts.function_aims import FunctionAims
-from grashof.synth.starts.function_search import exact_functions
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.search import exact_functions
 from grashof.synth.theory.burmester import Displacements
-from grashof.synth.theory.function_four_bar import FourBars
+from grashof.synth.theory.functions.four_bar import FourBars
 
 
 def random_function(seed: int, count: int, **requirements: object) -> Problem:

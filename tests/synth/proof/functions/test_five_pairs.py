@@ -8,7 +8,7 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, FunctionTask, Problem, Requirements
 from grashof.synth import Claim
 from grashof.synth.proof.functions.five_pairs import certified_functions
-from grashof.synth.starts.function_aims import FunctionAims
+from grashof.synth.starts.functions.aims import FunctionAims
 
 
 def function(turned: np.ndarray, output: np.ndarray) -> Problem:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.function_fit import Limits, Wanted
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.fit import Limits, Wanted
+from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import leave_off
 
 STEPS = 60

@@ -1,7 +1,7 @@
 """Function generators of any kind: what each of them puts out along a rotation of its driver.
 
-The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.function_four_bar`,
-`function_slider_crank` and `function_inverted`. All else of the search goes through `Generators`.
+The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.functions.four_bar`,
+`slider_crank` and `inverted`. All else of the search goes through `Generators`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limi
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, ClosingDyad, Sizes
 from grashof.synth.loop.vector import Vector
-from grashof.synth.theory.function_limits import (
+from grashof.synth.theory.functions.limits import (
     ShapeLimits,
     cosine_rows,
     joined_rows,

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from grashof.synth.theory.function_fit import Wanted
-from grashof.synth.theory.function_inverted import InvertedSliderCranks
-from grashof.synth.theory.function_limits import ShapeLimits
-from grashof.synth.theory.function_optima import Aim, refined, under_inequalities
-from grashof.synth.theory.function_output import Generators
-from grashof.synth.theory.function_slider_crank import SliderCranks
+from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.inverted import InvertedSliderCranks
+from grashof.synth.theory.functions.limits import ShapeLimits
+from grashof.synth.theory.functions.optima import Aim, refined, under_inequalities
+from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.slider_crank import SliderCranks
 
 
 def test_least_squares_under_inequalities_meets_the_conditions_of_kuhn_and_tucker() -> None:

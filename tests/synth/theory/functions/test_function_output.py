@@ -10,8 +10,8 @@ from grashof.analysis.judge.planted import planted_function
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.kinds import KINDS
-from grashof.synth.theory.function_limits import ShapeLimits, offset_rows
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
+from grashof.synth.theory.functions.output import Generators
 
 EVERY = pytest.mark.parametrize("mechanism", list(KINDS))
 SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800}  # of which many are open

@@ -3,10 +3,10 @@ import pytest
 
 from grashof.analysis.judge.planted import planted_function
 from grashof.synth.programme.kinds import KINDS
-from grashof.synth.theory.function_fit import Wanted, fitted
-from grashof.synth.theory.function_four_bar import FourBars
-from grashof.synth.theory.function_limits import ShapeLimits
-from grashof.synth.theory.function_starts import crank_starts, function_starts
+from grashof.synth.theory.functions.fit import Wanted, fitted
+from grashof.synth.theory.functions.four_bar import FourBars
+from grashof.synth.theory.functions.limits import ShapeLimits
+from grashof.synth.theory.functions.starts import crank_starts, function_starts
 
 EVERY = pytest.mark.parametrize("mechanism", list(KINDS))
 

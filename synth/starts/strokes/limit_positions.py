@@ -16,11 +16,11 @@ from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.starts.member_choice import apart, unbeaten
-from grashof.synth.starts.rocker_places import RockerPlaces
-from grashof.synth.starts.shaper_places import ShaperPlaces
-from grashof.synth.starts.slide_places import SlidePlaces
-from grashof.synth.starts.stroke_places import Places
+from grashof.synth.starts.strokes.member_choice import apart, unbeaten
+from grashof.synth.starts.strokes.places import Places
+from grashof.synth.starts.strokes.rocker_places import RockerPlaces
+from grashof.synth.starts.strokes.shaper_places import ShaperPlaces
+from grashof.synth.starts.strokes.slide_places import SlidePlaces
 from grashof.synth.theory.limit_positions import Family, Members, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike

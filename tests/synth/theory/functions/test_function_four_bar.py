@@ -1,6 +1,6 @@
 import numpy as np
 
-from grashof.synth.theory.function_four_bar import FourBars
+from grashof.synth.theory.functions.four_bar import FourBars
 
 
 def test_three_pairs_of_the_textbook() -> None:

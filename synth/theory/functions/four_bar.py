@@ -14,7 +14,7 @@ from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Bars, Closed
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
 _TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself

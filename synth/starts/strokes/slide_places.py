@@ -12,7 +12,7 @@ from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.stroke_places import KEPT, Places
+from grashof.synth.starts.strokes.places import KEPT, Places
 from grashof.synth.theory.limit_positions import Family, Members, lag_of, slider_cranks
 
 _DIRECTIONS = 72  # of a slide that may have any, tried at first

@@ -12,9 +12,9 @@ from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.placing import Ground, scales
-from grashof.synth.starts.rocker_places import RockerPlaces
-from grashof.synth.starts.stroke_places import KEPT
+from grashof.synth.starts.strokes.places import KEPT
+from grashof.synth.starts.strokes.placing import Ground, scales
+from grashof.synth.starts.strokes.rocker_places import RockerPlaces
 from grashof.synth.theory.limit_positions import Family, Members, crank_shapers
 
 _POSITIONS = 73  # of a turn, for the size

@@ -19,9 +19,9 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.programme.kinds import kind_of
-from grashof.synth.theory.function_fit import Wanted
-from grashof.synth.theory.function_limits import ShapeLimits, offset_rows
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
+from grashof.synth.theory.functions.output import Generators
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.loop.dual import Dual
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import leave_off
 
 Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
@@ -106,7 +106,7 @@ def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
     Those that share a cell of size `cell`, in logarithms of lengths and in rad, are alike.
 
     >>> shape = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.01]])
-    >>> from grashof.synth.theory.function_four_bar import FourBars
+    >>> from grashof.synth.theory.functions.four_bar import FourBars
     >>> best_apart(FourBars(shape, np.ones(3)), np.array([2.0, 3.0, 1.0]), 0.1).tolist()
     [2, 1]
     """

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.starts.function_aims import FunctionAims
-from grashof.synth.theory.function_fit import Wanted, best_apart, fitted
-from grashof.synth.theory.function_limits import ShapeLimits
-from grashof.synth.theory.function_optima import Aim, Optimum, refined, with_extremes
-from grashof.synth.theory.function_output import Generators
-from grashof.synth.theory.function_starts import crank_starts, function_starts
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.theory.functions.fit import Wanted, best_apart, fitted
+from grashof.synth.theory.functions.limits import ShapeLimits
+from grashof.synth.theory.functions.optima import Aim, Optimum, refined, with_extremes
+from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.starts import crank_starts, function_starts
 from grashof.synth.theory.stopping import asked_to_stop
 
 GRID = 220  # start angles of driver and output each, of three pairs

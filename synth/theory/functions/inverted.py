@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, L
 from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Block, Closed
 from grashof.synth.loop.vector import Vector
-from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import weighed
 
 _TRIVIAL = 1e-9  # share of a null vector: without O4 it is no linkage

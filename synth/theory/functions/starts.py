@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.function_fit import Wanted
-from grashof.synth.theory.function_output import Generators
+from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.output import Generators
 
 GRID = 40  # starts of driver and output each
 ANYTHING = 20_000  # random linkages with a given driver angle, of which few close over the range
@@ -28,7 +28,7 @@ def function_starts(
 
     Examples
     --------
-    >>> from grashof.synth.theory.function_four_bar import FourBars
+    >>> from grashof.synth.theory.functions.four_bar import FourBars
     >>> turned = np.linspace(0, 1, 9)
     >>> wanted = Wanted(turned, np.sin(turned), np.ones(9))
     >>> len(function_starts(FourBars, wanted, np.random.default_rng(0))) > 1600

@@ -14,7 +14,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.function_output import Generators, beginnings, crank_ratios
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
 from grashof.synth.theory.many_systems import solved, weighed
 
 _FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels

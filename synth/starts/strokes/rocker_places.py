@@ -11,9 +11,9 @@ from grashof.problems import Box, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.member_choice import diagonals
-from grashof.synth.starts.placing import Ground, scales
-from grashof.synth.starts.stroke_places import KEPT, Places
+from grashof.synth.starts.strokes.member_choice import diagonals
+from grashof.synth.starts.strokes.places import KEPT, Places
+from grashof.synth.starts.strokes.placing import Ground, scales
 from grashof.synth.theory.limit_positions import Family, Members, families_of
 
 

@@ -1,0 +1,1 @@
+"""Strokes and swings: linkages by their limit positions; each is a design already."""

@@ -1,0 +1,1 @@
+"""Function generators: what they put out, those through a few pairs, least errors, their limits."""
