@@ -22,7 +22,7 @@ from grashof.synth.designs.families import listed
 from grashof.synth.designs.judging import judged
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.results.result import Result
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.starts.exact_poses import FewPoses
 
 NOISE = 0.005  # of the size in position, rad in angle
 FEWEST = 12  # positions of least squares: of fewer, every target can be met
@@ -97,7 +97,7 @@ def prepared(axis: str, kind: str, size: int) -> Callable[[], object]:
     if axis == "starts":
         return lambda: synthesize(problem, starts=size, enough=max(size // 2, 1))
     scaled = ScaledProblem.of(problem)
-    found = finder_for(scaled).near(np.random.default_rng(0))
+    found = FewPoses(scaled).near(np.random.default_rng(0))
     picked = np.linspace(0, len(found) - 1, size).astype(int)
     every = (
         judged(scaled, found.points[k], int(found.assembly[k]), 0.0, start=int(k), iterations=0)

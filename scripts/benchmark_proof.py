@@ -23,9 +23,8 @@ from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.claims.proof import proof_of
 from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
 from grashof.synth.proof.functions.five_pairs import certified_functions
-from grashof.synth.proof.poses.five_poses import certified_of
+from grashof.synth.proof.poses.five_poses import certified_poses
 from grashof.synth.proof.provers import bounds_of
-from grashof.synth.starts.functions.aims import FunctionAims
 
 EACH = 50
 _OVER = ("task", "cycle")
@@ -114,33 +113,33 @@ def five_poses(number: int) -> bool:
     task = MotionTask.from_degrees(poses)
     reach = 50.0 * task.size
     wanted = Requirements(link_length=(1e-6, reach), coupler_arms=(0.0, reach))
-    made = certified_of(ScaledProblem.of(Problem(task=task, requirements=wanted)))
+    made = certified_poses(ScaledProblem.of(Problem(task=task, requirements=wanted)))
     return made is not None and made.complete
 
 
-def aims(number: int, count: int) -> FunctionAims:
+def random_function(number: int, count: int) -> Problem:
     """A function of random pairs, in either sense."""
     rng = np.random.default_rng(5000 + number)
     turned, output = np.sort(rng.uniform(0, 120, count)), np.sort(rng.uniform(0, 90, count))
     output *= rng.choice([-1, 1])
-    return FunctionAims.of(Problem(task=FunctionTask.from_degrees(turned - turned[0], output - output[0])))
+    return Problem(task=FunctionTask.from_degrees(turned - turned[0], output - output[0]))
 
 
 def five_pairs(number: int) -> bool:
     """Whether all four-bars through five random pairs are known."""
-    made = certified_functions(aims(number, 5))
+    made = certified_functions(ScaledProblem.of(random_function(number, 5)))
     return made is not None and made.complete
 
 
 def four_pairs(number: int) -> bool:
     """Whether the best four-bar through four random pairs is proven, or that there is none."""
-    made = bounds_of_pairs(aims(number, 4), Proving())
-    return made is not None and made[0].closed
+    made = bounds_of_pairs(ScaledProblem.of(random_function(number, 4)), Proving())
+    return made is not None and made.closed
 
 
 def three_pairs(number: int) -> bool:
     """Whether the best of a list through three random pairs is proven, or that there is none."""
-    proof = synthesize(aims(number, 3).problem).proof
+    proof = synthesize(random_function(number, 3)).proof
     return proof is not None and proof.claim in (Claim.BEST, Claim.NONE)
 
 

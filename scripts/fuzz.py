@@ -41,7 +41,7 @@ from grashof.problems.values.specs.linkage_spec import ListedDesign
 from grashof.study.asked import ON_REQUEST, Asked
 from grashof.survey import report_on
 from grashof.synth import Result
-from grashof.synth.starts.finder import refuse_unsearchable
+from grashof.synth.search.finder import refuse_unsearchable
 from grashof.wording.problem import summary
 from grashof.workshop.plan import plan_parts
 from grashof.workshop.plates import PlateSizes

@@ -24,7 +24,7 @@ from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.provers import bounds_before, bounds_of
 from grashof.synth.search.asked import asking
-from grashof.synth.starts.finder import refuse_unsearchable
+from grashof.synth.search.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 

@@ -9,19 +9,19 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
-from grashof.problems import Problem, ProblemError, Search
+from grashof.problems import Problem, Search
 from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.chunks import CHUNKS, chunks, starts_of_chunk
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Recorded, head_of
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import asked_in_turn
 from grashof.synth.search.workers import working
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, stopping
 
 _LOG = logging.getLogger(__name__)
@@ -116,8 +116,6 @@ class Plan:
     @classmethod
     def of(cls, problem: Problem, search: Search) -> Plan:
         """The plan of a search."""
-        if problem.task.has_output.any():
-            raise ProblemError(f"{problem.name} is a function, which is searched at once; leave shards out")
         asked = tuple(ScaledProblem.of(problem.for_kind(kind)) for kind in problem.mechanism)
         needed = not finder_for(asked[0]).degenerate()
         return cls(problem, asked, tuple(map(asked_in_turn, asked)) if needed else (), search)

@@ -10,26 +10,25 @@ from dataclasses import replace
 from pathlib import Path
 
 from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.problems import Problem, ProblemError, Search
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.poses.atlas import atlas_of
 from grashof.synth.proof.poses.first_round import round_of_regions
-from grashof.synth.proof.poses.five_poses import certified_of
-from grashof.synth.proof.provers import bounds_after, bounds_before
+from grashof.synth.proof.provers import bounds_after, bounds_before, certified_of
 from grashof.synth.results.conclusion import conclude, needless
-from grashof.synth.results.function_list import function_list
 from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import journal_of
+from grashof.synth.search.rounds import solve
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import working
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, stopping
 
 _LOG = logging.getLogger(__name__)
@@ -122,8 +121,6 @@ def synthesize(
         raise ProblemError("record does not go with constraints or an objective of your own")
     how = problem.task.kind, search.seed, search.effort, search.starts, workers
     _LOG.info("%s: %s; seed %d, effort %g, at most %d starts, %d at a time", readable(problem.name), *how)
-    if problem.task.has_output.any():
-        return _functions(problem, search, asked, constraints, objective, progress, proving)
     kinds = [ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in problem.mechanism]
     for scaled in kinds:
         refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
@@ -155,25 +152,8 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: Asking) -> Result:
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     ledgers = searches(scaled, run, known)
     with run.timed("proving"):
-        bounds = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
+        proven = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
+    if proven is not None and proven is not bounds and proven.found is not None:
+        solve([proven.found.linkage], ledgers[0], run)
+    bounds = proven
     return conclude(scaled, ledgers, run, asked, bounds or dyads, atlas)
-
-
-def _functions(
-    problem: Problem,
-    search: Search,
-    asked: Asking,
-    constraints: Sequence[Constraint],
-    objective: OwnObjective | None,
-    progress: Callable[[Progress], object] | None,
-    proving: Proving,
-) -> Result:
-    """One list of all kinds of linkage that may generate a function."""
-    found: list[Result] = []
-    count = len(problem.mechanism)
-    for number, kind in enumerate(problem.mechanism, start=1):
-        part, alone = asked.part(number, count), problem.for_kind(kind) if count > 1 else problem
-        found.append(function_list(alone, search, part, constraints, objective, progress, proving))
-        if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
-            break
-    return one_list(problem, found)

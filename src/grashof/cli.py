@@ -169,7 +169,7 @@ def check(problem: _Problem) -> None:
     from grashof.output.terminal import folded
     from grashof.synth.proof.curve.asked import enclosed
     from grashof.synth.results.advice import advice
-    from grashof.synth.starts.finder import refuse_unsearchable
+    from grashof.synth.search.finder import refuse_unsearchable
     from grashof.wording.problem import summary
 
     loaded = load(problem)

@@ -86,7 +86,7 @@ def _found(
     from grashof.output.cluster import cluster
     from grashof.output.terminal import search_progress
     from grashof.synth import synthesize
-    from grashof.synth.starts.finder import finder_of
+    from grashof.synth.search.finder import finder_of
     from grashof.wording.problem import ends_with_enough
 
     wanted, beginning = ends_with_enough(problem), finder_of(problem).beginning

@@ -40,6 +40,13 @@ def judged(
         linkage = scaled.linkages(points, np.array(assembly), given)
     except ProblemError:
         return None
+    return judged_linkage(scaled, linkage, start=start, iterations=iterations, most_error=most_error)
+
+
+def judged_linkage(
+    scaled: ScaledProblem, linkage: Linkage, *, start: int, iterations: int, most_error: float = np.inf
+) -> Candidate:
+    """A linkage with the verdict on it, as `judged`."""
     verdict = driven_verdict(scaled, linkage, most_error)
     candidate = _valued(scaled, Candidate(linkage, verdict, scaled.problem, start, iterations))
     if verdict.ok:

@@ -98,7 +98,12 @@ class ScaledProblem:
     @property
     def has_targets(self) -> bool:
         """Whether there is anything in the plane for a programme to meet: a position or an angle."""
-        return bool(self.weights.any() or self.turn_weights.any())
+        return self.problem.task.in_plane
+
+    @property
+    def by_descent(self) -> bool:
+        """Whether a programme makes an error small: that of targets in the plane, by least squares."""
+        return self.has_targets and not self.exact
 
     @property
     def timed(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -169,13 +170,18 @@ class Start:
         )
 
 
+Proposal: TypeAlias = Start | Linkage  # a linkage is a design already: nothing is left to solve
+
+
 @dataclass(frozen=True, slots=True)
 class Round:
-    """The starts of one round of a search."""
+    """What one round of a search proposes."""
 
-    starts: list[Start]  # the most promising first
+    starts: Sequence[Proposal]  # the most promising first
     counts: Mapping[str, int]  # of what was looked at
     size: int = 1  # its work, in usual rounds
     # Least squares: starts that promise more than so many times the least error found are not solved.
     prune: float = np.inf
     free: bool = False  # no limit binds: what traces the same coupler curve is the same design or a cognate
+    together: bool = False  # all are judged before there are enough: their order does not tell which is best
+    skip: int = 0  # so many of the next rounds bring nothing new

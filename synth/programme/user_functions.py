@@ -13,7 +13,7 @@ import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of
 from grashof.analysis.judge.one_at_a_time import one_at_a_time
-from grashof.problems import ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
@@ -22,7 +22,7 @@ from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Many, Screened
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import Proposal, Start
 
 FAR = 1e3  # stands for an amount without bound
 NEAREST = 8  # starts that are tried for the closest miss
@@ -122,23 +122,26 @@ def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return np.stack(columns, axis=1)
 
 
-def mended(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
+def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Proposal]:
     """Starts, those that miss a user's constraint free to move, and no farther than it makes them."""
     if not scaled.constraints:
         return starts
     return [
-        start if _met(scaled, start) else replace(start, radius=np.inf, stay=scaled.exact, settled=False)
+        start
+        if isinstance(start, Linkage) or _met(scaled, start)
+        else replace(start, radius=np.inf, stay=scaled.exact, settled=False)
         for start in starts
     ]
 
 
-def relaxed_by_own(scaled: ScaledProblem, starts: list[Start]) -> list[Start]:
+def relaxed_by_own(scaled: ScaledProblem, starts: Sequence[Proposal]) -> list[Start]:
     """The first few starts, free to come as near to the user's constraints as they can."""
     if not scaled.constraints:
         return []
     return [
         replace(start, radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
         for start in starts[:NEAREST]
+        if not isinstance(start, Linkage)
     ]
 
 

@@ -9,6 +9,9 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
+from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
+from grashof.synth.proof.functions.five_pairs import certified_functions
+from grashof.synth.proof.poses.five_poses import Certified, certified_poses
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
 from grashof.synth.proof.poses.three_poses import bounds_of_three
@@ -38,8 +41,14 @@ def bounds_after(
 
     `before` is what was proven before it, and `designs` are what it found.
     """
+    best = max((one.values[quantity_of(scaled.problem).key] for one in designs), default=0.0)
+    if pairs := bounds_of_pairs(scaled, proving, float(best)):
+        return pairs
     if not proving.minutes or (before is not None and before.closed):
         return before
-    key = quantity_of(scaled.problem).key
-    best = max((float(each.values[key]) for each in designs), default=0.0)
-    return bounds_of_three(scaled, proving, lower=best) or before
+    return bounds_of_three(scaled, proving, lower=float(best)) or before
+
+
+def certified_of(scaled: ScaledProblem) -> Certified | None:
+    """All dyads of five whole poses or five pairs of a function; None of other problems."""
+    return certified_poses(scaled) or certified_functions(scaled)

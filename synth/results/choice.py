@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_in_time
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.programme.merit import same_error
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.results.larger_zones import nearest_zones
+from grashof.synth.results.mixed import within_factor
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
 from grashof.synth.search.ledger import EXACT_ERROR, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import error_of_use
 
 NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
+SAME_LEAST, NO_ERROR = 1.001, 1e-9  # errors up to so many times the least one, or so small, are the least
+LEVEL, AT = 5.0, 0.01  # deg of transmission: what lists are made for, and how near designs come to it
+LOCAL = "least error nearby"
 SEEDS = 12  # designs that are begun from
 
 
@@ -25,6 +32,8 @@ def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
     """All exact designs, a choice about the least error, or the best where targets may be missed."""
     ledger = ledgers[-1]
     with run.timed("choosing"):
+        if not (scaled.has_targets or scaled.exact):
+            return Chosen(_least_errors(scaled, ledger), ledger.rejected, 0)
         if scaled.bounded:
             found = [candidate for each in ledgers for candidate in each.verified]
             return _best_within_bounds(scaled, found, ledger, run)
@@ -58,10 +67,27 @@ def _best_within_bounds(
     return Chosen(ranked(problem, good), [one for one in attempts if not one.verified], solved)
 
 
+def _least_errors(scaled: ScaledProblem, ledger: Ledger) -> tuple[Candidate, ...]:
+    """Designs up to the error that is allowed, named by their merits."""
+    problem = scaled.problem
+    found = within_factor(problem, ledger.best, ledger.least)
+    return tuple(replace(one, best_at=merit(problem, one, ledger.least)) for one in found)
+
+
+def merit(problem: Problem, one: Candidate, least: float) -> str:
+    """What a design of some error is best at: the error, or as much of it as its transmission angle costs."""
+    if one.error(problem) <= max(least * SAME_LEAST, NO_ERROR):
+        return "least error"
+    transmission = float(np.degrees(one.values[quantity_of(problem).key]))
+    level = LEVEL * round(transmission / LEVEL)
+    asked = problem.requirements.transmission_min_deg
+    return f"transmission from {level:g} deg" if abs(transmission - level) < AT and level > asked else LOCAL
+
+
 def least_error(scaled: ScaledProblem, ledger: Ledger) -> float:
     """The least error that a search found, length; NaN for exact designs, and where zones allow errors."""
     fitted = not ledger.scaled.exact and scaled.zones is None and bool(ledger.best)
-    return ledger.least * scaled.problem.task.size if fitted else np.nan
+    return ledger.least * scaled.problem.task.error_unit if fitted else np.nan
 
 
 def why_ended(scaled: ScaledProblem, ledger: Ledger) -> str:
@@ -70,4 +96,4 @@ def why_ended(scaled: ScaledProblem, ledger: Ledger) -> str:
     if not (fitted and scaled.problem.task.exact_by_default):
         return ledger.why
     more = "every target can be met, and without exact = false more such designs are looked for"
-    return f"{ledger.why}; {more}"
+    return f"{ledger.why}; {more}" if ledger.why else more

@@ -16,11 +16,11 @@ from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.result import Result
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.story import Asking, Story, now
 from grashof.synth.search.tally import CHOICE, DISTINCT
-from grashof.synth.starts.finder import finder_for
 
 _LOG = logging.getLogger(__name__)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.problems import Objective, Rotatability
+from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.designs.ranking import ranked
@@ -17,10 +18,10 @@ from grashof.synth.results.larger_zones import up, wider
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import search_designs
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import Stopped
 
 STOPPED = "no design: the search was stopped before it found one"
@@ -86,7 +87,7 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     if near:
         note = f"no design: {why or 'exact: none'}; {_comes_within(scaled, near[0])}, with exact = false"
         return Explanation(note, tuple(one.candidate for one in near))
-    relaxed = finder.relaxed(rng) + relaxed_by_own(scaled, ledger.latest)
+    relaxed = [*finder.relaxed(rng), *relaxed_by_own(scaled, ledger.latest)]
     nearest = () if run.ended() else closest_misses(run.solve(scaled, relaxed, len(rejected)))
     nearest = nearest or closest_misses(rejected)
     if squares is not None and not _misses_one(nearest) and not run.ended():
@@ -149,8 +150,7 @@ def _may_be_near(scaled: ScaledProblem) -> bool:
 def _miss(near: _Near, size: float) -> float:
     """By how much a least-squares design misses its targets: sizes or rad."""
     verdict = near.by_squares
-    turned = np.nanmax(verdict.angle_error, initial=0.0)
-    return max(verdict.error_max / size, float(turned))
+    return float(np.nanmax([*verdict.angle_error, *verdict.output_error, verdict.error_max / size]))
 
 
 def _ways_note(why: str, words: list[str], given: str = "") -> str:
@@ -175,11 +175,14 @@ def note_parts(note: str) -> tuple[str, list[str]]:
 def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:
     """How near a least-squares design comes; numbers are rounded up, so that they hold."""
     unit = f" {scaled.problem.length_unit}" if scaled.problem.length_unit else ""
-    text = f"the closest design {then}comes within {up(near.by_squares.error_max):g}{unit}"
-    turned = near.by_squares.angle_error
-    if np.isnan(turned).all():
-        return f"{text} everywhere"
-    return f"{text} and {up(float(np.degrees(np.nanmax(turned)))):g} deg everywhere"
+    verdict, output = near.by_squares, scaled.problem.task.counted_in
+    missed = {
+        "position": (verdict.position_error, unit),
+        "angle": (np.degrees(verdict.angle_error), " deg"),
+        "output": (output.shown * verdict.output_error, unit if output is Unit.LENGTH else " deg"),
+    }
+    most = [f"{up(float(np.nanmax(e))):g}{u}" for e, u in missed.values() if not np.isnan(e).all()]
+    return f"the closest design {then}comes within {' and '.join(most)} everywhere"
 
 
 def _none_note(scaled: ScaledProblem, nearest: tuple[Candidate, ...], why: str) -> str:

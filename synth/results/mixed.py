@@ -26,7 +26,7 @@ def one_list(problem: Problem, found: Sequence[Result]) -> Result:
         return found[0]
     least = float(np.min([one.least_error for one in found], initial=np.inf, where=_known(found)))
     designs = [replace(each, problem=problem) for one in found for each in one.candidates]
-    chosen = listed(problem, within_factor(problem, designs, least / problem.task.size))
+    chosen = listed(problem, within_factor(problem, designs, least / problem.task.error_unit))
     tally = Tally()
     for one in found:
         tally.update(one.tally)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +19,7 @@ from grashof.synth.programme.screening import (
     judge,
     violations_apart,
 )
-from grashof.synth.programme.start import UNSMOOTH, Start
+from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.provers import bounds_before
@@ -30,10 +31,10 @@ from grashof.synth.results.relaxed_limits import (
     relaxation,
     with_rounded_angle,
 )
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.run import Run
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.starts.selection import closest_starts
-from grashof.synth.starts.strokes.limit_positions import LimitPositions
+from grashof.synth.starts.whole_designs import WholeDesigns
 
 SOLVES = 6  # starts for each requirement
 DEAD = 1e-3  # rad: a transmission angle near a dead position
@@ -93,10 +94,8 @@ def _candidates(
 ) -> list[Candidate]:
     """Designs that miss a requirement by little, and others by nothing if that can be."""
     finder = finder_for(loose)
-    if isinstance(finder, LimitPositions):
-        if key in UNSMOOTH:
-            return []  # limit positions are always in order and on one branch
-        return _judged(scaled, loose, finder.closest_to(type(finder)(scaled), rng), run)
+    if isinstance(finder, WholeDesigns):
+        return _judged(scaled, loose, finder.closest_to(scaled, key, rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)
     as_they_are = [replace(start, settled=True) for start in starts]
@@ -117,7 +116,9 @@ def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
     return [(key,), *((f"{key}.{axis}",) for axis in closed if len(closed) > 1)]
 
 
-def _judged(scaled: ScaledProblem, solved: ScaledProblem, starts: list[Start], run: Run) -> list[Candidate]:
+def _judged(
+    scaled: ScaledProblem, solved: ScaledProblem, starts: Sequence[Proposal], run: Run
+) -> list[Candidate]:
     """The designs of starts solved under other requirements, judged by those that were asked."""
     attempts = run.solve(solved, starts, 0)
     return [judged_again(scaled, one.candidate) for one in attempts if one.candidate is not None]

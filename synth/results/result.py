@@ -95,7 +95,7 @@ class Result(Displayed):
         factor = self.problem.requirements.error_factor
         if factor is None or np.isnan(self.least_error):
             return np.nan
-        return factor * max(self.least_error, same_error(self.problem) * self.problem.task.size)
+        return factor * max(self.least_error, same_error(self.problem) * self.problem.task.error_unit)
 
     @property
     def families(self) -> tuple[tuple[Candidate, ...], ...]:

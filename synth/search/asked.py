@@ -8,8 +8,8 @@ from dataclasses import replace
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
+from grashof.synth.search.finder import refuse_unsearchable
 from grashof.synth.search.story import Asking
-from grashof.synth.starts.finder import refuse_unsearchable
 
 
 def search_of(problem: Problem, workers: int, **given: float | None) -> Search:

@@ -8,23 +8,25 @@ from typing import Any
 
 import numpy as np
 
+from grashof.problems import Linkage
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.judging import judged
+from grashof.synth.designs.judging import judged, judged_linkage
 from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.zones import MISSED, shares
 from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
 from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import UNSMOOTH, Start
+from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
 from grashof.synth.programme.structure import Form
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, overdue
 
 # Status of a start that was left alone because the search had long been asked to stop.
 LEFT_ALONE = "Stopped"
+AS_IT_IS = "Not_Solved"  # that of a design that was judged as the search proposed it
 # The judge may put the driver a little elsewhere than the programme, and looks between the targets: so many
 # solves at most ask for that much more, unless what is missing is more than a little (as in `Defect.miss`;
 # share of a zone).
@@ -67,15 +69,20 @@ class Attempt:
         return (self.candidate, *self.cognates)
 
 
-def attempt(scaled: ScaledProblem, start: Start, number: int, *, cognates: bool = True) -> Attempt:
-    """Solve from start `number`, polish the design, verify it, and what moves alike where that is of use."""
+def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bool = True) -> Attempt:
+    """Solve from start `number`, polish the design, verify it, and what moves alike where that is of use.
+
+    A linkage is verified as it is.
+    """
     if overdue():
         return Attempt(LEFT_ALONE, None)
+    if isinstance(start, Linkage):
+        return Attempt(AS_IT_IS, judged_linkage(scaled, start, start=number, iterations=0))
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
     if start.settled or not scaled.has_targets or not set(UNSMOOTH).isdisjoint(start.relaxed):
         points = (start.o2, start.o4, start.a, start.b, start.p)
-        as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, "Not_Solved", 0)
+        as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, AS_IT_IS, 0)
         done = polished_and_judged(scaled, start, as_it_is, number)
     may_move = scaled.has_targets and start.settled and finder.freedom
     if done is None or (may_move and not done.verified):

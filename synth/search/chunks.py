@@ -8,12 +8,12 @@ from typing import Any
 
 from grashof.problems import Search
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Chunk, Ledger
 from grashof.synth.search.recorded_designs import is_true_chunk
 from grashof.synth.search.rounds import solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import CrashError, Here, Work, screen
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, give_way
 
 CHUNK = "chunk"  # kind of step

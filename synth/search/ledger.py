@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from bisect import insort
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import ceil
 
 import numpy as np
 
-from grashof.problems import Problem, Search
+from grashof.problems import Linkage, Problem, Search
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.tally import Tally
 from grashof.synth.theory.distinct import DISTINCT, apart, signature
@@ -94,7 +94,7 @@ class Ledger:
     rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
     tally: Tally = field(default_factory=Tally)
-    latest: list[Start] = field(default_factory=list)
+    latest: Sequence[Proposal] = ()
     complete: bool = True
     solved: int = 0
     work: int = 0
@@ -115,19 +115,22 @@ class Ledger:
         self._errors.append(np.inf)
         self._stale += bool(self.best)
 
-    def worthwhile(self, made: Round, starts: list[Start], *, first: bool) -> list[Start]:
+    def worthwhile(self, made: Round, starts: Sequence[Proposal], *, first: bool) -> Sequence[Proposal]:
         """Of least squares the starts that may yet lead to something, and the first of a round; else all."""
         if self.scaled.exact:
             return starts
-        chosen = []
+        chosen = list[Proposal]()
         for number, start in enumerate(starts):
+            if isinstance(start, Linkage):
+                chosen.append(start)
+                continue
             confirms, marks = first and number == 0, _marks(made, start)
             if confirms or not (self._too_far(made, start) or self._known(made, start, marks)):
                 chosen.append(start)
                 self._begun.append(marks)
         return chosen
 
-    def promising(self, made: Round, starts: list[Start]) -> list[Start]:
+    def promising(self, made: Round, starts: Sequence[Proposal]) -> list[Proposal]:
         """Starts that may be worthwhile when it is their turn."""
         return [start for start in starts if self.scaled.exact or not self._too_far(made, start)]
 
@@ -206,6 +209,8 @@ class Ledger:
         if self.scaled.exact:
             return self.enough or bool(self._no_use)
         share = min(1.0, self.search.effort)
+        if not self.scaled.by_descent:
+            return bool(self._no_use)
         agreed, many = self._came_up >= ceil(AGREEING * share), max(1, round(MOST_ROUNDS * share))
         return agreed or len(self._errors) >= many or bool(self._no_use)
 
@@ -219,6 +224,8 @@ class Ledger:
         if self.scaled.exact:
             reason = self._no_use or self.exhausted
             return "" if self.enough else f"the search ended after {solves}: {reason}"
+        if not self.scaled.by_descent:
+            return f"the search ended after {solves}: {self._no_use}" if self._no_use else ""
         agreed = f"the best came up in {self._came_up} of {counted(len(self._errors), 'round')}"
         reason = agreed if self.best else "no design came up"
         return f"the search ended after {counted(self.solved, 'solve')}: {reason}"
@@ -256,8 +263,9 @@ class Ledger:
     def _fruitless(self) -> bool:
         return not self.best and self.solved >= FRUITLESS * min(1.0, self.search.effort)
 
-    def _too_far(self, made: Round, start: Start) -> bool:
-        return start.promise > max(made.prune * max(self.least, EXACT_ERROR), self.scaled.of_use)
+    def _too_far(self, made: Round, start: Proposal) -> bool:
+        promise = 0.0 if isinstance(start, Linkage) else start.promise
+        return promise > max(made.prune * max(self.least, EXACT_ERROR), self.scaled.of_use)
 
     def _known(self, made: Round, start: Start, marks: ComplexArray) -> bool:
         near = max(COPY * start.promise, 0.0 if made.free else COPY_FLOOR)

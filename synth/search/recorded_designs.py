@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from grashof.problems import Linkage
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import alike, judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import Chunk
 
@@ -24,15 +25,16 @@ def is_round(result: object) -> bool:
     return result is None or isinstance(result, Round)
 
 
-def are_attempts(scaled: ScaledProblem, starts: Sequence[Start], result: object) -> bool:
+def are_attempts(scaled: ScaledProblem, starts: Sequence[Proposal], result: object) -> bool:
     """Whether a result is an attempt for each start, with the judge's verdict on every design."""
     if not isinstance(result, list) or len(result) != len(starts):
         return False
+    allowed = [np.inf if isinstance(start, Linkage) else start.most_error for start in starts]
     return all(
         isinstance(one, Attempt)
-        and (one.candidate is None or _is_true(scaled, one.candidate, start.most_error))
-        and all(each.verdict.ok and _is_true(scaled, each, start.most_error) for each in one.cognates)
-        for one, start in zip(result, starts, strict=True)
+        and (one.candidate is None or _is_true(scaled, one.candidate, most))
+        and all(each.verdict.ok and _is_true(scaled, each, most) for each in one.cognates)
+        for one, most in zip(result, allowed, strict=True)
     )
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from grashof.synth.programme.start import Round, Start
+from collections.abc import Sequence
+
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.programme.user_functions import mended
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
@@ -20,11 +22,14 @@ def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
     scaled = ledger.scaled
     starts = mended(scaled, found.starts)
     batch = min(BATCH, run.search.enough) if scaled.exact else BATCH_LEAST_SQUARES
+    batch = len(starts) if found.together else batch
     for begin in range(0, len(starts), batch):
         ended = run.ended()
         if not ledger.within_round or (ended and (ledger.best or begin)):
             return
-        some = ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
+        some = [
+            *ledger.worthwhile(found, starts[begin : begin + (LAST if ended else batch)], first=begin == 0)
+        ]
         run.begin(scaled, some + ledger.promising(found, starts[begin + batch :]))
         some = some[: ledger.starts - ledger.solved]
         if not ledger.solved and len(some) > EARLY:
@@ -36,7 +41,7 @@ def solve_round(found: Round, ledger: Ledger, run: Run) -> None:
         run.tell(ledger)
 
 
-def solve(starts: list[Start], ledger: Ledger, run: Run) -> None:
+def solve(starts: Sequence[Proposal], ledger: Ledger, run: Run) -> None:
     """Solve and verify, then rank what is verified."""
     ledger.take(run.solve(ledger.scaled, starts, ledger.solved))
     ledger.rank()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
@@ -13,13 +13,15 @@ from typing import Any, TypeVar
 from grashof.problems import Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.recorded_designs import Holds, are_attempts, is_round
 from grashof.synth.search.workers import CRASHED, Work, glance, screen
+from grashof.synth.starts.whole_designs import WholeDesigns
 
 _LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take: so many are begun ahead
@@ -86,7 +88,7 @@ class Run:
         self.ended()
         return result
 
-    def solve(self, scaled: ScaledProblem, starts: list[Start], first: int) -> list[Attempt]:
+    def solve(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
         if not starts:
             return []
@@ -109,6 +111,19 @@ class Run:
         seed = self.search.seed
         return self.step("glance", (seed,), scaled, lambda: glance(scaled, seed), is_round)
 
+    def onward(self, ledger: Ledger) -> Sequence[Proposal]:
+        """Linkages that verified designs lead to, of a finder that proposes whole designs."""
+        scaled, finder = ledger.scaled, finder_for(ledger.scaled)
+        if not isinstance(finder, WholeDesigns) or not ledger.best:
+            return ()
+        of = tuple(each.id for each in ledger.best)
+
+        def made() -> Round:
+            return Round(finder.onward(ledger.best), {})
+
+        found = self.step("onward", of, scaled, made, is_round)
+        return found.starts
+
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""
         which = (number, self.search.enough, self.search.seed)
@@ -123,7 +138,7 @@ class Run:
         """The result of a step of the search, as recorded where that holds, or done now."""
         return self.journal.done(kind, of, scaled.problem, lambda: self.whole(do()), holds)
 
-    def begin(self, scaled: ScaledProblem, starts: list[Start]) -> None:
+    def begin(self, scaled: ScaledProblem, starts: Sequence[Proposal]) -> None:
         """Begin solves that may be wanted, where that costs no time."""
         if not self.journal.recorded:
             self.work.begin_attempts(scaled, starts)

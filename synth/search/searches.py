@@ -15,11 +15,11 @@ from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.search.chunks import begin_chunks, chunks, starts_of_chunk
+from grashof.synth.search.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.rounds import solve, solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import LARGER
-from grashof.synth.starts.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
@@ -80,9 +80,14 @@ def search_designs(scaled: ScaledProblem, run: Run, known: Round | None = None) 
 
 
 def finished(ledger: Ledger, run: Run) -> Ledger:
-    """A ledger of all that was searched, the best of least squares gone on with."""
-    if not ledger.scaled.exact:
+    """A ledger of all that was searched, the best gone on with."""
+    if ledger.scaled.by_descent:
         _continue_best(ledger, run)
+    elif ledger.complete and not run.ended():
+        with run.timed("solving"):
+            if more := run.onward(ledger):
+                solve(more, ledger, run)
+                run.tell(ledger)
     return ledger
 
 

@@ -7,7 +7,7 @@ import os
 import pickle
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import replace
@@ -20,9 +20,9 @@ import numpy as np
 
 from grashof.problems import SolverError
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
 
 _LOG = logging.getLogger(__name__)
@@ -51,13 +51,13 @@ class Work(Protocol):
     def lost(self) -> int:
         """How often a process was lost and replaced."""
 
-    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+    def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
 
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
         """What a function of a module makes of the problem and some numbers, such as a round."""
 
-    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+    def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
         """Begin attempts that may be wanted."""
 
     def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
@@ -84,7 +84,7 @@ def _unpacked(packed: bytes) -> ScaledProblem:
     return scaled
 
 
-def solved_there(packed: bytes, *starts: Start) -> list[Attempt]:
+def solved_there(packed: bytes, *starts: Proposal) -> list[Attempt]:
     """Attempts, in a process that gets the problem in bytes."""
     return [attempt(_unpacked(packed), start, 0) for start in starts]
 
@@ -99,7 +99,7 @@ class Here:
 
     width, lost = 1, 0
 
-    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+    def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts."""
         return [attempt(scaled, start, number) for number, start in enumerate(starts, first)]
 
@@ -107,7 +107,7 @@ class Here:
         """What a function makes."""
         return make(scaled, *which)
 
-    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+    def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
         """Nothing is begun early."""
 
     def begin(self, _make: Make[Any], _scaled: ScaledProblem, *_which: float) -> bool:
@@ -124,9 +124,9 @@ class Elsewhere:
         # What is made, by its function, problem and numbers; attempts with their place in a bundle, by the
         # identity of the start, which is kept with them.
         self._begun: dict[tuple[Any, ...], Future[Any]] = {}
-        self._solves: dict[int, tuple[Future[list[Attempt]], int, Start]] = {}
+        self._solves: dict[int, tuple[Future[list[Attempt]], int, Proposal]] = {}
 
-    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+    def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts; one that ends the process that makes it is given up."""
         made = []
         for number, start in enumerate(starts):
@@ -151,7 +151,7 @@ class Elsewhere:
         done: T = self._alone(made_there, *key)
         return done
 
-    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+    def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
         """Begin as many as there may soon be processes for."""
         if self.width > 1:
             self._begin_solves(scaled, starts[: (AHEAD_EXACT if scaled.exact else AHEAD) * self.width])
@@ -177,7 +177,7 @@ class Elsewhere:
             self._last = (scaled, pickle.dumps(scaled))
         return self._last[1]
 
-    def _begin_solves(self, scaled: ScaledProblem, starts: list[Start]) -> None:
+    def _begin_solves(self, scaled: ScaledProblem, starts: Sequence[Proposal]) -> None:
         """Begin attempts: exact ones, which take milliseconds each, some in one piece of work."""
         fresh = [start for start in starts if id(start) not in self._solves]
         size = BUNDLE if scaled.exact and self.width > 1 else 1
@@ -186,7 +186,7 @@ class Elsewhere:
             future = self._submit(solved_there, self._packed(scaled), *bundle)
             self._solves |= {id(start): (future, place, start) for place, start in enumerate(bundle)}
 
-    def _solved(self, scaled: ScaledProblem, start: Start, starts: list[Start]) -> Attempt:
+    def _solved(self, scaled: ScaledProblem, start: Proposal, starts: Sequence[Proposal]) -> Attempt:
         """The attempt from the first of some starts."""
         if id(start) not in self._solves:
             self._begin_solves(scaled, starts)
@@ -246,7 +246,7 @@ class Processes(Elsewhere):
         self.drop()
         self._executor.shutdown(cancel_futures=True)
 
-    def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
+    def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
         """Attempts from starts; here as long as the processes begin."""
         made = list[Attempt]()
         while len(made) < len(starts) and not self._ready.done():
@@ -259,7 +259,7 @@ class Processes(Elsewhere):
             return super().made(make, scaled, *which)
         return make(scaled, *which)
 
-    def begin_attempts(self, scaled: ScaledProblem, starts: list[Start], /) -> None:
+    def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
         """Begin as many as there may soon be processes for, once they are there."""
         if self._ready.done():
             super().begin_attempts(scaled, starts)

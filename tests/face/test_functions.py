@@ -10,11 +10,10 @@ import pytest
 
 from grashof import load
 from grashof.figures import plot_task
-from grashof.problems import ProblemError, catalogue, load_linkage_spec
+from grashof.problems import catalogue, load_linkage_spec
 from grashof.sections.function import function_section
 from grashof.study.asked import Asked
 from grashof.study.study import LinkageStudy
-from grashof.synth import shards
 
 Grashof = Callable[..., Any]
 EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
@@ -77,9 +76,3 @@ def test_the_catalogue_has_functions(grashof: Grashof, name: str) -> None:
     assert done.exit_code == 0, done.output
     assert "coupler arm" not in done.output
     assert plot_task(load(name)).get_xlabel() == "driver rotation from the first pair (deg)"
-
-
-def test_a_function_has_no_shards() -> None:
-    problem = load("function-five-pairs")
-    with pytest.raises(ProblemError, match="is a function, which is searched at once; leave shards out"):
-        shards.Plan.of(problem, problem.search)

@@ -23,7 +23,7 @@ from grashof.problems import (
     load,
 )
 from grashof.synth import Progress, Result
-from grashof.synth.starts.finder import finder_of
+from grashof.synth.search.finder import finder_of
 from grashof.wording.problem import ends_with_enough, error_meaning, summary
 
 

@@ -9,7 +9,7 @@ from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.problems import MotionTask, Problem, ProblemError, Requirements
 from grashof.problems.files.problem_schema import problem_from
-from grashof.synth.starts.finder import refuse_unsearchable
+from grashof.synth.search.finder import refuse_unsearchable
 
 A, B = [0, 0, 0], [3, 1, 60]
 

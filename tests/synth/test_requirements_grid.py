@@ -31,7 +31,7 @@ from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.results.relaxations import rejudged
 from grashof.synth.search.attempt import attempt
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 
 NEAR = 1e-5  # so close to a limit either judgement will do: the search places drivers to about 1e-6
 POOL = 14  # linkages of each kind

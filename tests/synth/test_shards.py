@@ -42,6 +42,9 @@ KINDS: dict[str, tuple[Problem, dict[str, Any]]] = {
         ),
         {"starts": 16},
     ),
+    "pairs met": (load("function-five-pairs"), {}),
+    "pairs fitted": (load("function-dosing-slide"), {}),
+    "limit positions": (load("quick-return"), {}),
     "zones": (Problem(task=ZONES, objective=Objective()), {"effort": 0.5, "starts": 30}),
     "none": (
         Problem(
@@ -78,7 +81,7 @@ def shard(searched: tuple[Path, list[Made]], tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.quick("zones")
+@pytest.mark.quick("zones", "pairs fitted", "limit positions")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: Path) -> None:

@@ -188,7 +188,8 @@ def test_designs_are_told_of_as_they_are_found() -> None:
     counts = [(step.solved, step.verified) for step in told]
     assert counts == sorted(counts)
     assert counts[0] == (1, 1)
-    assert len(counts) == counts[-1][0] + 1 > 8
+    assert counts[-1] > (8, 4)
+    assert len(counts) > 4
     first = told[0].designs[0]
     assert verify(first.linkage, problem.task, problem.requirements).ok
     assert first.error(problem) < 1.01 * found.best.error(problem)

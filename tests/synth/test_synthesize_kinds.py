@@ -26,7 +26,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.precision_points import EightPoints
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")

@@ -205,9 +205,8 @@ class FunctionTask(Task):
             "output_range_deg": output_range_deg,
             "output_range": output_range,
         }
-        travels = _either(output_deg, output, OUTPUT) or _either(
-            output_range_deg, output_range, "output_range"
-        )
+        both = ("output_range", output_range_deg, output_range)
+        travels = _either(OUTPUT, output_deg, output) or _either(*both)
         if law is None:
             others = {"exponent": exponent, "pairs": pairs, "sampled": sampled}
             _refuse_beside(stated | others, "goes with function.law only")
@@ -281,6 +280,11 @@ class FunctionTask(Task):
     def output_unit(self) -> float:
         """What errors of the output count in: 1 rad, or the whole travel."""
         return self.size if self.travels else 1.0
+
+    @property
+    def error_unit(self) -> float:
+        """Errors are angles, or shares of the travel."""
+        return 1.0
 
     @property
     def counted_in(self) -> Unit:
@@ -369,31 +373,28 @@ class FunctionTask(Task):
         return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
 
 
-def _either(angles: object, travel: object, key: str) -> bool:
+def _either(key: str, angles: object, travel: object) -> bool:
     """Whether the output is given as travel; not as both."""
     if angles is not None and travel is not None:
-        raise ProblemError(
-            f"function.{key}_deg does not go with function.{key}; an output turns or slides, give one of them"
-        )
+        both = f"function.{key}_deg does not go with function.{key}"
+        raise ProblemError(f"{both}; an output turns or slides, give one of them")
     return travel is not None
 
 
 def _word(value: str, words: tuple[str, ...], where: str) -> str:
-    if value not in words:
-        meant = near_miss(value, words) if isinstance(value, str) else None
-        hint = f" (did you mean {meant}?)" if meant else ""
-        raise wrong_value(where, value, f"{' or '.join(words)}{hint}")
-    return str(value)
+    if value in words:
+        return str(value)
+    meant = near_miss(value, words) if isinstance(value, str) else None
+    raise wrong_value(where, value, " or ".join(words) + f" (did you mean {meant}?)" * bool(meant))
 
 
 def _refuse_beside(values: Mapping[str, object], why: str) -> None:
-    for name, value in values.items():
-        if value is not None:
-            raise ProblemError(f"function.{name} {why}")
+    for name in (name for name, value in values.items() if value is not None):
+        raise ProblemError(f"function.{name} {why}")
 
 
 def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:
     other = f"{output}_deg" if travels else output
-    missing = [f"function.{name}" for name, value in values.items() if value is None and name != other]
+    missing = [name for name, value in values.items() if value is None and name != other]
     if missing:
-        raise ProblemError("\n".join(f"{name} is missing" for name in missing))
+        raise ProblemError("\n".join(f"function.{name} is missing" for name in missing))

@@ -11,6 +11,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.extent import span
 from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.units import Unit
 
 _SAME = 1e-12  # sizes, rad
 USUAL_MARGIN = 1e-3  # of full rotation
@@ -86,6 +87,11 @@ class Task(ReadOnly, ABC):
         return span(self.positions[self.has_position]) or self.angle_length
 
     @property
+    def error_unit(self) -> float:
+        """What errors of designs are counted in."""
+        return self.size
+
+    @property
     def scale_free(self) -> bool:
         """Whether linkages of any size do it, so that the size is no measure of theirs."""
         return False
@@ -110,6 +116,16 @@ class Task(ReadOnly, ABC):
     def has_output(self) -> BoolArray:
         """Which targets have an output, shape (N,)."""
         return ~np.isnan(self.outputs)
+
+    @property
+    def counted_in(self) -> Unit:
+        """The unit of outputs and their errors in files and tables."""
+        return Unit.ANGLE
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether a target has a place or an angle in the plane."""
+        return bool((self.has_position | self.has_angle).any())
 
     def with_ground(self, length: float) -> Self:  # noqa: ARG002
         """The task with a usual length of the ground, where it has no size of its own."""

@@ -22,7 +22,7 @@ from grashof.problems.values.units import Unit
 from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.programme.merit import same_error
 from grashof.synth.results.trade_offs import FACTORS
-from grashof.synth.starts.finder import asked_first
+from grashof.synth.search.finder import asked_first
 
 
 def ends_with_enough(problem: Problem) -> bool:

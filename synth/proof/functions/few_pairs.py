@@ -7,15 +7,18 @@ O4 = 1 each coupler is a whole linkage. Four pairs leave a curve of couplers, th
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from contextlib import suppress
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
 
-from grashof.analysis import verify
-from grashof.problems import ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.judging import judged_linkage
+from grashof.synth.programme.kinds import FOUR_BAR
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import LEAST, SLACK
@@ -26,7 +29,6 @@ from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
 from grashof.synth.starts.functions.aims import FunctionAims
-from grashof.synth.starts.functions.search import FoundFunction
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.stopping import Stopped, give_way
@@ -43,22 +45,24 @@ _FORMS = (
 )  # fmt: skip
 
 
-def bounds_of_pairs(
-    aims: FunctionAims, proving: Proving, lower: float = 0.0
-) -> tuple[Bounds, list[FoundFunction]] | None:
-    """Bounds of the best four-bar through three or four pairs, and designs better than a given one.
+def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0) -> Bounds | None:
+    """Bounds of the best four-bar through three or four pairs.
 
-    `lower` is the transmission angle of a design that is known, as judged, rad. None of other functions,
-    of other objectives, or where the driver angle is given.
+    `lower` is the transmission angle of a design that is known, as judged, rad; `Bounds.found` is one that
+    is better. None of other tasks and objectives, or where the driver angle is given.
     """
-    problem, ways = aims.problem, list(aims.ways())
-    if problem.mechanism[0] != FOUR_BAR or not aims.exact or len(aims.task) not in (THREE, FOUR):
+    problem = scaled.problem
+    if scaled.kind is not FOUR_BAR or not scaled.exact or not problem.task.has_output.all():
         return None
-    if any(first is not None for _, _, first in ways) or set(problem.objective.goals) != {"transmission"}:
+    if len(problem.task) not in (THREE, FOUR) or problem.requirements.theta2_start_deg is not None:
         return None
+    if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
+        return None
+    aims = FunctionAims.of(problem)
+    ways = list(aims.ways())
     since, stated = perf_counter(), problem.requirements.limited
     share = SHARE_OF_PLANE if len(aims.task) == THREE else SHARE_OF_CURVE
-    search = _Search(aims, float(np.radians(proving.gap)), round(share * proving.most_pairs), lower)
+    search = _Search(scaled, aims, float(np.radians(proving.gap)), round(share * proving.most_pairs), lower)
     try:
         search.descend({sense: Sense.of(aims, sense, driver) for sense, driver, _ in ways})
         why = ""
@@ -66,18 +70,19 @@ def bounds_of_pairs(
         why = str(ended)
     except Stopped:
         why = "it was stopped"
-    made = Bounds(
+    beyond = [name for name in stated if name not in _FORMS] + ["constraints"] * bool(scaled.constraints)
+    return Bounds(
         lower=search.lower,
         upper=search.upper,
         closed=not why,
+        found=search.found,
         pieces=(search.begun, search.begun),
         pairs=search.count,
         levels=search.levels,
         seconds=perf_counter() - since,
-        left_out=tuple(name for name in stated if name not in _FORMS),
+        left_out=tuple(beyond),
         why=why,
     )
-    return made, search.found
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +145,8 @@ class Sense:
 
         return passes(0.0), passes(np.pi)
 
-    def designs(self, dyads: Dyads, least: float) -> Iterator[tuple[FoundFunction, float]]:
-        """The best of some linkages, where the judge accepts them and they transmit more, rad."""
+    def linkages(self, dyads: Dyads, least: float) -> Iterator[Linkage]:
+        """The best of some linkages that transmit more than `least`, rad."""
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             made = FourBars.of_pivots(dyads.moving, dyads.ground).begun(self.begun).finite
             transmitted = np.arccos(
@@ -152,15 +157,9 @@ class Sense:
             kept = np.flatnonzero(
                 (transmitted > least) & (self.aims.limits_of(self.driver).of(made).value.min(axis=1) >= 0)
             )
-        problem, key = self.aims.problem, quantity_of(self.aims.problem).key
         for k in kept[np.argsort(-transmitted[kept], kind="stable")[:JUDGED]]:
-            try:
-                linkage = self.aims.linkage(made[k : k + 1], self.driver)
-            except ProblemError:  # pivots that coincide
-                continue
-            verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
-            if verdict.ok:
-                yield FoundFunction(made[k : k + 1], self.driver), float(getattr(verdict, key))
+            with suppress(ProblemError):  # pivots that coincide
+                yield self.aims.linkage(made[k : k + 1], self.driver)
 
     @property
     def couplers(self) -> CurveOfCouplers | PlaneOfCouplers:
@@ -173,13 +172,14 @@ class Sense:
 class _Search:
     """A branch and bound over pieces, of one sense after the other."""
 
+    scaled: ScaledProblem
     aims: FunctionAims
     gap: float  # rad
     most: int  # budget of pieces
     lower: float = 0.0  # rad, transmission angle of a design that is known, 0 where none is
     upper: float = np.pi / 2  # rad; no design has more
     floor: float = LEAST  # rad; designs that transmit less do not count
-    found: list[FoundFunction] = field(default_factory=list)
+    found: Candidate | None = None  # the design with `lower`, if it came up here
     begun: int = 0
     count: int = 0
     levels: int = 0
@@ -217,12 +217,17 @@ class _Search:
             rows, bound = sense.rows_left(*couplers.spans(which), self.threshold)
             which = which[rows]
             some = np.sort(which[:: max(1, -(-len(which) // SCREENED))])
-            for one, value in sense.designs(couplers.dyads(some), self.lower) if len(some) else ():
-                if value > self.lower:
-                    self.lower = value
-                    self.found.append(one)
+            for linkage in sense.linkages(couplers.dyads(some), self.lower) if len(some) else ():
+                self._judge(linkage)
             which = couplers.divided(which[bound > self.threshold])
             level += 1
             self.levels = max(self.levels, level)
         if isinstance(couplers, PlaneOfCouplers) and len(sense.rows_left(*couplers.discs, self.threshold)[0]):
             raise TooMany(TOO_SMALL)
+
+    def _judge(self, linkage: Linkage) -> None:
+        """Keep a linkage that the judge accepts and that transmits more than the best."""
+        one = judged_linkage(self.scaled, linkage, start=0, iterations=0)
+        value = float(one.values[quantity_of(self.scaled.problem).key])
+        if one.verdict.ok and value > self.lower:
+            self.lower, self.found = value, one

@@ -7,7 +7,8 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.synth.programme.kinds import FOUR_BAR
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
 from grashof.synth.starts.functions.aims import FunctionAims
@@ -17,19 +18,19 @@ from grashof.synth.theory.stopping import Stopped
 _TRIVIAL = 1e-6  # of r1: the ground link itself is a dyad of every function
 
 
-def certified_functions(aims: FunctionAims) -> Certified | None:
+def certified_functions(scaled: ScaledProblem) -> Certified | None:
     """All couplers of four-bars through five pairs, up to the ratio of link lengths; None of other functions.
 
     Seen from link 4, link 2 moves through known poses, and the coupler is a dyad of that motion; with r1 = 1
     no length is greater than the ratio of lengths allows.
     """
-    ways = list(aims.ways())
-    if aims.problem.mechanism[0] != FOUR_BAR or not aims.exact or len(aims.task) != FIVE:
+    problem = scaled.problem
+    if scaled.kind is not FOUR_BAR or not scaled.exact or not problem.task.has_output.all():
         return None
-    if any(first is not None for _, _, first in ways):
+    if len(problem.task) != FIVE or problem.requirements.theta2_start_deg is not None:
         return None
-    since, found = perf_counter(), []
-    for sense in dict.fromkeys(sense for sense, _, _ in ways):
+    aims, since, found = FunctionAims.of(problem), perf_counter(), []
+    for sense in dict.fromkeys(sense for sense, _, _ in aims.ways()):
         wanted = aims.pairs(sense)
         turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
         motion = Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))

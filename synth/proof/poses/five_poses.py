@@ -54,7 +54,7 @@ class Certified:
         return cls(nowhere, nowhere, np.zeros(0))
 
 
-def certified_of(scaled: ScaledProblem) -> Certified | None:
+def certified_poses(scaled: ScaledProblem) -> Certified | None:
     """All dyads of a problem of five whole poses, met exactly by a four-bar; None of other problems.
 
     The finder has to know each of them: else they are not all.

@@ -106,12 +106,17 @@ class FunctionAims:
         drivers = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
         for sense in (1,) if one else (1, -1):
             if start is None:
-                for driver in drivers if wanted.offset is not None else drivers[:1]:
+                for driver in drivers[:1] if self.mirrored else drivers:
                     yield sense, driver, None
                 continue
             for driver in drivers:
                 first = driver * (float(np.radians(start)) - self.kind.direction(wanted)) + self.task.span[0]
                 yield sense, driver, float(np.angle(np.exp(1j * first)))
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether mirror images do as well, so that one sense of the driver stands for both."""
+        return self.wanted.offset is None and self.problem.requirements.theta2_start_deg is None
 
     def pairs(self, sense: int) -> Wanted:
         """The pairs, from the beginning of the range."""
@@ -133,6 +138,10 @@ class FunctionAims:
     def linkage(self, made: Generators, driver: int) -> Linkage:
         """The linkage of one generator, placed and scaled as limits have it."""
         return made.linkage(self.wanted, self.unit, driver)
+
+    def generator(self, linkage: Linkage, driver: int, theta2: float) -> Generators:
+        """The generator that a linkage is, its driver at `theta2`, rad, at the first pair."""
+        return self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
 
 
 def _caps(kind: type[Generators], sizes: list[Limits], ratio: float) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import ClassVar, TypeAlias
@@ -14,13 +14,14 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import UNSMOOTH, Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.strokes.member_choice import apart, unbeaten
 from grashof.synth.starts.strokes.places import Places
 from grashof.synth.starts.strokes.rocker_places import RockerPlaces
 from grashof.synth.starts.strokes.shaper_places import ShaperPlaces
 from grashof.synth.starts.strokes.slide_places import SlidePlaces
+from grashof.synth.starts.whole_designs import WholeDesigns
 from grashof.synth.theory.limit_positions import Family, Members, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
@@ -46,14 +47,9 @@ def places_of(kind: Kind) -> type[Places]:
 
 
 @dataclass(frozen=True)
-class LimitPositions:
-    """All linkages with a swing, or a stroke, and a time ratio: nothing is left to solve."""
+class LimitPositions(WholeDesigns):
+    """All linkages with a swing, or a stroke, and a time ratio."""
 
-    scaled: ScaledProblem
-
-    freedom: ClassVar[bool] = False
-    cognates: ClassVar[bool] = False
-    patience: ClassVar[float] = np.inf
     exhausted: ClassVar[str] = "no others are worth listing"
 
     @staticmethod
@@ -75,17 +71,6 @@ class LimitPositions:
     def rounds_a_pass(self) -> int:
         """One, and some more where places decide that the families do not know of."""
         return 1 + (_ROUNDS if self.elsewhere else 0)
-
-    def glance(self, _rng: np.random.Generator) -> Round | None:
-        """None: a round takes little time."""
-        return None
-
-    def refuse(self) -> None:
-        """What cannot be is refused where the problem is stated."""
-
-    def degenerate(self) -> str:
-        """No swing is without a linkage."""
-        return ""
 
     @property
     def task(self) -> StrokeTask:
@@ -119,20 +104,15 @@ class LimitPositions:
             return None
         return self._round(self._anywhere(enough * size, rng))
 
-    def near(self, rng: np.random.Generator) -> Screened:
-        """Those of `relaxed`, screened."""
-        starts = self.relaxed(rng)
-        points = np.array([start.points for start in starts])
-        track = np.array([start.track for start in starts])
-        theta2 = np.array([start.theta2 for start in starts])
-        return self._screened(points[:, 0], points[:, 1], track[:, 0], track[:, 1], theta2)
-
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
         """The members that miss the limits by least."""
         return self._closest([(family, mirrored, stretches(family)) for family, mirrored in self.kinds])
 
-    def closest_to(self, asked: LimitPositions, rng: np.random.Generator) -> list[Start]:
+    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
         """Of the members that keep these limits, those that miss by least what else is asked, or many."""
+        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(asked), rng)
+
+    def _closest_to(self, asked: LimitPositions, rng: np.random.Generator) -> list[Start]:
         starts = list[Start]()
         if asked.elsewhere:
             starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
@@ -157,10 +137,6 @@ class LimitPositions:
                 # where these limits, or those of another problem, allow it
                 starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
         return starts
-
-    def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Nothing but limits."""
-        return ""
 
     def _round(self, starts: list[Start]) -> Round:
         return Round(starts, {"feasible finds": len(starts)})

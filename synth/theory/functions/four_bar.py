@@ -42,6 +42,12 @@ class FourBars(Generators):
         shape = np.stack([*sizes, np.angle(a)], axis=-1)
         return cls(shape, np.where(((b - a).conj() * (b - 1)).imag >= 0, 1.0, -1.0))
 
+    @classmethod
+    def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
+        r1, *others = linkage.lengths
+        shape = np.append(np.log(np.array(others) / r1), driver * (theta2 - linkage.theta1))
+        return cls(shape[None], np.array([driver * float(linkage.assembly)]))
+
     @property
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)

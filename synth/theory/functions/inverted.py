@@ -33,6 +33,13 @@ class InvertedSliderCranks(Generators):
     LINKS = 1
     dyad = Block()
 
+    @classmethod
+    def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
+        r1, first = float(linkage.lengths[0]), driver * (theta2 - float(linkage.theta1))
+        side = driver * float(linkage.assembly)
+        shape = np.array([[np.log(float(linkage.r2) / r1), side * float(linkage.offset) / r1, first]])
+        return cls(shape, np.ones(1))
+
     @property
     def other_assembly(self) -> Self:
         return self.changed(self.shape * [1.0, -1.0, 1.0])

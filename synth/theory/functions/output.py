@@ -53,6 +53,11 @@ class Generators(ABC):
     def __getitem__(self, index: IntArray | BoolArray | slice) -> Self:
         return type(self)(self.shape[index], self.assembly[index])
 
+    @classmethod
+    @abstractmethod
+    def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
+        """What `linkage` makes a linkage of, its driver at `theta2` (rad) when it begins."""
+
     @property
     def finite(self) -> Self:
         """Those whose numbers are finite."""

@@ -52,6 +52,13 @@ class SliderCranks(Generators):
             shape = np.stack([np.log(np.abs(a)), np.log(r3), b.imag / r3, np.angle(a)], axis=-1)
         return cls(shape, np.where((b - a).real >= 0, 1.0, -1.0))
 
+    @classmethod
+    def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
+        r2, r3, offset = (float(each) for each in (linkage.r2, linkage.r3, linkage.offset))
+        first = driver * (theta2 - float(linkage.slide_angle))
+        shape = np.array([[np.log(r2 / unit), np.log(r3 / unit), driver * offset / r3, first]])
+        return cls(shape, np.array([float(linkage.assembly)]))
+
     @property
     def other_assembly(self) -> Self:
         return type(self)(self.shape, -self.assembly)

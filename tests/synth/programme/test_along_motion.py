@@ -51,8 +51,8 @@ from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt, polished_and_judged
+from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.dyad_pairs import screen
-from grashof.synth.starts.finder import finder_for
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
 TORQUE = Objective(transmission=0, torque=1)

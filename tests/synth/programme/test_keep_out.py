@@ -16,7 +16,7 @@ from grashof.synth.programme.keep_out_motion import depth_on_the_way
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 
 AS_GIVEN = [[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]
 GOES_ON = [[0, -30], [0, 0], [5, 0], [5, 4], [30, 4], [30, -30]]  # the upper floor does not end at x = 9

@@ -14,7 +14,7 @@ from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.search.attempt import attempt
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 
 SetupOf = Callable[..., ScaledProblem]
 

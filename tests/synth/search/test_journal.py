@@ -23,6 +23,8 @@ KINDS = {
     "poses fitted": (Problem(task=CONVEYOR, requirements=Requirements(exact=False)), {"effort": 0.35}),
     "points met": (load("path-vertical-line"), {"starts": 30, "enough": 6}),
     "points fitted": (load("path-ellipse"), {"effort": 0.35}),
+    "pairs fitted": (load("function-dosing-slide"), {}),
+    "limit positions": (load("quick-return"), {}),
     "none": (
         Problem(task=PathTask(LINE), requirements=Requirements(link_length=(1.0, 12.0))),
         {"starts": 10, "enough": 2, "effort": 0.2},
@@ -39,7 +41,7 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended
 
 
-@pytest.mark.quick("poses fitted")
+@pytest.mark.quick("poses fitted", "pairs fitted", "limit positions")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_search_that_was_killed_goes_on_to_the_same_list(

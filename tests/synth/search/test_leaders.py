@@ -12,8 +12,8 @@ from grashof.synth import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.designs.ranking import BLOCK, _beaten, ranked
 from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Leaders
-from grashof.synth.starts.finder import finder_for
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from grashof.synth.designs.judging import judged, judged_again
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.chunks import chunk, which
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Chunk, Ledger, nearest_of_kinds
-from grashof.synth.starts.finder import finder_for
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,8 @@ from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import to_frame
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt, attempt
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.plain import plain, restored
-from grashof.synth.starts.finder import finder_for
 
 
 def back(value: object, name: str = "luggage") -> object:

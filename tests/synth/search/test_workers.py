@@ -26,6 +26,8 @@ CONVEYOR = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [30
 SEARCHES = {
     "poses met": (load("luggage"), {"starts": 40, "enough": 30, "seed": 5}),
     "poses fitted": (Problem(task=CONVEYOR, requirements=Requirements(exact=False)), {"effort": 0.35}),
+    "pairs fitted": (load("function-dosing-slide"), {}),
+    "limit positions": (load("quick-return"), {}),
     "none": (
         Problem(task=CONVEYOR, requirements=Requirements(link_length=(1.0, 60.0), exact=False)),
         {"effort": 0.2},
@@ -38,7 +40,7 @@ def table(result: Result) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.quick("poses fitted")
+@pytest.mark.quick("poses fitted", "pairs fitted", "limit positions")
 @pytest.mark.parametrize("kind", SEARCHES)
 def test_workers_change_no_byte(kind: str) -> None:
     problem, options = SEARCHES[kind]

@@ -11,7 +11,7 @@ from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Probl
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import GROUPS
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.finder import finder_for
+from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
 from grashof.synth.theory.distinct import apart, signature
 

@@ -8,13 +8,14 @@ from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
 from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
 from grashof.synth.starts.functions.aims import FunctionAims
-from grashof.synth.starts.functions.search import exact_functions
+from grashof.synth.starts.functions.pairs import exact_functions
 from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.functions.four_bar import FourBars
 
@@ -88,8 +89,8 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
         problem = random_function(seed, count, rotatability=rotatability, transmission_over=over)
         aims = FunctionAims.of(problem)
         judged = []
-        for one in exact_functions(aims, np.random.default_rng(seed), 30, 0.5):
-            linkage = aims.linkage(one.made, one.driver)
+        for made, driver in exact_functions(aims, np.random.default_rng(seed), 30, 0.5):
+            linkage = aims.linkage(made, driver)
             verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
             if verdict.ok:
                 judged.append(
@@ -97,9 +98,10 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
                 )
         # The worse ones as what is known: better ones must not be excluded.
         known = min(judged, default=0.0)
-        made = bounds_of_pairs(aims, Proving(gap=0.5, most_pairs=100_000 if count == 3 else 300_000), known)
-        assert made is not None
-        assert max(judged, default=0.0) <= made[0].upper + 1e-8
+        proving = Proving(gap=0.5, most_pairs=100_000 if count == 3 else 300_000)
+        bounds = bounds_of_pairs(ScaledProblem.of(problem), proving, known)
+        assert bounds is not None
+        assert max(judged, default=0.0) <= bounds.upper + 1e-8
 
 
 @pytest.mark.parametrize(("count", "seed"), [(3, 10), (4, 0), (4, 1)])
@@ -203,14 +205,12 @@ def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
     problem = random_function(seed, 3)
     aims = FunctionAims.of(problem)
     found = exact_functions(aims, np.random.default_rng(seed), 12, 0.5)
-    made = FourBars.joined([one.made for one in found])
+    made = FourBars.joined([one for one, _ in found])
     sense = Sense.of(aims, 1, 1)
     a, b = onto_couplers(sense.motion, *couplers_of(made, sense.begun))
     worth = []
-    for one in found:
-        verdict = verify(
-            aims.linkage(one.made, one.driver), problem.task, problem.requirements, problem=problem
-        )
+    for one, driver in found:
+        verdict = verify(aims.linkage(one, driver), problem.task, problem.requirements, problem=problem)
         assert verdict.ok
         worth.append(verdict.transmission_min_task)
     plane = PlaneOfCouplers.of(sense.motion, 20.0)

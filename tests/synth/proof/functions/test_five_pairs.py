@@ -7,8 +7,8 @@ from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, FunctionTask, Problem, Requirements
 from grashof.synth import Claim
+from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.functions.five_pairs import certified_functions
-from grashof.synth.starts.functions.aims import FunctionAims
 
 
 def function(turned: np.ndarray, output: np.ndarray) -> Problem:
@@ -27,7 +27,7 @@ MORE = [pytest.param(seed, marks=pytest.mark.study) for seed in range(8, 100)]
 
 @pytest.mark.parametrize("seed", [*range(8), *MORE])
 def test_every_coupler_of_random_functions_is_known(seed: int) -> None:
-    made = certified_functions(FunctionAims.of(random_function(seed)))
+    made = certified_functions(ScaledProblem.of(random_function(seed)))
     assert made is not None
     assert (made.complete, made.why) == (True, "")
     assert 1 <= made.within <= 3

@@ -11,7 +11,7 @@ from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim, prove
 from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.proof.poses.five_poses import Certified, certified_of
+from grashof.synth.proof.poses.five_poses import Certified, certified_poses
 from grashof.synth.theory.five_poses import five_pose_dyads
 
 REACH = 50.0
@@ -25,7 +25,7 @@ def random_poses(seed: int) -> Problem:
 
 
 def certified(problem: Problem) -> Certified:
-    made = certified_of(ScaledProblem.of(problem))
+    made = certified_poses(ScaledProblem.of(problem))
     assert made is not None
     return made
 

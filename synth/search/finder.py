@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from itertools import count
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,15 +11,17 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import located
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
-from grashof.synth.starts.functions.search import FunctionPairs
+from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
 from grashof.synth.starts.strokes.limit_positions import LimitPositions
+from grashof.synth.starts.whole_designs import WholeDesigns
 
 # The first that suits a problem is taken.
-KINDS = (
+KINDS: tuple[Any, ...] = (
+    Functions,
     LimitPositions,
     Parallelograms,
     FewPoses,
@@ -73,46 +74,36 @@ class Finder(Protocol):
         With `size` times the usual draws where that helps.
         """
 
-    def near(self, rng: np.random.Generator) -> Screened:
-        """Linkages that meet the requirements, or nearly do."""
-
-    def relaxed(self, rng: np.random.Generator) -> list[Start]:
+    def relaxed(self, rng: np.random.Generator) -> Sequence[Proposal]:
         """Starts that may miss what no linkage meets."""
 
     def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """Why theory, or what the rounds counted, leaves no design; empty where it may leave one."""
 
 
+class StartFinder(Finder, Protocol):
+    """One from whose starts a programme is solved."""
+
+    def near(self, rng: np.random.Generator) -> Screened:
+        """Linkages that meet the requirements, or nearly do."""
+
+
 def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Round]:
     """Rounds of a finder, as `made` makes them, until there is none or too many are barren."""
-    barren = 0
-    for number in count():
-        found = made(number)
-        if found is None:
-            return
+    barren, number = 0, 0
+    while (found := made(number)) is not None:
         barren = 0 if found.starts else barren + 1
         yield found
         if barren >= finder.patience:
             return
+        number += 1 + found.skip
 
 
-def finder_for(scaled: ScaledProblem) -> Finder:
+def finder_for(scaled: ScaledProblem) -> StartFinder | WholeDesigns:
     """The first kind of search that suits a problem."""
-    for kind in KINDS:
-        if kind.suits(scaled):
-            return kind(scaled)
-    return LeastSquares(scaled)
-
-
-class Begins(Protocol):
-    """What is known of a search before it begins."""
-
-    @property
-    def beginning(self) -> str:
-        """What the search begins with, for those who wait."""
-
-    def refuse(self) -> None:
-        """Raise `ProblemError` for targets that cannot be searched for."""
+    suitable = (kind(scaled) for kind in KINDS if kind.suits(scaled))
+    made: StartFinder | WholeDesigns = next(suitable, LeastSquares(scaled))
+    return made
 
 
 def refuse_unsearchable(problem: Problem) -> None:
@@ -124,16 +115,14 @@ def refuse_unsearchable(problem: Problem) -> None:
             raise error if len(problem.mechanism) == 1 else located(error, f"mechanism {kind}") from None
 
 
-def finder_of(problem: Problem) -> Begins:
+def finder_of(problem: Problem) -> Finder:
     """The kind of search that a problem begins with."""
-    if problem.task.has_output.any():
-        return FunctionPairs()
     return finder_for(ScaledProblem.of(asked_first(problem)))
 
 
 def asked_first(problem: Problem) -> Problem:
     """The problem that a search begins with: where targets may be missed, to meet all, or least squares."""
-    if problem.zones is None and problem.requirements.error_factor is None:
+    if not problem.task.in_plane or (problem.zones is None and problem.requirements.error_factor is None):
         return problem
     return problem.without_zones(
         # all are met where linkages that do can be expected

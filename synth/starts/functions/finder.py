@@ -1,0 +1,179 @@
+"""Functions: generators through all pairs, or of least error and a choice of those that transmit better."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from grashof.problems import Linkage, ProblemError
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.optima import Optima
+from grashof.synth.starts.functions.pairs import KNOWN, exact_functions
+from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.theory.functions.output import Generators
+
+LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg of transmission, that a choice is offered at
+FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # where an error is allowed
+WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
+SPARE = 10  # exact designs more than enough: the judge refuses some, and some are alike
+FINDS = "feasible finds"
+CLOSE = 8  # of the designs that miss a requirement
+
+
+@dataclass(frozen=True)
+class Functions(WholeDesigns):
+    """Linkages that generate a function.
+
+    Round 0 looks for those through all pairs, or those of least error; the others, a round for each angle,
+    for those of least error that transmit so much.
+    """
+
+    beginning: ClassVar[str] = "looking for linkages that generate the function"
+
+    @staticmethod
+    def suits(scaled: ScaledProblem) -> bool:
+        """An output is asked for."""
+        return bool(scaled.problem.task.has_output.any())
+
+    @cached_property
+    def aims(self) -> FunctionAims:
+        """What is searched for."""
+        return FunctionAims.of(self.scaled.problem)
+
+    @property
+    def exhausted(self) -> str:
+        """Why there are no others."""
+        if not self.aims.exact:
+            return "least errors were looked for at every transmission angle"
+        count, kind = len(self.aims.task), self.aims.kind
+        if count >= kind.EXACT:
+            have = "most sets of five have one, or three" if kind.EXACT == 5 else "most sets of four have one"
+            return f"all {self.aims.kinds} through the {count} pairs were looked at; {have}"
+        return f"no more distinct {self.aims.kinds} go through the pairs under these requirements"
+
+    @cached_property
+    def levels(self) -> tuple[float, ...]:
+        """Transmission angles that designs are made for, deg; closer where the objective decides."""
+        wanted = self.scaled.problem.requirements
+        if self.aims.exact:
+            return ()
+        if wanted.error_factor is None:
+            return tuple(level for level in LEVELS if level > wanted.transmission_min_deg + 1)
+        return tuple(level for level in FINE if level > wanted.transmission_min_deg)
+
+    @property
+    def rounds_a_pass(self) -> int:
+        """One, and one for each angle."""
+        return 1 + len(self.levels)
+
+    def glance(self, _rng: np.random.Generator) -> Round | None:
+        """A design of small error from few starts."""
+        if self.aims.exact or self.aims.obstacle:
+            return None
+        search = Optima.each(self.aims)[0]
+        found = [(optimum.made, search.driver) for optimum in search.glance()]
+        return Round(self._linkages(found), {}, size=0)
+
+    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """Exact designs at once; least errors angle by angle."""
+        if number >= self.rounds_a_pass or self.aims.obstacle:
+            return None
+        if self.aims.exact:
+            made = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)
+            return self._round(made, together=not self._in_order)
+        if number:
+            return self._round(self._at_level(self.levels[number - 1], rng))
+        found = [
+            (optimum, search.driver)
+            for search in Optima.each(self.aims)
+            for optimum in search.optima(search.starts(rng, size), few=False)
+        ]
+        best = min((optimum for optimum, _ in found), key=lambda each: each.error, default=None)
+        cosine = 1.0 if best is None else best.made.worst_cosine(self.aims.limits.span)[0]
+        needless = sum(level <= np.degrees(np.arccos(cosine)) for level in self.levels)
+        return self._round([(optimum.made, driver) for optimum, driver in found], skip=needless)
+
+    def _at_level(self, level: float, rng: np.random.Generator) -> list[tuple[Generators, int]]:
+        """Some of the least errors of generators that transmit so much, deg."""
+        begun = list[tuple[Optima, Generators, float]]()
+        for search in Optima.each(self.aims, float(np.radians(level))):
+            starts = search.starts(rng, 1)
+            begun.append((search, starts, search.aim().error(starts[:1]) if len(starts) else np.inf))
+        least = min(error for *_, error in begun)
+        hopeful = [(search, starts) for search, starts, error in begun if error <= WORSE * least]
+        return [
+            (optimum.made, search.driver)
+            for search, starts in hopeful
+            for optimum in search.optima(starts, few=True)
+        ]
+
+    def onward(self, designs: Sequence[Candidate]) -> list[Linkage]:
+        """The least errors that designs for some transmission angle lead to; the best to all its digits."""
+        if self.aims.exact:
+            return []
+        found = [
+            (optimum, search)
+            for search, made in self._again(designs)
+            for optimum in search.optima(made, few=True)
+        ]
+        found.sort(key=lambda each: each[0].error)
+        settled = [(search.settled(optimum), search) for optimum, search in found[:1]]
+        return self._linkages([(optimum.made, search.driver) for optimum, search in found + settled])
+
+    def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
+        """By senses of output and driver the generators that designs are."""
+        every = Optima.each(self.aims)
+        mine = list[list[Generators]]([] for _ in every)
+        for one in designs:
+            driver = one.verdict.direction
+            made = self.aims.generator(one.linkage, driver, float(one.verdict.theta2[0]))
+            fit = [
+                search.aim().error(made) if self.aims.mirrored or driver == search.driver else np.inf
+                for search in every
+            ]
+            mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(made)
+        for search, several in zip(every, mine, strict=True):
+            if several:
+                yield search, self.aims.kind.joined(several)
+
+    @property
+    def _in_order(self) -> bool:
+        """Whether exact designs come in the order of what decides."""
+        known = KNOWN if self.scaled.own_objective is None else set[str]()
+        return all(goal.key in known for goal, _ in self.scaled.problem.goals)
+
+    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
+        """Of exact ones the few most promising; of least errors those at every transmission angle."""
+        del asked, key
+        numbers = range(self.rounds_a_pass)
+        made = [self.round(number, CLOSE, rng, 1) for number in numbers]
+        return [each for found in made if found is not None for each in found.starts]
+
+    def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
+        """Limits that contradict each other; pairs that no linkage goes through."""
+        if self.aims.obstacle or not self.aims.exact or counts.get(FINDS):
+            return self.aims.obstacle
+        pairs = f"the {len(self.aims.task)} pairs on one branch under these requirements"
+        return f"no {self.aims.kinds[:-1]} goes through {pairs}"
+
+    def _round(
+        self, made: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False
+    ) -> Round:
+        linkages = self._linkages(made)
+        return Round(linkages, {FINDS: len(linkages)}, skip=skip, together=together)
+
+    def _linkages(self, made: Sequence[tuple[Generators, int]]) -> list[Linkage]:
+        """Generators as linkages, but for pivots that coincide and lengths beyond the floats."""
+        linkages = list[Linkage]()
+        for one, driver in made:
+            with suppress(ProblemError):
+                linkages.append(self.aims.linkage(one, driver))
+        return linkages

@@ -1,0 +1,64 @@
+"""What designs of a function are said to be best at, and which relaxations a list without designs names."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grashof import synthesize
+from grashof.analysis import Design, verify
+from grashof.analysis.judge.planted import planted_function
+from grashof.problems import FunctionTask, Problem, Requirements
+from grashof.synth import Candidate
+from grashof.synth.results.choice import merit
+
+
+def test_errors_of_rounding_are_all_the_least() -> None:
+    task, linkage, _ = planted_function(np.random.default_rng(1), 5)
+    problem = Problem(task=task, requirements=Requirements(exact=False))
+    verdict = verify(linkage, task, problem.requirements)
+
+    def name(error: float, least: float) -> str:
+        design = Candidate(linkage, replace(verdict, square=error**2 * len(task)), problem, 0, 0)
+        assert abs(design.error(problem) - error) < 1e-12 * error
+        return merit(problem, design, least)
+
+    assert name(3e-16, 1e-16) == name(5e-10, 1e-16) == "least error"
+    assert name(2e-4, 1.9e-4) == name(2e-9, 1e-16) == "least error nearby"
+    assert name(2e-4, 1.9999e-4) == "least error"
+
+
+SIX = FunctionTask.from_degrees([0, 20, 45, 70, 90, 110], [0, 5, 12, 22, 27, 26])
+FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
+
+
+@pytest.mark.parametrize(
+    ("task", "wanted", "key"),
+    [
+        (SIX, {"structural_error_max_deg": (0.0, 0.01)}, "structural_error_max_deg"),
+        (FIVE, {"transmission_min_deg": 40.0}, "transmission_min_deg"),
+        (FIVE, {"link_ratio_max": 1.5}, "link_ratio_max"),
+    ],
+)
+def test_the_relaxation_that_is_named_would_do(task: FunctionTask, wanted: dict[str, Any], key: str) -> None:
+    problem = Problem(task=task, requirements=Requirements(**wanted))
+    found = synthesize(problem)
+    assert not found.candidates
+    assert f"{key} " in found.note
+    said = found.note.split(f"{key} ")[1].removeprefix("up to ")
+    value = float(said.split()[0])
+    ranges = isinstance(wanted[key], tuple)
+    looser = replace(problem.requirements, **{key: (0.0, value) if ranges else value})
+    assert synthesize(replace(problem, requirements=looser)).best.verdict.ok
+
+
+def long_coupler(design: Design) -> Any:
+    return 20.0 - design.r3
+
+
+def test_a_users_own_constraint_is_relaxed() -> None:
+    found = synthesize(Problem(task=FIVE), constraints=[long_coupler])
+    assert not found.candidates
+    allowed = float(found.note.split("constraint long_coupler up to ")[1].split()[0])
+    assert found.nearest[0].linkage.r3 + allowed >= 20.0  # type: ignore[attr-defined]
