@@ -115,9 +115,9 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
     same = design.verdict.theta2.shape == (len(scaled.problem.task),)
     verdict = design.verdict if same else judged_again(scaled, design).verdict
     start = Start.of_linkage(scaled, design.linkage, verdict)
-    start = replace(start, settled=scaled.exact, stay=scaled.exact)
+    start = start.under(settled=scaled.exact, stay=scaled.exact)
     if np.isfinite(most_error):
-        traded = attempt(scaled, replace(start, stay=True, most_error=most_error), number, cognates=False)
+        traded = attempt(scaled, start.under(stay=True, most_error=most_error), number, cognates=False)
         if traded.verified:
             return replace(traded.verified[0], best_at=design.best_at, family=design.family)
     found = attempt(scaled, start, number, cognates=False).candidate

@@ -36,7 +36,7 @@ def polished_solve(scaled: ScaledProblem, start: Start, solve: Solve) -> Solve:
         points = np.array(solve.points)
         dyads = polish(scaled.motion, Dyads(moving=points[2:4], ground=points[:2]))
         return replace(solve, points=(*dyads.ground, *dyads.moving, points[4]))
-    polished = None if start.bounded else _on_targets(scaled, start, solve)
+    polished = None if start.terms.bounded else _on_targets(scaled, start, solve)
     if polished is None:
         return solve
     return replace(solve, points=tuple(polished.points), body_angle=polished.body_angle)

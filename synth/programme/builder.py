@@ -70,7 +70,7 @@ class Builder:
     def require(self, parts: tuple[str, ...], *expressions: ca.SX) -> None:
         """Rows that must not be negative, but by the slack where a start gives one of the parts up."""
         if self.slack is not None:
-            give = self.slack * self.parameter(lambda _, start: float(start.gives(*parts)))
+            give = self.slack * self.parameter(lambda _, start: float(start.terms.gives(*parts)))
             expressions = tuple(expression + give for expression in expressions)
         self.row(*expressions)
 
@@ -78,12 +78,12 @@ class Builder:
         """Rows with slack in place of bounds that a start gives up."""
         if self.slack is not None:
             rows = (expression + self.slack for expression in expressions)
-            self.row(*rows, limits=lambda _, start: NONNEGATIVE if start.gives(*parts) else FREE)
+            self.row(*rows, limits=lambda _, start: NONNEGATIVE if start.terms.gives(*parts) else FREE)
 
     def bound(self, leaf: ca.SX, limits: Fill, *, gives: tuple[str, ...] = ()) -> None:
         """Limits of an unknown besides its own, unless a start gives one of the parts up."""
         hashes = [each.element_hash() for each in ca.vertsplit(self.unknowns)]
-        held: Fill = lambda scaled, start: FREE if start.gives(*gives) else limits(scaled, start)  # noqa: E731
+        held: Fill = lambda scaled, start: FREE if start.terms.gives(*gives) else limits(scaled, start)  # noqa: E731
         self._bounds.append((hashes.index(leaf.element_hash()), held))
 
     @property

@@ -211,7 +211,7 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
 def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
     """The squares as a whole, or each target's, are bounded, as shares of their bounds."""
     if form.most_error:
-        most = build.parameter(lambda _, start: min(start.most_error, FAR) ** 2 * form.targets)
+        most = build.parameter(lambda _, start: min(start.terms.most_error, FAR) ** 2 * form.targets)
         build.row(1 - square(form, x, places, targets) / most)
     if not form.zoned:
         return
@@ -352,7 +352,7 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
     """How far each target may be missed, drawn in a little: sizes, then rad."""
     zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
-    kept = 1 - ZONE_INSET - start.asks("within")
+    kept = 1 - ZONE_INSET - start.terms.asks("within")
     return (np.minimum(zones, MOST_ZONE) * kept)[:, list(start.visit)].ravel()
 
 

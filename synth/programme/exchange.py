@@ -31,8 +31,8 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
         found = {key: overlooked(scaled, key, *ways, bound) for key, bound in solved.peaks.items()}
         if not any(found.values()):
             break
-        added = {key: (*peaks, *start.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}
-        start = replace(begun_from(start, solved), peaks_at=added)
+        added = {key: (*peaks, *start.terms.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}
+        start = begun_from(start, solved).under(peaks_at=added)
         again = solve(scaled, start)
         if again.status not in SOLVED:
             break

@@ -59,7 +59,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
 def _range(name: str, part: Part) -> Fill:
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
         low, high = range_of(scaled.wanted, name, part)
-        more, of_ratio = start.asks(name), LIMITS[name].quantity.unit is Unit.RATIO
+        more, of_ratio = start.terms.asks(name), LIMITS[name].quantity.unit is Unit.RATIO
         return near((low + more * (low if of_ratio else 1.0), high - more * (high if of_ratio else 1.0)))
 
     return limits
@@ -111,7 +111,9 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
             (part,) = form.kind.formulas[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
     if "size" in form.limited:
-        most = build.parameter(lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.asks("size"))
+        most = build.parameter(
+            lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.terms.asks("size")
+        )
         build.require(("size",), most - size)
     for key in form.along:
         value = value_of(key, _peak(build, form, x, places, key))
@@ -145,7 +147,7 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
     ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
-    added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.peaks_at.get(key, ())), ADDED))
+    added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.terms.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
@@ -189,7 +191,11 @@ def _share(form: Form, key: str) -> Fill:
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
-        return start.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in form.kind.formulas else 1.0)
+        return (
+            start.terms.goals[key]
+            * unit
+            / (scaled.scale(QUANTITIES[key]) if key in form.kind.formulas else 1.0)
+        )
 
     def share(scaled: ScaledProblem, start: Start) -> float:
         return counted(scaled, start, key) / sum(counted(scaled, start, each) for each in form.goals)

@@ -59,8 +59,8 @@ class Solve:
 @one_at_a_time
 def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> Solve:
     """Run Ipopt from one start, by default with more iterations than usual where the error is bounded."""
-    patience = PATIENCE[scaled.bounded] if start.bounded else MOST_ITERATIONS
-    if start.stay and not scaled.constraints:
+    patience = PATIENCE[scaled.bounded] if start.terms.bounded else MOST_ITERATIONS
+    if start.terms.stay and not scaled.constraints:
         patience = MENDING
     form = Form.of(scaled, start)
     most = patience if max_iter is None else max_iter

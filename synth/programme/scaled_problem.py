@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.programme.frame import Frame
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR, kind_of
+from grashof.synth.programme.kinds import kind_of
 from grashof.synth.theory.burmester import Displacements
 
 
@@ -32,11 +32,11 @@ class ScaledProblem:
     timing: FloatArray  # (N,); driver rotation from the first target, in either sense; zero where free
     wanted: Requirements  # resolved, in the frame
     exact: bool  # every target is met; otherwise least squares
+    kind: Kind  # the first that the problem asks for
     constraints: tuple[Constraint, ...] = ()  # the user's own
     zones: FloatArray | None = None  # (2, N); how far the position and the angle of each target may be missed
     own_objective: OwnObjective | None = None  # the user's own in place of the problem's
     of_use: float = 0.0  # least squares: designs up to this error are of use, be they far from the best
-    kind: Kind = FOUR_BAR  # the first that the problem asks for
 
     @classmethod
     def of(

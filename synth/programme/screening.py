@@ -15,7 +15,6 @@ from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.formulas import Part, View, parts_of, range_of
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 
 ROUNDING = 1e-10  # sizes, rad: by so much no limit is overstepped
 # The requirements that can stand in the way, named by their fields.
@@ -37,7 +36,7 @@ class Screened:
     coupler: ComplexArray  # (n, N), sizes; from A to B at every target, in the order of the targets
     error: FloatArray  # (n,), sizes; root mean square distance from the targets
     body_angle: FloatArray  # (n,), rad; coupler to body, where the first pose does not fix it; else zero
-    kind: Kind = FOUR_BAR
+    kind: Kind
 
     def __len__(self) -> int:
         return len(self.points)
@@ -85,7 +84,7 @@ class Configurations:
     visit: IntArray
     theta2: FloatArray  # (n, N), rad, in the order of visit, unwrapped along the motion
     direction: FloatArray
-    kind: Kind = FOUR_BAR
+    kind: Kind
 
 
 class Many(View):
@@ -105,7 +104,8 @@ class Many(View):
         b: ComplexArray | None = None,
         theta2: FloatArray | None = None,
         body_turn: FloatArray | None = None,
-        kind: Kind = FOUR_BAR,
+        *,
+        kind: Kind,
     ) -> None:
         self._p, self.kind = p, kind
         if o2 is not None and a is not None:
@@ -175,7 +175,7 @@ def judge(
     coupler = found.b - found.a
     if first_turn is None:
         first_turn = np.angle(coupler[:, 0]) + (0.0 if body_angle is None else body_angle)
-    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn, found.kind)
+    view = Many(p, found.o2, found.a, found.o4, found.b, found.theta2, first_turn, kind=found.kind)
     sine = view.sine
     with np.errstate(divide="ignore", invalid="ignore"):
         assembly = np.where(np.sum(np.sign(sine), axis=1) >= 0, 1.0, -1.0)
@@ -222,7 +222,7 @@ def dyad_violations(
     places: ComplexArray,
     p: ComplexArray,
     wanted: Requirements,
-    kind: Kind = FOUR_BAR,
+    kind: Kind,
 ) -> FloatArray:
     """What dyads, driver ("o2") or driven ("o4"), violate by themselves, (n, len(GROUPS)).
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -13,11 +13,47 @@ from grashof.problems import Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.loop.dyad import Sizes
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
 
 UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint can relax
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What a solve is asked, besides the requirements."""
+
+    objective: Objective | None = field(default_factory=Objective)  # what is made best; None: the user's own
+    radius: float = np.inf  # how far it may move each coordinate of the pivots
+    stay: bool = False  # move no farther than the requirements make it, whatever the objective
+    settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
+    # Requirements (fields), or parts ("o2.x"), that it may miss, coming as near as it can; all others hold.
+    relaxed: tuple[str, ...] = ()
+    # Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
+    peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    # By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
+    more: Mapping[str, float] = field(default_factory=dict)
+    loose: bool = False  # driver angles need not be where the judge will find them
+    most_error: float = np.inf  # root mean square error up to which the objective decides
+    zoned: bool = False  # the objective decides as long as each target is missed by no more than it may
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the error is bounded, and the objective decides."""
+        return self.zoned or bool(np.isfinite(self.most_error))
+
+    @property
+    def goals(self) -> Mapping[str, float]:
+        """Weights of the quantities that it makes best; none where the user's own objective is."""
+        return {} if self.objective is None else self.objective.goals
+
+    def asks(self, field: str) -> float:
+        """By how much more than required what a field limits is bounded."""
+        return self.more.get(field, 0.0)
+
+    def gives(self, *parts: str) -> bool:
+        """Whether a requirement, or a part of it, may be missed."""
+        return any(part in self.relaxed for part in parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,22 +74,10 @@ class Start:
     theta3: tuple[float, ...]  # in that order, each near the last
     direction: int
     assembly: int
-    objective: Objective | None = field(default_factory=Objective)  # what is made best; None: the user's own
+    kind: Kind
     body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
-    radius: float = np.inf  # how far it may move each coordinate of the pivots
-    stay: bool = False  # move no farther than the requirements make it, whatever the objective
-    settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
-    # Requirements (fields), or parts ("o2.x"), that it may miss, coming as near as it can; all others hold.
-    relaxed: tuple[str, ...] = ()
-    # Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
-    peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     promise: float = 0.0  # root mean square error of a least-squares search here, with what limits add
-    # By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
-    more: Mapping[str, float] = field(default_factory=dict)
-    loose: bool = False  # driver angles need not be where the judge will find them
-    most_error: float = np.inf  # root mean square error up to which the objective decides
-    zoned: bool = False  # the objective decides as long as each target is missed by no more than it may
-    kind: Kind = FOUR_BAR
+    terms: Terms = field(default_factory=Terms)
 
     @classmethod
     def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:
@@ -75,7 +99,7 @@ class Start:
             theta3=tuple(np.unwrap(state.theta3[visit]).tolist()),
             direction=verdict.direction,
             assembly=int(linkage.assembly),
-            objective=scaled.objective,
+            terms=Terms(scaled.objective),
             body_angle=float(linkage.body_angle),
             kind=scaled.kind,
         )
@@ -88,24 +112,14 @@ class Start:
         moved = replace(self, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle)
         return replace(moved, theta2=tuple(theta2), theta3=tuple(theta3))
 
+    def under(self, **terms: Any) -> Start:
+        """The same under other terms, by name."""
+        return replace(self, terms=replace(self.terms, **terms))
+
     @property
     def points(self) -> ComplexArray:
         """O2, O4, and A, B, P at the first target, shape (5,), sizes."""
         return np.array([self.o2, self.o4, self.a, self.b, self.p])
-
-    @property
-    def bounded(self) -> bool:
-        """Whether the error is bounded, and the objective decides."""
-        return self.zoned or bool(np.isfinite(self.most_error))
-
-    @property
-    def goals(self) -> Mapping[str, float]:
-        """Weights of the quantities that it makes best; none where the user's own objective is."""
-        return {} if self.objective is None else self.objective.goals
-
-    def asks(self, field: str) -> float:
-        """By how much more than required what a field limits is bounded."""
-        return self.more.get(field, 0.0)
 
     @property
     def theta1(self) -> float:
@@ -137,10 +151,6 @@ class Start:
         """Whether the loop closes all round the turn."""
         return bool(self.kind.dyad.turns_fully(Sizes(*self.lengths)))
 
-    def gives(self, *parts: str) -> bool:
-        """Whether a requirement, or a part of it, may be missed."""
-        return any(part in self.relaxed for part in parts)
-
     @property
     def half_turns(self) -> tuple[int, int]:
         """In which half turn from the ground line, counted in pi, the driver starts and ends."""
@@ -164,7 +174,7 @@ class Start:
             theta3=tuple(float(angle) for angle in np.unwrap(np.angle(linkages.coupler[index][visit]))),
             direction=int(linkages.direction[index]),
             assembly=int(linkages.assembly[index]),
-            objective=objective,
+            terms=Terms(objective),
             body_angle=float(linkages.body_angle[index]),
             kind=linkages.kind,
         )

@@ -66,7 +66,7 @@ class Form:
     def of(cls, scaled: ScaledProblem, start: Start) -> Form:
         """The form that a problem and a start call for."""
         wanted, closed = scaled.wanted, scaled.closed
-        plain = start.stay or bool(start.relaxed) or not (scaled.exact or start.bounded)
+        plain = start.terms.stay or bool(start.terms.relaxed) or not (scaled.exact or start.terms.bounded)
         made = cls(
             kind=scaled.kind,
             targets=len(start.visit),
@@ -79,18 +79,18 @@ class Form:
             same_branch=wanted.same_branch,
             over_task=wanted.transmission_over is TransmissionOver.TASK and not closed,
             limited=_limited(scaled, start),
-            goals=() if plain else tuple(start.goals),
-            own_goal=not plain and start.objective is None,
+            goals=() if plain else tuple(start.terms.goals),
+            own_goal=not plain and start.terms.objective is None,
             grid=_grid_size(start, closed),
             burden=Burden.of(scaled.problem),
             motor=drive_of(scaled.problem)[0],
             closed=closed,
             keep_out=points_held(scaled),
-            stay=start.stay,
-            elastic=bool(start.relaxed),
+            stay=start.terms.stay,
+            elastic=bool(start.terms.relaxed),
             nearest=_nearest(scaled, start),
-            most_error=bool(np.isfinite(start.most_error)),
-            zoned=start.zoned,
+            most_error=bool(np.isfinite(start.terms.most_error)),
+            zoned=start.terms.zoned,
         )
         # One programme for motions short and long, and whatever acts.
         if not made.along:
@@ -108,7 +108,7 @@ def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
     wanted, names = scaled.wanted, list(scaled.wanted.limited)
     low = min(limits[0] for limits in wanted.link_lengths)
     high = max(limits[1] for limits in wanted.link_lengths)
-    if not start.relaxed and high <= low * wanted.link_ratio_max:
+    if not start.terms.relaxed and high <= low * wanted.link_ratio_max:
         names.remove("link_ratio_max")
     return tuple(names)
 
@@ -122,7 +122,7 @@ def _grid_size(start: Start, closed: bool) -> int:
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
-    if scaled.exact or start.relaxed or start.loose:
+    if scaled.exact or start.terms.relaxed or start.terms.loose:
         return (False,) * count
     moving = (
         set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground) if wanted.keep_out else set()
@@ -131,13 +131,13 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
     )
-    zoned = start.zoned and (scaled.has_angles or scaled.timed)
-    own = scaled.constraints or (start.bounded and start.objective is None)
+    zoned = start.terms.zoned and (scaled.has_angles or scaled.timed)
+    own = scaled.constraints or (start.terms.bounded and start.terms.objective is None)
     every = bool(placed or moving or own or zoned)
     if scaled.timed:
         return (every and wanted.theta2_start_deg is None,) * count
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
-    ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.bounded))
+    ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.terms.bounded))
     nearest = np.full(count, every)
     nearest[[0, -1]] |= ends
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is given

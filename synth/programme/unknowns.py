@@ -107,7 +107,9 @@ def _pivot(kind: Kind, name: str) -> tuple[Fill, Fill]:
 
     def limits(_: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
         middle = interleaved(getattr(start, name))
-        return np.maximum(far[0], middle - start.radius), np.minimum(far[1], middle + start.radius)
+        return np.maximum(far[0], middle - start.terms.radius), np.minimum(
+            far[1], middle + start.terms.radius
+        )
 
     return guess, limits
 
@@ -116,15 +118,15 @@ def _first_fixed(scaled: ScaledProblem, start: Start) -> tuple[FloatArray, Float
     """Driver angles are free, but at the first target where it is required."""
     low, high = np.full(len(start.visit), -LIFTED), np.full(len(start.visit), LIFTED)
     required = scaled.wanted.theta2_start_deg
-    if required is not None and not start.gives("theta2_start_deg"):
+    if required is not None and not start.terms.gives("theta2_start_deg"):
         first = start.visit.index(0)
         low[first] = high[first] = lifted(np.radians(required), start.theta2[first])
     return low, high
 
 
 def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
-    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.asks("transmission_min_deg")
-    least = 0.0 if start.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
+    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.terms.asks("transmission_min_deg")
+    least = 0.0 if start.terms.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
     return max(LEAST_TRANSMISSION, least), np.pi / 2
 
 

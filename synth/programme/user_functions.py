@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
@@ -129,7 +129,7 @@ def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Propos
     return [
         start
         if isinstance(start, Linkage) or _met(scaled, start)
-        else replace(start, radius=np.inf, stay=scaled.exact, settled=False)
+        else start.under(radius=np.inf, stay=scaled.exact, settled=False)
         for start in starts
     ]
 
@@ -139,7 +139,7 @@ def relaxed_by_own(scaled: ScaledProblem, starts: Sequence[Proposal]) -> list[St
     if not scaled.constraints:
         return []
     return [
-        replace(start, radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
+        start.under(radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
         for start in starts[:NEAREST]
         if not isinstance(start, Linkage)
     ]

@@ -42,7 +42,8 @@ def bounds_after(
     `before` is what was proven before it, and `designs` are what it found.
     """
     best = max((one.values[quantity_of(scaled.problem).key] for one in designs), default=0.0)
-    if pairs := bounds_of_pairs(scaled, proving, float(best)):
+    pairs = bounds_of_pairs(scaled, proving, float(best))
+    if pairs is not None:
         return pairs
     if not proving.minutes or (before is not None and before.closed):
         return before
@@ -51,4 +52,5 @@ def bounds_after(
 
 def certified_of(scaled: ScaledProblem) -> Certified | None:
     """All dyads of five whole poses or five pairs of a function; None of other problems."""
-    return certified_poses(scaled) or certified_functions(scaled)
+    found = (each(scaled) for each in (certified_poses, certified_functions))
+    return next((dyads for dyads in found if dyads is not None), None)

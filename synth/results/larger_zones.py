@@ -42,7 +42,7 @@ def nearest_zones(
     if zones is None or not starts or run.ended():
         return made, solved
     need = min((_need(problem, one) for one in known), key=np.max, default=np.ones(2))
-    nearest = tried(HALF, [replace(start, relaxed=("within",)) for start in starts], need)
+    nearest = tried(HALF, [start.under(relaxed=("within",)) for start in starts], need)
     share, last = CLOSER
     # smaller as long as a design is found, by less where none is
     while nearest is not None and share <= last and not run.ended():
@@ -50,7 +50,7 @@ def nearest_zones(
         if need.max() <= 1:
             break
         like = starts[0]
-        here = started_at(scaled, nearest, like.objective, most_error=like.most_error, zoned=True)
+        here = started_at(scaled, nearest, like.terms.objective, most_error=like.terms.most_error, zoned=True)
         nearest = tried(share, [*starts, here], need) or nearest
         if _need(problem, nearest).max() > (1 + share) / 2 * need.max():
             share = float(np.sqrt(share))

@@ -98,14 +98,14 @@ def _candidates(
         return _judged(scaled, loose, finder.closest_to(scaled, key, rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)
-    as_they_are = [replace(start, settled=True) for start in starts]
+    as_they_are = [start.under(settled=True) for start in starts]
     if not finder.freedom:
         return _judged(scaled, loose, as_they_are, run)
     found = _judged(scaled, loose, as_they_are[:2], run)
     if key not in UNSMOOTH:
         whole, *sides = _parts(scaled, key)
-        eased = [replace(start, relaxed=whole) for start in starts]
-        eased += [replace(start, relaxed=side) for side in sides for start in starts[: SOLVES // 2]]
+        eased = [start.under(relaxed=whole) for start in starts]
+        eased += [start.under(relaxed=side) for side in sides for start in starts[: SOLVES // 2]]
         found += _judged(scaled, scaled, eased, run)
     return found
 
@@ -157,7 +157,9 @@ def rejudged(scaled: ScaledProblem, linkages: Screened) -> Screened:
     at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * counted)
     at_b = at_a + linkages.coupler
     at_p = at_a + ((p - a) / (b - a))[:, None] * linkages.coupler
-    found = Configurations(o2, o4, at_a, at_b, linkages.visit, linkages.theta2, linkages.direction)
+    found = Configurations(
+        o2, o4, at_a, at_b, linkages.visit, linkages.theta2, linkages.direction, linkages.kind
+    )
     violations = violations_apart(found, p, at_p, scaled.wanted)
     first_turn = None if scaled.motion is None else np.full(len(linkages), scaled.motion.first_turn)
     judged = judge(found, p, linkages.error, violations, scaled.wanted, linkages.body_angle, first_turn)

@@ -84,7 +84,7 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
 
 def _settled(scaled: ScaledProblem, candidate: Candidate) -> Start:
     """A start at a design that is nearly exact: it is brought onto the targets, not solved."""
-    return replace(Start.of_linkage(scaled, candidate.linkage, candidate.verdict), settled=True)
+    return Start.of_linkage(scaled, candidate.linkage, candidate.verdict).under(settled=True)
 
 
 def _exact(problem: Problem) -> float:
@@ -113,7 +113,7 @@ def started_at(
 ) -> Start:
     """A start at a design, from which the objective decides under a bound of the error."""
     start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
-    return replace(start, objective=objective, most_error=most_error, zoned=zoned)
+    return start.under(objective=objective, most_error=most_error, zoned=zoned)
 
 
 def seeds_of(problem: Problem, found: Sequence[Candidate], most: float, count: int) -> tuple[Candidate, ...]:

@@ -80,15 +80,15 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
         return Attempt(AS_IT_IS, judged_linkage(scaled, start, start=number, iterations=0))
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
-    if start.settled or not scaled.has_targets or not set(UNSMOOTH).isdisjoint(start.relaxed):
+    if start.terms.settled or not scaled.has_targets or not set(UNSMOOTH).isdisjoint(start.terms.relaxed):
         points = (start.o2, start.o4, start.a, start.b, start.p)
         as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, AS_IT_IS, 0)
         done = polished_and_judged(scaled, start, as_it_is, number)
-    may_move = scaled.has_targets and start.settled and finder.freedom
+    may_move = scaled.has_targets and start.terms.settled and finder.freedom
     if done is None or (may_move and not done.verified):
         done = _solved(scaled, start, number)
     if cognates and done.verified and finder.cognates:
-        done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.most_error))
+        done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.terms.most_error))
     return done
 
 
@@ -96,14 +96,14 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     """Solve; again, asking for more, as long as one thing alone is missed by a little."""
     solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not asked_to_stop():
-        start = replace(start, loose=True)
+        start = start.under(loose=True)
         solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
     for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
         if not more or asked_to_stop():
             break
-        start = replace(begun_from(start, solve), more={**start.more, **more})
+        start = begun_from(start, solve).under(more={**start.terms.more, **more})
         again = solve_by_exchange(scaled, start)
         if again.status not in SOLVED:
             break
@@ -117,13 +117,13 @@ def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> d
     missed = {defect.requirement for defect in candidate.verdict.defects} if candidate is not None else set()
     if candidate is None or not missed:
         return {}
-    if missed <= MISSED and start.zoned and not start.relaxed:
+    if missed <= MISSED and start.terms.zoned and not start.terms.relaxed:
         field, short, little = "within", max(shares(scaled.problem, candidate.verdict)) - 1, OF_ZONE
     else:
         field, short, little = min(missed), max(each.miss for each in candidate.verdict.defects), A_LITTLE
-    if len(missed - MISSED) > 1 or field not in ASKED or start.gives(field) or not 0 < short < little:
+    if len(missed - MISSED) > 1 or field not in ASKED or start.terms.gives(field) or not 0 < short < little:
         return {}
-    return {field: start.asks(field) + BEYOND * short}
+    return {field: start.terms.asks(field) + BEYOND * short}
 
 
 def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:
@@ -131,7 +131,11 @@ def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, numbe
     done = Attempt(solve.status, None)
     if not np.isfinite(solve.points).all():
         return done
-    about: dict[str, Any] = {"start": number, "iterations": solve.iterations, "most_error": start.most_error}
+    about: dict[str, Any] = {
+        "start": number,
+        "iterations": solve.iterations,
+        "most_error": start.terms.most_error,
+    }
     for version in (polished_solve(scaled, start, solve), solve):
         points = np.array(version.points)
         done = replace(done, candidate=judged(scaled, points, start.assembly, version.body_angle, **about))

@@ -19,7 +19,7 @@ from grashof.problems import Cylinder, Linkage, Objective, Problem
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.kinds import kind_of
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Round, Start, Terms
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.ledger import Chunk
 from grashof.synth.search.tally import Tally
@@ -28,7 +28,7 @@ from grashof.synth.search.tally import Tally
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, Objective, Round, Start, Tally,
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, Objective, Round, Start, Tally, Terms,
         Verdict,
     )
 }  # fmt: skip

@@ -29,7 +29,7 @@ def are_attempts(scaled: ScaledProblem, starts: Sequence[Proposal], result: obje
     """Whether a result is an attempt for each start, with the judge's verdict on every design."""
     if not isinstance(result, list) or len(result) != len(starts):
         return False
-    allowed = [np.inf if isinstance(start, Linkage) else start.most_error for start in starts]
+    allowed = [np.inf if isinstance(start, Linkage) else start.terms.most_error for start in starts]
     return all(
         isinstance(one, Attempt)
         and (one.candidate is None or _is_true(scaled, one.candidate, most))

@@ -14,7 +14,6 @@ from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.programme.formulas import Part, parts_of, range_of
 from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.kinds import FOUR_BAR
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
@@ -30,8 +29,8 @@ class SearchTargets:
     turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
     timing: FloatArray  # (N,), driver rotation from the first point; all zero where it is free
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
+    kind: Kind
     closed: bool = False  # the task motion is a whole turn
-    kind: Kind = FOUR_BAR
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 

@@ -96,7 +96,7 @@ def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator)
     if len(starts) < enough:
         starts += mended_starts(scaled, linkages, enough)
     settled = not has_family(scaled)  # without freedom the linkage is the design already
-    starts = [replace(start, settled=settled) for start in starts]
+    starts = [start.under(settled=settled) for start in starts]
     return Round(starts, {"feasible finds": len(feasible)})
 
 

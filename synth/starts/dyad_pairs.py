@@ -12,6 +12,7 @@ import numpy as np
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.driver_angles import as_they_come, follow
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.screening import (
     GROUPS,
     Configurations,
@@ -87,7 +88,7 @@ def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
     p = np.full(len(dyads), body)
     sides = []
     for pivot in ("o2", "o4"):
-        violations = dyad_violations(pivot, dyads.ground, places, p, wanted)
+        violations = dyad_violations(pivot, dyads.ground, places, p, wanted, FOUR_BAR)
         if pivot == "o2":
             violations[:, GROUPS.index("order")] = disorder
             violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", motion.apply(p[:1]), wanted)
@@ -144,6 +145,7 @@ def _judged(
         driver.visit,
         driver.theta2,
         driver.direction,
+        FOUR_BAR,
     )
     p, exact, turned = (np.full(len(driver), each) for each in (body, 0.0, motion.first_turn))
     return judge(found, p, exact, driver.violations + driven.violations, wanted, first_turn=turned)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import zip_longest
 from typing import ClassVar
 
@@ -178,7 +178,7 @@ class DyadPairs(WholePoses, ABC):
     def relaxed(self, rng: np.random.Generator) -> list[Start]:
         """Starts that may miss what no linkage meets."""
         starts = relaxed_starts(self.scaled, self.near_pairs(self.dyads(rng)))
-        return [replace(start, settled=not self.freedom) for start in starts]
+        return [start.under(settled=not self.freedom) for start in starts]
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +259,7 @@ class ManyPoses(DyadPairs):
         pairs = self.pairs(dyads)
         starts = starts_of(self.scaled, pairs, best_first(merits(self.scaled, pairs)))
         counts = {"feasible finds": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
-        return Round([replace(start, settled=True) for start in starts], counts)
+        return Round([start.under(settled=True) for start in starts], counts)
 
     def dyads(self, rng: np.random.Generator) -> Dyads:
         """Dyads of five of the poses that meet all of them; of several fives where there are more."""

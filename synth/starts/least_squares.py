@@ -125,7 +125,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
     if target.timed and len(target.points) > FEW_TARGETS and not scaled.constraints:
-        starts = [replace(start, settled=True) for start in starts]  # as `_start` has it of the untimed
+        starts = [start.under(settled=True) for start in starts]  # as `_start` has it of the untimed
     counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
     return Round(_other_curves(starts, most), counts, size, NEAR_BEST, free=True)
@@ -159,7 +159,7 @@ def _limited_round(
     if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
         early, error = _ranked(scaled, before_limits)
         some = _some(rng, np.arange(len(error)), before)
-        chosen += [replace(_start(scaled, early, error, k), promise=0.0, settled=False) for k in some]
+        chosen += [replace(_start(scaled, early, error, k), promise=0.0).under(settled=False) for k in some]
         prune = NEAR_BEST_SHIFTED
     return Round(chosen, {"feasible finds": int(linkages.feasible.sum())}, size, prune)
 
@@ -250,7 +250,7 @@ def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: 
     start = Start.of_screened(linkages, index, scaled.objective)
     fitted = _all_fitted(search_targets(scaled)) and not scaled.constraints
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
-    return replace(start, promise=float(error[index]), settled=met or fitted)
+    return replace(start, promise=float(error[index])).under(settled=met or fitted)
 
 
 def _all_fitted(target: SearchTargets) -> bool:

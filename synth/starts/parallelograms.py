@@ -9,7 +9,7 @@ linkage may go on as an antiparallelogram: the task motion has to lie between th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def parallelogram_starts(scaled: ScaledProblem, enough: int, rng: np.random.Gene
     """Starts that are parallelogram linkages, the best first, then spread over all."""
     linkages = parallelograms(scaled, rng)
     starts = feasible_starts(scaled, linkages[linkages.feasible], enough)
-    return [replace(start, settled=True) for start in starts]
+    return [start.under(settled=True) for start in starts]
 
 
 def parallelogram_obstacle(scaled: ScaledProblem) -> str:
@@ -255,7 +255,7 @@ def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
         theta2, direction = shorter_way(angle)
     else:
         visit, theta2, direction = as_they_come(angle)
-    found = Configurations(o2, o4, a, b, visit, theta2, direction)
+    found = Configurations(o2, o4, a, b, visit, theta2, direction, scaled.kind)
     violations = violations_apart(found, p, np.broadcast_to(scaled.targets, a.shape), wanted)
     violations[:, GROUPS.index("order")] += np.maximum(np.ptp(theta2, axis=1) - TURN, 0)
     first_turn = np.full(count, scaled.turns[0])

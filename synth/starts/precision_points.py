@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -90,7 +90,7 @@ class EveryLinkage(PrecisionPoints, ABC):
         """The feasible ones of all linkages through the points."""
 
     def _settled(self, linkages: Screened, chosen: IntArray, every: int, followed: int) -> Round:
-        starts = [replace(start, settled=True) for start in starts_of(self.scaled, linkages, chosen)]
+        starts = [start.under(settled=True) for start in starts_of(self.scaled, linkages, chosen)]
         feasible = int(_usable(linkages).sum())
         return Round(starts, {"feasible finds": feasible, THROUGH: every, FOLLOWED: followed})
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -55,7 +53,7 @@ def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> lis
         return _distinct_starts(scaled, short, merit, PEAKS)
     chosen = _distinct_starts(scaled, short, merit, MISSES)
     nearly = feasible_starts(scaled, short[shortfall < NEARLY], enough)
-    return chosen + [replace(start, radius=np.inf, stay=True) for start in nearly]
+    return chosen + [start.under(radius=np.inf, stay=True) for start in nearly]
 
 
 def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, each: int = 5) -> list[Start]:
@@ -73,7 +71,7 @@ def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, e
         found.append((lacking.min(), tuple(np.array(GROUPS)[together].tolist()), mine, lacking))
     found.sort(key=lambda item: item[:2])  # the set that is missed least first
     return [
-        replace(start, relaxed=names)
+        start.under(relaxed=names)
         for _, names, mine, lacking in found[:groups]
         for start in _distinct_starts(scaled, mine, -lacking, each)
     ]
@@ -108,7 +106,7 @@ def _spread(
     coordinates = np.concatenate([points.real, points.imag], axis=1)
     nearest = to_nearest(coordinates)
     starts = starts_of(scaled, linkages, picked)
-    return [replace(one, radius=float(0.4 * gap)) for one, gap in zip(starts, nearest, strict=True)]
+    return [one.under(radius=float(0.4 * gap)) for one, gap in zip(starts, nearest, strict=True)]
 
 
 def to_nearest(coordinates: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE, Closure
+from grashof.synth.loop.dimensions import Closure
 
 STEPS = 4
 MORE, DONE = 8, 1e-10  # steps at most beyond these where, as on short arcs, much is left
@@ -24,7 +24,7 @@ class Wish:
     turns: FloatArray  # (N,), rad: angles of the body
     has_turn: BoolArray  # (N,)
     timed: bool  # the driver angles move together
-    closure: Closure = FOUR_BAR_CLOSURE  # of the kind of linkage
+    closure: Closure  # of the kind of linkage
 
 
 @dataclass(frozen=True, slots=True)

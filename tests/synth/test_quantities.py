@@ -16,6 +16,7 @@ from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requi
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate
 from grashof.synth.programme.formulas import FORMULAS, Part
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.screening import Many
 
 pytestmark = pytest.mark.usefixtures("small_search")
@@ -47,7 +48,7 @@ def as_seen(task: MotionTask, linkage: FourBar, values: Values) -> Many:
     a, b, p = (getattr(state, name) @ np.array([1, 1j]) for name in "abp")
     o2, o4 = (pivot @ np.array([1, 1j]) for pivot in (linkage.o2, linkage.o4))
     theta2, turn = values.verdict.theta2[None], np.array([task.angles[0]])
-    return Many(p[:1], o2[None], a[None], o4[None], b[None], theta2, turn)
+    return Many(p[:1], o2[None], a[None], o4[None], b[None], theta2, turn, kind=FOUR_BAR)
 
 
 def of_part(part: Part, view: Many) -> FloatArray:

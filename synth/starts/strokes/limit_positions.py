@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar, TypeAlias
 
@@ -14,7 +14,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.programme.start import UNSMOOTH, Round, Start
+from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.strokes.member_choice import apart, unbeaten
 from grashof.synth.starts.strokes.places import Places
@@ -215,7 +215,7 @@ class LimitPositions(WholeDesigns):
             *np.argsort(missed)[: min(_MISSING, int((~feasible).sum()))],
         ]
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
-        return [replace(start, settled=True) for start in starts]
+        return [start.under(settled=True) for start in starts]
 
     def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
         """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
@@ -279,7 +279,6 @@ class LimitPositions(WholeDesigns):
             theta3=tuple(np.unwrap(np.angle(b - a)).tolist()),
             direction=-1 if self.places.clockwise else 1,
             assembly=int(member.assembly[0]),
-            objective=self.scaled.objective,
-            settled=True,
+            terms=Terms(self.scaled.objective, settled=True),
             kind=self.scaled.kind,
         )

@@ -185,6 +185,7 @@ def starts_as_screened(starts: list[Start]) -> Screened:
         coupler=np.exp(1j * np.array([start.theta3 for start in starts])),
         error=none,
         body_angle=none,
+        kind=starts[0].kind,
     )
 
 

@@ -149,7 +149,7 @@ def test_with_a_radius_it_stays_in_its_box(
     scaled = luggage_scaled()
     for start in best_apart(scaled, feasible_pairs(scaled), 4):
         free = np.array(run(scaled, start).points) - start.points
-        kept = np.array(run(scaled, replace(start, radius=radius)).points) - start.points
+        kept = np.array(run(scaled, start.under(radius=radius)).points) - start.points
         assert max(np.abs(kept.real).max(), np.abs(kept.imag).max()) <= radius + 1e-7
         if max(np.abs(free.real).max(), np.abs(free.imag).max()) > radius:
             assert max(np.abs(kept.real).max(), np.abs(kept.imag).max()) > 0.5 * radius
@@ -193,7 +193,7 @@ def test_stay_goes_to_the_nearest_feasible_design(luggage_scaled: SetupOf, feasi
     tight = luggage_scaled(rotatability="any", link_length=(1.0, 5.0), coupler_arms=(0.3, 4.5))
     for start in best_apart(wide, feasible_pairs(wide), 6):
         point = start.points
-        solved = run(tight, replace(start, stay=True))
+        solved = run(tight, start.under(stay=True))
         assert solved.status == "Solve_Succeeded"
         assert judged(tight, solved.points, start.assembly).ok
         found = float(np.sum(np.abs(np.array(solved.points) - point) ** 2))
@@ -204,7 +204,7 @@ def test_stay_goes_to_the_nearest_feasible_design(luggage_scaled: SetupOf, feasi
 def test_stay_leaves_a_feasible_design_alone(luggage_scaled: SetupOf, feasible_pairs: PairsOf) -> None:
     scaled = luggage_scaled()
     for start in best_apart(scaled, feasible_pairs(scaled), 3):
-        moved = np.array(run(scaled, replace(start, stay=True)).points) - start.points
+        moved = np.array(run(scaled, start.under(stay=True)).points) - start.points
         assert np.abs(moved).max() < 1e-3
 
 
@@ -216,7 +216,7 @@ def test_relaxed_transmission_comes_as_near_as_the_best_without_the_limit(
     asked = luggage_scaled(transmission_over=over, transmission_min_deg=60)
     starts = best_apart(free, feasible_pairs(free), 4)
     best = max(transmission(free, ended(free, start).verdict) for start in starts)
-    relaxed = [ended(asked, replace(start, relaxed=("transmission_min_deg",))).verdict for start in starts]
+    relaxed = [ended(asked, start.under(relaxed=("transmission_min_deg",))).verdict for start in starts]
     for verdict in relaxed:
         assert {defect.requirement for defect in verdict.defects} == {"transmission_min_deg"}
     nearest = max(transmission(asked, verdict) for verdict in relaxed)
@@ -263,7 +263,7 @@ def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(
     least = min(max(defect.miss for defect in defects) for defects in before)
     after = []
     for index in order:
-        start = replace(Start.of_screened(pairs, int(index), Objective()), relaxed=(key,))
+        start = Start.of_screened(pairs, int(index), Objective()).under(relaxed=(key,))
         defects = ended(scaled, start).verdict.defects
         assert {d.requirement for d in defects} <= {key, *LENGTH_KEYS[key]}
         after.append(max(defect.miss for defect in defects))
@@ -276,7 +276,7 @@ def test_compactness_makes_smaller_and_transmission_better(
     scaled = luggage_scaled()
     for start in best_apart(scaled, feasible_pairs(scaled), 4):
         good = ended(scaled, start)
-        small = ended(scaled, replace(start, objective=Objective(transmission=0, compactness=1)))
+        small = ended(scaled, start.under(objective=Objective(transmission=0, compactness=1)))
         assert small.verdict.ok
         assert small.verdict.size < 0.9 * good.verdict.size
         assert good.verdict.transmission_min_task > small.verdict.transmission_min_task
@@ -295,7 +295,7 @@ def out_of_order(scaled: ScaledProblem) -> Screened:
 
 
 def check_no_success(scaled: ScaledProblem, start: Start) -> None:
-    result = attempt(scaled, replace(start, stay=True), 0)
+    result = attempt(scaled, start.under(stay=True), 0)
     assert result.candidate is not None
     assert result.candidate.verdict.ok or result.status != "Solve_Succeeded"
 
@@ -345,7 +345,7 @@ def test_success_means_that_the_judge_agrees(luggage_scaled: SetupOf, all_pairs:
     least_first = np.argsort(pairs.violations.sum(axis=1), kind="stable")
     succeeded = 0
     for index in least_first[: len(pairs) // 20 : len(pairs) // 80]:
-        start = replace(Start.of_screened(pairs, int(index), Objective()), stay=True)
+        start = Start.of_screened(pairs, int(index), Objective()).under(stay=True)
         result = attempt(scaled, start, 0)
         if result.status == "Solve_Succeeded":
             assert result.candidate is not None
@@ -361,8 +361,8 @@ def test_a_solve_does_not_depend_on_those_before_it(
 ) -> None:
     scaled = luggage_scaled()
     starts = best_apart(scaled, feasible_pairs(scaled), 5)
-    starts += [replace(start, stay=True) for start in starts[:2]]
-    starts += [replace(start, relaxed=("o2",)) for start in starts[:1]]
+    starts += [start.under(stay=True) for start in starts[:2]]
+    starts += [start.under(relaxed=("o2",)) for start in starts[:1]]
 
     def numbers(solved: Solve) -> tuple[bytes, str, int]:
         return np.array(solved.points).tobytes(), solved.status, solved.iterations

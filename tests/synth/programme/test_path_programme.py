@@ -177,7 +177,7 @@ def test_exact_timed_steps_are_kept(timing: list[float]) -> None:
 def test_with_a_radius_it_stays_in_its_box(radius: float) -> None:
     scaled = line()
     for start in best_starts(scaled, 3):
-        moved = np.array(solve(scaled, replace(start, radius=radius)).points[:4]) - start.points[:4]
+        moved = np.array(solve(scaled, start.under(radius=radius)).points[:4]) - start.points[:4]
         assert max(np.abs(moved.real).max(), np.abs(moved.imag).max()) <= radius + 1e-7
 
 
@@ -189,7 +189,7 @@ def begun_from(start: Start, solved: Solve) -> Start:
 def test_stay_leaves_a_feasible_design_alone() -> None:
     scaled = line()
     for found in best_starts(scaled, 3):
-        start = replace(begun_from(found, solve(scaled, replace(found, stay=True))), stay=True)
+        start = begun_from(found, solve(scaled, found.under(stay=True))).under(stay=True)
         moved = np.array(solve(scaled, start).points) - start.points
         assert np.abs(moved).max() < 1e-5
 
@@ -216,6 +216,7 @@ def noisy(seed: int, points: int, timed: bool) -> tuple[ScaledProblem, Start]:
         theta3=tuple(np.unwrap(state.theta3).tolist()),
         direction=1 if theta2[-1] > theta2[0] else -1,
         assembly=int(linkage.assembly),
+        kind=scaled.kind,
     )
     return scaled, start
 

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.problems import Objective
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.screening import Screened
-from grashof.synth.programme.start import Start
+from grashof.synth.programme.start import Start, Terms
 
 bounded = settings(max_examples=25)
 angle = st.floats(-3, 3)
@@ -30,6 +31,7 @@ def start_with(theta1: float, theta2: tuple[float, ...]) -> Start:
         theta3=tuple(0.3 * angle for angle in theta2),
         direction=1 if theta2[-1] > theta2[0] else -1,
         assembly=1,
+        kind=FOUR_BAR,
     )
 
 
@@ -66,8 +68,7 @@ def test_a_start_of_a_pair_is_that_pair(
     for index in range(0, len(pairs), max(1, len(pairs) // 10)):
         start = Start.of_screened(pairs, index, objective)
         assert start.points.tobytes() == pairs.points[index].tobytes()
-        assert start.objective == objective
-        assert (start.radius, start.stay, start.settled, start.relaxed) == (np.inf, False, False, ())
+        assert start.terms == Terms(objective)
         places = scaled.motion.apply(np.array([start.a]))[0][list(start.visit)]
         arms = places - start.o2
         np.testing.assert_allclose(np.exp(1j * np.array(start.theta2)), arms / np.abs(arms), atol=1e-9)

@@ -64,7 +64,7 @@ def test_what_no_smooth_constraint_can_relax_is_not_solved(
     luggage_scaled: SetupOf, relaxed: tuple[str, ...]
 ) -> None:
     scaled = luggage_scaled()
-    start = replace(first_starts(scaled, 1)[0], relaxed=relaxed)
+    start = first_starts(scaled, 1)[0].under(relaxed=relaxed)
     result = attempt(scaled, start, 3)
     assert result.status == "Not_Solved"
     assert result.candidate is not None
@@ -78,7 +78,7 @@ def test_coinciding_pivots_are_no_linkage(luggage_scaled: SetupOf) -> None:
     scaled = luggage_scaled()
     start = first_starts(scaled, 1)[0]
     # Both dyads the same: exact, so that polishing does not part them.
-    same = replace(start, o4=start.o2, b=start.a, relaxed=("order",))
+    same = replace(start, o4=start.o2, b=start.a).under(relaxed=("order",))
     assert attempt(scaled, same, 0).candidate is None
 
 

@@ -67,7 +67,7 @@ def test_a_family_has_feasible_starts_that_are_apart() -> None:
     (first,) = first_rounds(scaled, 1, enough=20)
     starts = first.starts
     assert first.counts["feasible finds"] >= len(starts) > 20
-    assert not any(start.settled for start in starts)
+    assert not any(start.terms.settled for start in starts)
     check_tracks(scaled, starts, 1e-5)
     scale = scaled.frame.scale
     for start in starts:
@@ -78,7 +78,7 @@ def test_a_family_has_feasible_starts_that_are_apart() -> None:
         steps = start.direction * np.diff(start.theta2)
         assert (steps > 0).all()
         assert steps.sum() < 2 * np.pi
-    spread = [start for start in starts if start.radius < np.inf]
+    spread = [start for start in starts if start.terms.radius < np.inf]
     assert len(spread) >= 20
     points = np.array([start.points for start in spread])
     gaps = np.abs(points[:, None] - points).max(axis=2) + 10 * np.eye(len(points))
@@ -91,7 +91,7 @@ def test_nine_points_settle_their_designs(path_scaled: PathSetup, seed: int) -> 
     scaled, _ = path_scaled([1, seed], 9)
     starts = [start for found in first_rounds(scaled, 4, enough=1) for start in found.starts]
     assert starts
-    assert all(start.settled for start in starts)
+    assert all(start.terms.settled for start in starts)
     check_tracks(scaled, starts, 1e-5)
 
 
@@ -205,9 +205,9 @@ def test_relaxed_starts_miss_one_requirement() -> None:
     relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert relaxed
     for start in relaxed:
-        assert 1 <= len(start.relaxed) <= 2
-        assert set(start.relaxed) <= set(GROUPS)
-    assert "transmission_min_deg" in relaxed[0].relaxed
+        assert 1 <= len(start.terms.relaxed) <= 2
+        assert set(start.terms.relaxed) <= set(GROUPS)
+    assert "transmission_min_deg" in relaxed[0].terms.relaxed
 
 
 def test_rounds_without_a_start_end(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requir
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import LEAST_TRANSMISSION
 from grashof.synth.starts.loop_search import draw, standing, with_places, within_limits
@@ -37,7 +38,13 @@ def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -
     limits = {"rotatability": rotatability, "transmission_over": over, "order": order, **wanted}
     free = np.zeros(6)
     return SearchTargets(
-        points, rng.uniform(0.5, 2, 6), free, free, free, Requirements(rotatability_margin=1e-3, **limits)
+        points,
+        rng.uniform(0.5, 2, 6),
+        free,
+        free,
+        free,
+        Requirements(rotatability_margin=1e-3, **limits),
+        FOUR_BAR,
     )
 
 

@@ -10,6 +10,7 @@ from batched_search import GENEROUS, differences, points_along
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
@@ -34,7 +35,7 @@ def target_of(kind: tuple[str, bool, bool, bool], n: int = 7, seed: int = 0, **w
     timing = np.concatenate([[0.0], np.cumsum(rng.uniform(0.2, 0.8, n - 1))]) if timed else np.zeros(n)
     limits = GENEROUS | {"rotatability": rotatability, "order": order, "same_branch": branch} | wanted
     free = np.zeros(n)
-    return SearchTargets(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits))
+    return SearchTargets(points, rng.uniform(0.5, 2, n), free, free, timing, Requirements(**limits), FOUR_BAR)
 
 
 def place(target: SearchTargets, batch: Batch) -> Placed:

@@ -10,6 +10,7 @@ from scipy.optimize import minimize_scalar
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns
@@ -44,6 +45,7 @@ def target_of(kind: tuple[str, bool, bool], free: str, seed: int = 0) -> SearchT
         turn_weights,
         np.zeros(N),
         Requirements(**limits),
+        FOUR_BAR,
     )
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import Requirements
+from grashof.synth.programme.kinds import FOUR_BAR
 from grashof.synth.starts.closed_loop import Loop, SearchTargets
 from grashof.synth.starts.loop_search import draw, place
 from grashof.synth.starts.thinning import AROUND, refined, thinned
@@ -19,6 +20,7 @@ def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTarget
         turn_weights=np.zeros(count),
         timing=angle if timed else np.zeros(count),
         wanted=Requirements(rotatability_margin=1e-3, **wanted).resolved(1.0),
+        kind=FOUR_BAR,
     )
 
 

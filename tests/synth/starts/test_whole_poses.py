@@ -79,9 +79,9 @@ def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_scaled: Se
     assert feasible > 1000
     assert all(ok(scaled, start) for start in queue)
     free, spread = queue[:PEAKS], queue[PEAKS:]
-    assert all(start.radius == np.inf for start in free)
+    assert all(start.terms.radius == np.inf for start in free)
     assert len(spread) == 70  # 1.4 times enough
-    assert all(0 < start.radius < np.inf for start in spread)
+    assert all(0 < start.terms.radius < np.inf for start in spread)
     middle = scaled.problem.task.positions.mean(axis=0)
     signatures = np.array([signature(linkage_of(scaled, start), middle) for start in free])
     for number in range(1, len(free)):
@@ -95,7 +95,7 @@ def test_neighbourhoods_do_not_overlap(luggage_scaled: SetupOf) -> None:
     for number, one in enumerate(spread):
         for other in spread[:number]:
             gap = one.points - other.points
-            assert max(np.abs(gap.real).max(), np.abs(gap.imag).max()) > one.radius + other.radius
+            assert max(np.abs(gap.real).max(), np.abs(gap.imag).max()) > one.terms.radius + other.terms.radius
 
 
 @pytest.mark.slow
@@ -114,7 +114,7 @@ def test_compactness_begins_with_small_linkages(luggage: Problem) -> None:
     for objective in (Objective(), Objective(transmission=0, compactness=1)):
         scaled = ScaledProblem.of(Problem(task=luggage.task, requirements=wanted, objective=objective))
         queue, _ = queue_of(scaled)
-        assert all(start.objective == objective for start in queue)
+        assert all(start.terms.objective == objective for start in queue)
         sizes.append(verify(linkage_of(scaled, queue[0]), luggage.task, wanted).size)
     assert sizes[1] < 0.8 * sizes[0]
 
@@ -142,8 +142,8 @@ def test_an_equality_leaves_near_misses_to_start_from(luggage_scaled: SetupOf) -
     queue, feasible = queue_of(scaled, enough=20)
     assert feasible == 0
     assert len(queue) > 40
-    assert any(start.stay for start in queue)
-    assert all(start.radius == np.inf for start in queue)
+    assert any(start.terms.stay for start in queue)
+    assert all(start.terms.radius == np.inf for start in queue)
     height = [scaled.frame.outward(np.array(start.o2))[1] for start in queue]
     assert np.median(np.abs(np.array(height) + 3)) < 0.5
 
@@ -152,7 +152,7 @@ def test_relaxed_starts_may_miss_one_requirement_where_one_is_enough(luggage_sca
     scaled = luggage_scaled(transmission_min_deg=60, transmission_over="cycle")
     relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert 1 <= len(relaxed) <= 15
-    assert {start.relaxed for start in relaxed} == {("transmission_min_deg",)}
+    assert {start.terms.relaxed for start in relaxed} == {("transmission_min_deg",)}
     for start in relaxed:
         defects = verify(linkage_of(scaled, start), scaled.problem.task, scaled.problem.requirements).defects
         assert {defect.requirement for defect in defects} == {"transmission_min_deg"}
@@ -163,8 +163,8 @@ def test_relaxed_starts_miss_as_few_requirements_as_can_be(luggage_scaled: Setup
     scaled = luggage_scaled(o2=far, o4=high, transmission_min_deg=10)
     relaxed = finder_for(scaled).relaxed(np.random.default_rng(0))
     assert relaxed
-    assert {start.relaxed for start in relaxed} == {("o2", "o4")}
-    assert set(relaxed[0].relaxed) <= set(GROUPS)
+    assert {start.terms.relaxed for start in relaxed} == {("o2", "o4")}
+    assert set(relaxed[0].terms.relaxed) <= set(GROUPS)
 
 
 def test_nothing_to_relax_where_pairs_are_feasible(luggage_scaled: SetupOf) -> None:

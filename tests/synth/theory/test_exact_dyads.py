@@ -136,7 +136,7 @@ def test_starts_of_five_poses_and_more_are_settled_pairs_of_dyads(
         assert queue.counts["exact dyads"] == len(dyads)
         assert queue.counts["feasible finds"] == len(queue.starts) <= len(dyads) * (len(dyads) - 1)
         for start in queue.starts:
-            assert start.settled
+            assert start.terms.settled
             for pair in ((start.a, start.o2), (start.b, start.o4)):
                 gap = np.abs(dyads.moving - pair[0]) + np.abs(dyads.ground - pair[1])
                 assert gap.min() < 1e-12

@@ -7,6 +7,7 @@ from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE
 from grashof.synth.theory import polish as path_polish
 from grashof.synth.theory.polish import Polished, Wish, polish_path
 
@@ -45,7 +46,7 @@ def unknowns_of(points: ComplexArray) -> FloatArray:
 def wish_of(targets: ComplexArray, timed: bool) -> Wish:
     """Points only."""
     every = np.ones(len(targets), dtype=bool)
-    return Wish(targets, every, np.zeros(len(targets)), ~every, timed)
+    return Wish(targets, every, np.zeros(len(targets)), ~every, timed, FOUR_BAR_CLOSURE)
 
 
 class Planted:
@@ -163,7 +164,7 @@ def test_many_driver_angles_are_eliminated_without_a_difference(
     places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
     begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
     none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-    wish = Wish(points, every, np.zeros(count), none, timed=False)
+    wish = Wish(points, every, np.zeros(count), none, timed=False, closure=FOUR_BAR_CLOSURE)
     found = []
     for many in (path_polish.MANY, 1000):
         monkeypatch.setattr(path_polish, "MANY", many)

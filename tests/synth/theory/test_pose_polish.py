@@ -5,6 +5,7 @@ import pytest
 
 from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angles
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE as BARS
 from grashof.synth.theory import polish as path_polish
 from grashof.synth.theory.polish import Polished, Wish, polish_path
 
@@ -47,7 +48,12 @@ class Planted:
         has_point, has_turn = np.ones(count, dtype=bool), np.ones(count, dtype=bool)
         has_point[places], has_turn[angles] = False, False
         self.wish = Wish(
-            np.where(has_point, points, 0), has_point, np.where(has_turn, turns, 0), has_turn, False
+            np.where(has_point, points, 0),
+            has_point,
+            np.where(has_turn, turns, 0),
+            has_turn,
+            False,
+            BARS,
         )
         near = lengths + rng.normal(0, off, 3)
         o2, o4, near_arm = (z + complex(*rng.normal(0, off, 2)) for z in (0j, ground, arm))
@@ -111,6 +117,7 @@ def test_what_is_free_does_not_pull(monkeypatch: pytest.MonkeyPatch) -> None:
         np.where(wish.has_turn, wish.turns, 1.0),
         wish.has_turn,
         False,
+        BARS,
     )
     here = planted.polished()
     there = polish_path(planted.near, planted.near_angles, planted.near_body, planted.side, other)
@@ -121,7 +128,7 @@ def test_what_is_free_does_not_pull(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_turns_of_a_whole_turn_more_are_the_same() -> None:
     planted = Planted(2, "five whole")
     wish = planted.wish
-    more = Wish(wish.points, wish.has_point, wish.turns + 2 * np.pi, wish.has_turn, False)
+    more = Wish(wish.points, wish.has_point, wish.turns + 2 * np.pi, wish.has_turn, False, BARS)
     there = polish_path(planted.near, planted.near_angles, planted.near_body, planted.side, more)
     np.testing.assert_allclose(there.points, planted.polished().points, atol=1e-12)
 
@@ -131,7 +138,7 @@ def test_timed_poses_keep_the_gaps_of_the_driver() -> None:
     for seed in range(4):
         planted = Planted(seed, "five whole")
         wish = planted.wish
-        three = Wish(wish.points[:3], wish.has_point[:3], wish.turns[:3], wish.has_turn[:3], True)
+        three = Wish(wish.points[:3], wish.has_point[:3], wish.turns[:3], wish.has_turn[:3], True, BARS)
         angles = planted.theta2[:3] + 1e-4
         polished = polish_path(planted.near, angles, planted.near_body, planted.side[:3], three)
         assert max(missed(polished, planted.side[:3], three)) < 1e-11
