@@ -13,7 +13,6 @@ from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem, ProblemError, StrokeTask
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
 from grashof.synth.proof.curve.asked import POSES, refusal
@@ -23,6 +22,7 @@ from grashof.synth.proof.poses.certificate import certificate_of, without_check,
 from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.provers import bounds_before, bounds_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.asked import asking
 from grashof.synth.search.finder import refuse_unsearchable
 from grashof.synth.synthesize import synthesize

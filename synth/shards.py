@@ -13,7 +13,7 @@ from grashof.problems import Problem, Search
 from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.chunks import CHUNKS, chunks, starts_of_chunk
 from grashof.synth.search.finder import finder_for

@@ -13,10 +13,10 @@ from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanisms import is_of
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
-from grashof.synth.programme.merit import same_error
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
+from grashof.synth.quantities.merit import same_error
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 
 _TRADED = 1.001  # times the least error: designs of more were made better at something else

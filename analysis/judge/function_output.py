@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from grashof.analysis.judge.function_start import Beginning, begins, moved_output, way_of
-from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.meeting.function_start import Beginning, begins, moved_output, way_of
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from grashof.analysis.judge.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import Linkage, Requirements

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.judge.limit_positions import at_limits
-from grashof.analysis.judge.points import met_in_order, met_singly
-from grashof.analysis.judge.poses import nearest_to_poses, poses_in_order
-from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
-from grashof.analysis.judge.timed_targets import met_in_time
+from grashof.analysis.judge.meeting.points import met_in_order, met_singly
+from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.meeting.timed_targets import met_in_time
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.problems import Linkage, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import TURN

@@ -16,8 +16,8 @@ from grashof.analysis.judge.limit_positions import stroke_defects
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
-from grashof.analysis.judge.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.mobility import (
     branch_index,

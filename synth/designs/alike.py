@@ -10,8 +10,9 @@ import numpy as np
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import ROUNDING, judged
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import (
+from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import (
     GROUPS,
     Configurations,
     Screened,
@@ -19,7 +20,6 @@ from grashof.synth.programme.screening import (
     met,
     violations_apart,
 )
-from grashof.synth.programme.start import Start
 from grashof.synth.theory.stopping import overdue
 
 # What one position does not know of.

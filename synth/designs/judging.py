@@ -13,7 +13,7 @@ from grashof.problems import Cylinder, Linkage, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.driving import cylinder_for
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import overdue
 
 ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ

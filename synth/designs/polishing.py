@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.synth.programme.nonlinear_programme import Solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Dyads, polish
 from grashof.synth.theory.polish import Polished, Wish, polish_path
 

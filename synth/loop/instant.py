@@ -1,6 +1,6 @@
 """A linkage at an instant of its task motion: places, and their rates by the driver angle.
 
-Written once for arrays and for CasADi symbols, like `grashof.synth.programme.formulas`.
+Written once for arrays and for CasADi symbols, like `grashof.synth.quantities.formulas`.
 """
 
 from __future__ import annotations

@@ -11,8 +11,8 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme.long_programme import Asking, jacobian_by_rows
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import give_way
 
 # Numbers that a problem and a start give: as many as the symbols that they fill.

@@ -12,13 +12,13 @@ from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
-from grashof.synth.programme.formulas import View
 from grashof.synth.programme.on_symbols import on_symbols
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
 from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at
+from grashof.synth.quantities.formulas import View
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements
 
 OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.synth.programme.along_motion import overlooked
 from grashof.synth.programme.limits import ADDED
 from grashof.synth.programme.nonlinear_programme import Solve, solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.along_motion import overlooked
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import asked_to_stop
 
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")

@@ -8,9 +8,9 @@ import shapely
 from grashof.problems import Requirements
 from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.keep_out_depth import TOUCHING
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES
+from grashof.synth.quantities.keep_out_depth import TOUCHING
 
 _EVERY_PLANE = np.array([0.0, 0.0, -1.0])  # 0 x + 0 y >= -1: no limit
 

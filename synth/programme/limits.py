@@ -11,7 +11,12 @@ from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
-from grashof.synth.programme.along_motion import (
+from grashof.synth.programme.builder import Builder, Fill, always
+from grashof.synth.programme.constraints import Places, Symbols, arm_of, unit, vector
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.structure import Form
+from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
+from grashof.synth.quantities.along_motion import (
     AGREES,
     ALONG,
     INVERSE,
@@ -19,14 +24,9 @@ from grashof.synth.programme.along_motion import (
     magnitudes,
     value_of,
 )
-from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Places, Symbols, arm_of, unit, vector
-from grashof.synth.programme.driver_way import drive_of, driver_at
-from grashof.synth.programme.formulas import Part, parts_of, range_of
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.start import Start
-from grashof.synth.programme.structure import Form
-from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
+from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.formulas import Part, parts_of, range_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 

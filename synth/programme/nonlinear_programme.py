@@ -29,10 +29,10 @@ from grashof.synth.programme.constraints import (
 from grashof.synth.programme.limits import cost_of_goals, peak_unit, require_limits
 from grashof.synth.programme.long_programme import STOPPED
 from grashof.synth.programme.on_symbols import numpy_on_symbols
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import Stopped, give_way
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop

@@ -12,9 +12,9 @@ from grashof.analysis import Verdict, solve_position
 from grashof.problems import Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.loop.dyad import Sizes
-from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 
 UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint can relax
 

@@ -10,12 +10,12 @@ from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.requirements.quantities import Needs, Over
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
-from grashof.synth.programme.along_motion import ALONG
-from grashof.synth.programme.burden import Burden
-from grashof.synth.programme.driver_way import drive_of
-from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.along_motion import ALONG
+from grashof.synth.quantities.burden import Burden
+from grashof.synth.quantities.driver_way import drive_of
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PLANES = 4  # half-planes that bound a free region
 STEPS = 24  # in every half turn, between driver angles at which what varies along the motion is bounded
@@ -149,7 +149,7 @@ def points_held(scaled: ScaledProblem) -> tuple[str, ...]:
     """Points that the programme can hold in free regions: P is where the targets have it."""
     if not scaled.wanted.keep_out:
         return ()
-    from grashof.synth.programme.keep_out_depth import points_kept_out
+    from grashof.synth.quantities.keep_out_depth import points_kept_out
 
     held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.mechanism.points)
     return tuple(name for name in held if name != "p" or not scaled.exact)

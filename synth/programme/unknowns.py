@@ -10,10 +10,10 @@ import numpy as np
 from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, Limits, turned_from
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them

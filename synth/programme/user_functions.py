@@ -18,11 +18,11 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.problem import NO_OBJECTIVE
-from grashof.synth.programme.kind import Kind
 from grashof.synth.programme.on_symbols import on_symbols
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Many, Screened
 from grashof.synth.programme.start import Proposal, Start
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Many, Screened
 
 FAR = 1e3  # stands for an amount without bound
 NEAREST = 8  # starts that are tried for the closest miss

@@ -8,10 +8,10 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.user_functions import own_violations
+from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
@@ -23,7 +23,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     violations = linkages.violations.copy()
     if wanted.keep_out:
         # Here, not above: shapely takes a while to import, and few problems have areas.
-        from grashof.synth.programme.keep_out_motion import depth_on_the_way
+        from grashof.synth.quantities.keep_out_motion import depth_on_the_way
 
         sound = linkages.feasible  # the others need not be looked at so closely
         violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
@@ -16,6 +15,7 @@ from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
 from grashof.synth.proof.poses.three_poses import bounds_of_three
 from grashof.synth.proof.strokes.bounds import bounds_of_stroke
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 _PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_cranks
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Problem, StrokeTask
-from grashof.synth.programme.kinds import kind_of
+from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.starts.strokes.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
 

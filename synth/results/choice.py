@@ -11,9 +11,9 @@ from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_in_time
 from grashof.synth.designs.ranking import ranked
-from grashof.synth.programme.merit import same_error
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.proof import quantity_of
+from grashof.synth.quantities.merit import same_error
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.larger_zones import nearest_zones
 from grashof.synth.results.mixed import within_factor
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs

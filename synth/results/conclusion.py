@@ -6,12 +6,12 @@ import logging
 from dataclasses import replace
 
 from grashof.synth.designs.families import listed
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import best_listed, proof_of
 from grashof.synth.proof.points.followed import proof_of_points
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.proof.poses.five_poses import Certified, proof_of_all
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain

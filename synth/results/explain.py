@@ -12,8 +12,8 @@ from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.designs.ranking import ranked
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import relaxed_by_own
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.larger_zones import up, wider
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.trade_offs import Chosen

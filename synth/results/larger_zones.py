@@ -13,8 +13,8 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.zones import MISSED, shares
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.relaxed_limits import Relaxation
 from grashof.synth.results.trade_offs import started_at
 from grashof.synth.search.attempt import Attempt

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
-from grashof.synth.programme.merit import same_error
+from grashof.synth.quantities.merit import same_error
 from grashof.synth.results.result import Result
 from grashof.synth.search.story import Ending, Story
 from grashof.synth.search.tally import DISTINCT, Tally

@@ -11,18 +11,18 @@ from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import (
+from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.proof.claims.bounds import Bounds
+from grashof.synth.proof.provers import bounds_before
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import (
     GROUPS,
     Configurations,
     Screened,
     judge,
     violations_apart,
 )
-from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
-from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.proof.claims.bounds import Bounds
-from grashof.synth.proof.provers import bounds_before
 from grashof.synth.results.relaxed_limits import (
     Relaxation,
     fixes_angle,

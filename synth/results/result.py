@@ -13,9 +13,9 @@ from grashof.problems import NoSolutionError, Problem
 from grashof.problems.values.checks import counted
 from grashof.problems.values.display import Displayed
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.merit import same_error
 from grashof.synth.proof.claims.proof import Proof
 from grashof.synth.proof.poses.atlas import Loci
+from grashof.synth.quantities.merit import same_error
 from grashof.synth.search.story import Story
 from grashof.synth.search.tally import Tally
 

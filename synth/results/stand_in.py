@@ -16,7 +16,7 @@ from grashof.problems import ProblemError, Task
 from grashof.problems.values.arrays import TURN, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again, judged_in_time
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
 KEPT = 0.98  # of the error that may be added: the judge looks at all targets

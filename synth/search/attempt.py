@@ -16,11 +16,11 @@ from grashof.synth.designs.judging import judged, judged_linkage
 from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.zones import MISSED, shares
 from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
-from grashof.synth.programme.formulas import FORMULAS
 from grashof.synth.programme.nonlinear_programme import Solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
 from grashof.synth.programme.structure import Form
+from grashof.synth.quantities.formulas import FORMULAS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import asked_to_stop, overdue
 

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from grashof.problems import Search
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Chunk, Ledger
 from grashof.synth.search.recorded_designs import is_true_chunk

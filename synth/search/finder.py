@@ -9,9 +9,9 @@ import numpy as np
 
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import located
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares

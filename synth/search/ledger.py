@@ -14,8 +14,8 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranking_key
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Proposal, Round, Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.tally import Tally
 from grashof.synth.theory.distinct import DISTINCT, apart, signature

@@ -18,8 +18,8 @@ from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, Linkage, Objective, Problem
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.kinds import kind_of
 from grashof.synth.programme.start import Round, Start, Terms
+from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.ledger import Chunk
 from grashof.synth.search.tally import Tally

@@ -10,8 +10,8 @@ import numpy as np
 from grashof.problems import Linkage
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import alike, judged_again
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import Chunk
 

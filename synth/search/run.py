@@ -12,9 +12,9 @@ from typing import Any, TypeVar
 
 from grashof.problems import Search
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.proof.claims.bounds import Proving
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Journal, Unrecorded

@@ -12,8 +12,8 @@ from math import ceil
 import numpy as np
 
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.chunks import begin_chunks, chunks, starts_of_chunk
 from grashof.synth.search.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.search.ledger import SAME, Ledger

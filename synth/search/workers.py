@@ -19,8 +19,8 @@ from typing import Any, Protocol, TypeAlias, TypeVar
 import numpy as np
 
 from grashof.problems import SolverError
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when

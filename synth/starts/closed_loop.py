@@ -1,7 +1,7 @@
 """Linkages of a search as unknowns: the closed loop at every target, and its derivatives.
 
 The driver angles and proportions are such that a linkage is feasible by construction; the loop is
-taken in the frame that `grashof.synth.programme.kinds` gives to its kind.
+taken in the frame that `grashof.synth.quantities.kinds` gives to its kind.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
-from grashof.synth.programme.formulas import Part, parts_of, range_of
-from grashof.synth.programme.kind import Kind
+from grashof.synth.quantities.formulas import Part, parts_of, range_of
+from grashof.synth.quantities.kind import Kind
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less

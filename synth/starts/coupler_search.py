@@ -10,9 +10,9 @@ import numpy as np
 
 from grashof.problems import ProblemError, Requirements
 from grashof.problems.values.checks import counted
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place

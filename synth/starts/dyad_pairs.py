@@ -11,9 +11,9 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.programme.driver_angles import as_they_come, follow
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.screening import (
+from grashof.synth.quantities.driver_angles import as_they_come, follow
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.screening import (
     GROUPS,
     Configurations,
     Screened,

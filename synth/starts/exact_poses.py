@@ -18,10 +18,10 @@ import numpy as np
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.checks import counted
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.coupler_search import searched_round
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms

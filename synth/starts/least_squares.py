@@ -15,10 +15,10 @@ import numpy as np
 from grashof.problems import TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.formulas import FORMULAS
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.quantities.formulas import FORMULAS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, joined
 from grashof.synth.starts.coupler_search import FOUND, CouplerSearch
 from grashof.synth.starts.every_target import costs_of_all, fitted_to_all

@@ -13,7 +13,7 @@ from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Sizes
 from grashof.synth.loop.vector import Vector
-from grashof.synth.programme.formulas import LOGARITHMIC, View
+from grashof.synth.quantities.formulas import LOGARITHMIC, View
 from grashof.synth.starts.closed_loop import Loop, SearchTargets, body_turns
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions

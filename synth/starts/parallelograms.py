@@ -23,17 +23,17 @@ from grashof.problems.values.arrays import (
     Limits,
     turned_beyond,
 )
-from grashof.synth.programme.driver_angles import as_they_come, shorter_way
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import (
+from grashof.synth.programme.start import Start
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.driver_angles import as_they_come, shorter_way
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import (
     GROUPS,
     Configurations,
     Screened,
     judge,
     violations_apart,
 )
-from grashof.synth.programme.start import Start
-from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
 from grashof.synth.starts.selection import feasible_starts, merits
 from grashof.synth.theory.distinct import pick_apart

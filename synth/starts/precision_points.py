@@ -15,10 +15,10 @@ import numpy as np
 from grashof.problems import SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.loop.dyad import Bars, ClosingDyad, Slider, coupler_of
-from grashof.synth.programme.driver_angles import shorter_way
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Round
+from grashof.synth.quantities.driver_angles import shorter_way
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.coupler_search import CouplerSearch, searched_round
 from grashof.synth.starts.loop_search import Placed

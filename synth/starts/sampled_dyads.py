@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, radius_error
 from grashof.synth.theory.three_poses import (
     bisector_dyads,

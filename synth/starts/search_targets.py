@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.synth.programme.driver_angles import as_they_come
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import (
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.driver_angles import as_they_come
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import (
     Configurations,
     Screened,
     judge,
     violations_apart,
 )
-from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.loop_search import Placed
 

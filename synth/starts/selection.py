@@ -6,11 +6,11 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements.requirements import QUANTITIES
-from grashof.synth.programme.along_motion import ALONG, SCREENED, magnitudes, value_of
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Many, Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import own_merit
+from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Many, Screened
 from grashof.synth.theory.distinct import best_first, pick_apart, signature
 from grashof.synth.theory.stopping import leave_off
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from grashof.problems import Linkage
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 
 @dataclass(frozen=True)

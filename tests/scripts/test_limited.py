@@ -29,7 +29,7 @@ LIMITS: dict[str, Any] = {"exact": False, "rotatability": "crank-rocker", "trans
 @pytest.fixture(scope="module")
 def independent() -> ModuleType:
     spec = importlib.util.spec_from_file_location(
-        "independent_search", ROOT / "scripts" / "independent_search.py"
+        "independent_search", ROOT / "scripts" / "benchmarks" / "independent_search.py"
     )
     assert spec is not None
     assert spec.loader is not None
@@ -90,7 +90,9 @@ def test_limits_that_no_linkage_holds_have_no_design(independent: ModuleType) ->
 def test_it_shares_nothing_with_the_search_of_the_package() -> None:
     told = "import sys, independent_search; print([m for m in sys.modules if 'synth' in m or 'casadi' in m])"
     command = [sys.executable, "-c", told]
-    done = subprocess.run(command, cwd=ROOT / "scripts", check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        command, cwd=ROOT / "scripts" / "benchmarks", check=True, capture_output=True, text=True
+    )
     assert done.stdout == "[]\n"
 
 
@@ -113,7 +115,7 @@ def test_benchmark_measures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(ROOT / "scripts")
+    monkeypatch.syspath_prepend(ROOT / "scripts" / "benchmarks")
     benchmark = importlib.import_module("benchmark_limited")
     monkeypatch.setattr(benchmark, "synthesize", partial(benchmark.synthesize, effort=0.2))
     assert benchmark.main(["--seeds", "0", "--random", "1"]) == 0

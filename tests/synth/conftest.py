@@ -18,8 +18,8 @@ from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.theory.burmester import trace_four_pose_curves
 

@@ -15,9 +15,9 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate
-from grashof.synth.programme.formulas import FORMULAS, Part
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.screening import Many
+from grashof.synth.quantities.formulas import FORMULAS, Part
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.screening import Many
 
 pytestmark = pytest.mark.usefixtures("small_search")
 JUDGED = 50

@@ -24,11 +24,11 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.along_motion import ALONG
-from grashof.synth.programme.formulas import FORMULAS
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.along_motion import ALONG
+from grashof.synth.quantities.formulas import FORMULAS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.results.relaxations import rejudged
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for

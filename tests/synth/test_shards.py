@@ -18,7 +18,7 @@ from grashof import load
 from grashof.problems import MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Result
 from grashof.synth.merging import merge_shards
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.chunks import chunk, chunks
 from grashof.synth.search.journal import content_of
 from grashof.synth.search.plain import plain

@@ -29,7 +29,7 @@ import casadi as ca
 from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import ProblemError
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.programme.user_functions import refuse_unusable
 
 sys.setswitchinterval(1e-4)

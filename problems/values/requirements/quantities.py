@@ -2,7 +2,7 @@
 
 Limited, a quantity is a requirement; weighed, an objective; listed, a column; missed, a defect. The judge
 has a measure of each by its key (`grashof.analysis.judge.measures`), the search a formula of those that it
-can steer (`grashof.synth.programme.formulas`); the two share nothing but the key.
+can steer (`grashof.synth.quantities.formulas`); the two share nothing but the key.
 """
 
 from __future__ import annotations

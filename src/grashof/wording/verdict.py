@@ -10,7 +10,7 @@ from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.caution import caution
 from grashof.synth.designs.judging import driven_verdict
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 # What is reported of a linkage besides what it misses, where it has a value.
 _KEYS = (

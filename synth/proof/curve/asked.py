@@ -13,10 +13,10 @@ from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatabilit
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.forms.loop import LoopLimits
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements
 
 # Limits are inclusive: the judge overlooks 1e-9 (sizes, rad or ratio), and so do proofs, with a margin.

@@ -17,8 +17,6 @@ from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_linkage
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import LEAST, SLACK
@@ -28,6 +26,8 @@ from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmis
 from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.functions.four_bar import FourBars

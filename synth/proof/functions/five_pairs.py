@@ -7,10 +7,10 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.stopping import Stopped

@@ -14,10 +14,10 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.points.boxes import boxes
 from grashof.synth.proof.points.equations import Passing
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
 from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS

@@ -14,14 +14,14 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.curve.asked import POSES, Asked, with_forms
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.proof.poses.lookout import screened_pairs
 from grashof.synth.proof.poses.pairs import Pairs
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short

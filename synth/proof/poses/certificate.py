@@ -12,7 +12,6 @@ import numpy as np
 
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import IntArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked, with_forms
 from grashof.synth.proof.curve.centres import centres_of
 from grashof.synth.proof.curve.dyads import possible_arms, roles_of
@@ -20,6 +19,7 @@ from grashof.synth.proof.curve.pieces import Tubes, contracted
 from grashof.synth.proof.curve.table import Pieces, Side
 from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.poses.pairs import sifted
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 FORM = 1  # of the file
 _BOXES = ("o2", "o4", "a", "b", "a_on_body", "b_on_body")

@@ -8,7 +8,6 @@ import numpy as np
 
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import ANY_LENGTH, SLACK, Asked, Dyad
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.dyads import allowed, lengths_of
@@ -16,6 +15,7 @@ from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.forms.forms import Form, Span, greatest_quotient
 from grashof.synth.proof.forms.loop import STEEP, at_targets, square_at_targets
 from grashof.synth.proof.forms.square import nothing_left
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 _NOBODY = Dyad((np.inf, 0.0), ANY_LENGTH, Box(), Box(), Box())  # no dyad of the curve is the driven one
 

@@ -12,12 +12,12 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.curve.asked import Asked, unusable
 from grashof.synth.proof.curve.pieces import WIDER, Tubes
 from grashof.synth.proof.curve.table import Pieces, squares
 from grashof.synth.proof.forms.forms import Form, Span
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.five_poses import five_pose_dyads
 from grashof.synth.theory.stopping import Stopped, give_way

@@ -6,13 +6,13 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import Stopped
 
 

@@ -11,13 +11,13 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.designs.polishing import polished_solve
 from grashof.synth.programme.exchange import solve_by_exchange
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.pairs import Pairs
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.starts.sampled_dyads import stated_dyads
 from grashof.synth.theory.burmester import Dyads, centre_points, polish

@@ -15,7 +15,6 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import POSES, left_out, not_bounded, unusable, with_forms
@@ -24,6 +23,7 @@ from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.cranks import Cranks
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
 from grashof.synth.theory.stopping import Stopped, asked_to_stop
 

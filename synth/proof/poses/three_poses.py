@@ -8,7 +8,6 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import STOPPED, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
@@ -16,6 +15,7 @@ from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings
 from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.proof.poses.sides import OneSide, is_empty
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Dyads, polish
 from grashof.synth.theory.stopping import Stopped

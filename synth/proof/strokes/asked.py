@@ -11,7 +11,6 @@ from grashof.problems import Requirements, Rotatability, StrokeTask
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import SLACK
 from grashof.synth.proof.strokes.members import (
     Family,
@@ -20,6 +19,7 @@ from grashof.synth.proof.strokes.members import (
     crank_shapers,
     slider_cranks,
 )
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 # rad, a thousandth of a degree: designs below it count as none. Slides almost three times as slow one way
 # transmit less than elsewhere counts as something.

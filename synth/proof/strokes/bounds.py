@@ -7,10 +7,10 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems import StrokeTask
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.strokes.asked import families_of_stroke, floor_of, refusal_of_stroke, sizes_left_out
 from grashof.synth.proof.strokes.cover import covered
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 
 def bounds_of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:

@@ -18,7 +18,7 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
-from grashof.synth.programme.kinds import kind_of
+from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.theory.functions.fit import Wanted
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators

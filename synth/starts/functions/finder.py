@@ -12,8 +12,8 @@ import numpy as np
 
 from grashof.problems import Linkage, ProblemError
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.optima import Optima
 from grashof.synth.starts.functions.pairs import KNOWN, exact_functions

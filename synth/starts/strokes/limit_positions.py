@@ -11,11 +11,11 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.kind import Kind
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.starts.strokes.member_choice import apart, unbeaten
 from grashof.synth.starts.strokes.places import Places
 from grashof.synth.starts.strokes.rocker_places import RockerPlaces

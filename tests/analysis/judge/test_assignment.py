@@ -5,8 +5,8 @@ from itertools import combinations_with_replacement
 import numpy as np
 import pytest
 
-from grashof.analysis.judge import assignment
-from grashof.analysis.judge.assignment import _least_costs, _least_costs_of_many, assigned_around
+from grashof.analysis.judge.meeting import assignment
+from grashof.analysis.judge.meeting.assignment import _least_costs, _least_costs_of_many, assigned_around
 
 
 @pytest.mark.parametrize("function", [_least_costs, _least_costs_of_many])

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
-from grashof.analysis.judge.task_motion import Targets, TaskMotion
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, PathTask, Requirements
 

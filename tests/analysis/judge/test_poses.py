@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.optimize import LinearConstraint, minimize
 
 from grashof.analysis import GrashofClass
+from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.planted import planted_motion
-from grashof.analysis.judge.poses import nearest_to_poses, poses_in_order
-from grashof.analysis.judge.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, MotionTask
 

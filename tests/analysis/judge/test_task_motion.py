@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from grashof.analysis.judge.task_motion import TaskMotion, task_motion
+from grashof.analysis.judge.meeting.task_motion import TaskMotion, task_motion
 from grashof.problems import FourBar
 
 CRANK = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=3.5, r4=2.5)

@@ -12,7 +12,7 @@ from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.loop.dimensions import Closure
 from grashof.synth.loop.dyad import Bars, as_complex, as_vector, coupler_of, root_or_zero
 from grashof.synth.loop.vector import Vector
-from grashof.synth.programme.kinds import KINDS
+from grashof.synth.quantities.kinds import KINDS
 
 TURN = np.linspace(-3, 3, 50)
 SINGLE = [(word, seed) for word in CLASSES for seed in range(8)]

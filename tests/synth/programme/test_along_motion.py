@@ -41,15 +41,15 @@ from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.loop.vector import Vector
-from grashof.synth.programme.along_motion import ALONG
-from grashof.synth.programme.burden import Burden
-from grashof.synth.programme.driver_way import drive_of, driver_at
 from grashof.synth.programme.exchange import SOLVED, solve_by_exchange
-from grashof.synth.programme.frame import Frame
-from grashof.synth.programme.kinds import KINDS
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.along_motion import ALONG
+from grashof.synth.quantities.burden import Burden
+from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.frame import Frame
+from grashof.synth.quantities.kinds import KINDS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt, polished_and_judged
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.dyad_pairs import screen

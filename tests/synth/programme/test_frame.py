@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Requirements
-from grashof.synth.programme.frame import Frame
+from grashof.synth.quantities.frame import Frame
 
 bounded = settings(max_examples=25)
 point = st.tuples(st.floats(-50, 50), st.floats(-50, 50))

@@ -7,7 +7,7 @@ from scipy.spatial import Delaunay
 from grashof.problems import Requirements
 from grashof.problems.values.areas import solid
 from grashof.synth.programme.free_region import half_planes
-from grashof.synth.programme.keep_out_depth import depth, points_kept_out
+from grashof.synth.quantities.keep_out_depth import depth, points_kept_out
 
 STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=float)
 TWO = (np.array([[-1.0, 0], [1, 0], [0, 2]]), np.array([[2.0, 0], [4, 0], [3, 2]]))

@@ -12,10 +12,10 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.keep_out_motion import depth_on_the_way
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.keep_out_motion import depth_on_the_way
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.finder import finder_for
 
 AS_GIVEN = [[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]

@@ -11,10 +11,10 @@ from grashof.analysis.judge.planted import RANDOM
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.problems import Linkage, PathTask, Problem
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.kinds import KINDS
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Many
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.kinds import KINDS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Many
 
 EVERY = tuple(KINDS)
 SLIDERS = EVERY[1:]

@@ -9,9 +9,9 @@ from grashof.analysis.judge.planted import planted_path
 from grashof.problems import PathTask, Problem, Requirements
 from grashof.synth.programme import nonlinear_programme as nlp
 from grashof.synth.programme.long_programme import STOPPED, Asking, jacobian_by_rows
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory import stopping
 
 

@@ -14,9 +14,9 @@ from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Trans
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.nonlinear_programme import Solve, solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.attempt import attempt
 from grashof.synth.starts.dyad_pairs import near_misses
 from grashof.synth.theory.burmester import trace_four_pose_curves

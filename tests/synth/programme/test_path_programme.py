@@ -12,8 +12,8 @@ from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angl
 from grashof.problems import Box, Objective, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.nonlinear_programme import Solve, solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.coupler_search import search
 from grashof.synth.theory.distinct import pick_apart, signature
 

@@ -12,8 +12,8 @@ from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 
 Floats = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ import pytest
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PlantedSetup = Callable[..., tuple[ScaledProblem, FourBar]]
 

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.problems import Objective
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import Screened
 from grashof.synth.programme.start import Start, Terms
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Screened
 
 bounded = settings(max_examples=25)
 angle = st.floats(-3, 3)

@@ -14,8 +14,8 @@ from grashof.analysis.judge.design import greatest as greatest_of
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS
 from grashof.synth.starts.coupler_search import search
 
 pytestmark = pytest.mark.usefixtures("small_search")

@@ -11,10 +11,10 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.pairs import rows_left
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs, screen
 from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
 

@@ -13,7 +13,7 @@ from grashof.analysis import Design, verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import explain
 from grashof.synth.results.relaxations import relaxations
 from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation

@@ -8,7 +8,7 @@ from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.stand_in import FEW, LONG, StandIn
 
 MANY = 3 * LONG

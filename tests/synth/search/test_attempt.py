@@ -11,8 +11,8 @@ from grashof.problems import Box, FourBar
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.programme import exchange
 from grashof.synth.programme.nonlinear_programme import Solve
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
 

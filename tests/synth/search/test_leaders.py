@@ -11,7 +11,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.synth import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.designs.ranking import BLOCK, _beaten, ranked
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Leaders
 

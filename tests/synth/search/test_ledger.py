@@ -10,7 +10,7 @@ import pytest
 import grashof.synth.search.ledger as ledger_module
 from grashof import load
 from grashof.synth.designs.judging import judged, judged_again
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.chunks import chunk, which
 from grashof.synth.search.finder import finder_for

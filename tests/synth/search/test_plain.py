@@ -10,7 +10,7 @@ from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Problem
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import to_frame
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt, attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.plain import plain, restored

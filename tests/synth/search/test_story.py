@@ -7,8 +7,8 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.problems import Search
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.searches import Run
 from grashof.synth.search.story import Asking, Ending

@@ -17,8 +17,8 @@ import pytest
 from grashof import load, synthesize
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain
 from grashof.synth.search.workers import CrashError, Elsewhere, Here, Processes, screen
 

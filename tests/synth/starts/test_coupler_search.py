@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from grashof.problems import Box, FourBar, PathTask, Problem, Requirements
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.finder import finder_for, rounds
 from grashof.synth.starts import coupler_search
 from grashof.synth.starts.coupler_search import search

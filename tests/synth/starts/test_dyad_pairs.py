@@ -11,8 +11,8 @@ import pytest
 from grashof.analysis import Verdict, verify
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS, Screened
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.theory.burmester import Dyads, trace_four_pose_curves
 

@@ -8,7 +8,7 @@ import pytest
 
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, Requirements, Task
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place, standing, with_places

@@ -16,7 +16,7 @@ from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requir
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
-from grashof.synth.programme.kinds import FOUR_BAR
+from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.limit_residuals import LEAST_TRANSMISSION
 from grashof.synth.starts.loop_search import draw, standing, with_places, within_limits

@@ -10,8 +10,8 @@ from batched_search import GENEROUS, differences, points_along
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Box, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.loop_search import PULL, Placed, draw, fitting, improve

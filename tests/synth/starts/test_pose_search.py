@@ -10,8 +10,8 @@ from scipy.optimize import minimize_scalar
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.kinds import FOUR_BAR
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts import coupler_search
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns
 from grashof.synth.starts.coupler_search import FOUND

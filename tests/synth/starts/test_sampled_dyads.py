@@ -9,7 +9,7 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.exact_poses import FewPoses
 
 

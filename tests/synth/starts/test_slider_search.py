@@ -10,7 +10,7 @@ from grashof.analysis import solve_position
 from grashof.analysis.mechanism.mobility import rotatability
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import Model, draw, fitting, improve, place, with_places, within_limits

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import Requirements
-from grashof.synth.programme.kinds import FOUR_BAR
+from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.starts.closed_loop import Loop, SearchTargets
 from grashof.synth.starts.loop_search import draw, place
 from grashof.synth.starts.thinning import AROUND, refined, thinned

@@ -8,9 +8,9 @@ import pytest
 
 from grashof.analysis import verify
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
-from grashof.synth.programme.scaled_problem import ScaledProblem
-from grashof.synth.programme.screening import GROUPS
 from grashof.synth.programme.start import Start
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.selection import PEAK_SPACING, PEAKS
 from grashof.synth.theory.distinct import apart, signature

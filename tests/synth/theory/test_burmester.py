@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Problem
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import (
     Displacements,
     Dyads,

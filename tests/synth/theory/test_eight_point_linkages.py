@@ -12,7 +12,7 @@ from grashof.synth.theory.eight_points import FAMILIES, Family
 
 pytestmark = pytest.mark.slow
 
-SCRIPTS = Path(__file__).parents[3] / "scripts"
+SCRIPTS = Path(__file__).parents[3] / "scripts" / "benchmarks"
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.exact_poses import DyadPairs
 from grashof.synth.theory.burmester import Dyads

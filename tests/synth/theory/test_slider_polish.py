@@ -10,8 +10,8 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.kinds import KINDS
-from grashof.synth.programme.scaled_problem import ScaledProblem
+from grashof.synth.quantities.kinds import KINDS
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.polish import Wish, _linearised, _spread, polish_path
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")

@@ -7,11 +7,11 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.centres import centres_of, of_rows
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.pieces import Tubes, contracted
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
 
 PROBLEMS = [

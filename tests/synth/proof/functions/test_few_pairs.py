@@ -8,12 +8,12 @@ from grashof.analysis import verify
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
 from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.pairs import exact_functions
 from grashof.synth.theory.burmester import Displacements

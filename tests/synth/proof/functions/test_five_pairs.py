@@ -7,8 +7,8 @@ from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, FunctionTask, Problem, Requirements
 from grashof.synth import Claim
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.functions.five_pairs import certified_functions
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 
 def function(turned: np.ndarray, output: np.ndarray) -> Problem:

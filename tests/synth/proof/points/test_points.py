@@ -11,10 +11,10 @@ from grashof.problems import Problem, load
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.points.boxes import boxes, holds_one, inverses
 from grashof.synth.proof.points.equations import Passing
 from grashof.synth.proof.points.followed import enclosed_designs, proof_of_points, unknowns_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH
 from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
 

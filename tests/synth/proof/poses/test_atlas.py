@@ -10,10 +10,10 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, Problem, Requirements
 from grashof.synth import Claim, Result
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.poses.atlas import Atlas, atlas_of
 from grashof.synth.proof.provers import bounds_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import screen
 from grashof.synth.theory.burmester import trace_four_pose_curves
 

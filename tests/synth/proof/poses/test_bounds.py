@@ -11,12 +11,12 @@ from planted_limits import planted_limits
 from grashof import load
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.proof.provers import bounds_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import stopping
 
 

@@ -10,8 +10,8 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim, prove
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.poses.five_poses import Certified, certified_poses
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.five_poses import five_pose_dyads
 
 REACH = 50.0

@@ -12,10 +12,10 @@ from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth import Claim, prove
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.cranks import Cranks
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, trace_four_pose_curves
 
 

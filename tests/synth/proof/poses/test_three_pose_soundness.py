@@ -9,13 +9,13 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.best_first import Tilings
 from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
 from grashof.synth.proof.poses.sides import Sites, Tiling
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Displacements, Dyads, polish
 from grashof.synth.theory.three_poses import circle_dyads, circle_dyads_of_ground

@@ -10,9 +10,9 @@ from planted_limits import planted_limits
 from grashof import load, synthesize
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.synth import Claim, prove
-from grashof.synth.programme.scaled_problem import ScaledProblem
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.provers import bounds_before, bounds_of_three
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import stopping
 from grashof.wording.proof import bound_line
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis.judge.planted import planted_function
-from grashof.synth.programme.kinds import KINDS
+from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.theory.functions.fit import Wanted, fitted
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.limits import ShapeLimits

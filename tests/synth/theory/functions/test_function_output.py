@@ -9,7 +9,7 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_function
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.kinds import KINDS
+from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
 

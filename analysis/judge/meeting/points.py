@@ -1,0 +1,193 @@
+"""Free points met in order, by dynamic programming and Newton's method in all angles; or each by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from grashof.analysis.curves.coupler_curve import (
+    PIECES,
+    Track,
+    between,
+    coupler_curve,
+    range_around,
+    tracks,
+)
+from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses
+from grashof.analysis.judge.meeting.misses import as_good, squares
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
+from grashof.problems import Linkage, Task
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+
+_VALLEYS = 3
+_BASINS = 4
+_BESIDE = 0.15  # rad
+_LOOK = np.linspace(-1, 1, 25)
+
+
+# Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
+Met: TypeAlias = tuple[FloatArray, IntArray, int]
+
+
+def met_singly(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """Each point as near as possible, on the motion of the least squares; None without an assembly."""
+    target = np.arange(len(task))
+    best: Met | None = None
+    least = np.inf
+    for track in _tracks_through(linkage, same_branch, theta2_start):
+        angle, low, high, assembly = nearest_guess(track, task.positions @ np.array([1, 1j]), _VALLEYS)
+        if theta2_start is not None:
+            angle[:, 0] = low[:, 0] = high[:, 0] = theta2_start
+        angle, value = lowest(squares(linkage, task, assembly, weighted=False), angle, low, high)
+        chosen = np.argmin(value, axis=0)
+        total = float((task.weights * value[chosen, target]).sum())
+        if total < least:
+            best, least = (angle[chosen, target], assembly[chosen, target], 0), total
+    return best
+
+
+def _tracks_through(linkage: Linkage, same_branch: bool, theta2: float | None) -> list[Track]:
+    every = tracks(linkage, PIECES, same_branch)
+    if theta2 is None or len(every) == 1:
+        return every
+    return [track for track in every if (theta2 - track.low[0]) % TURN <= track.high[-1] - track.low[0]]
+
+
+def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """The least weighted squares over driver angles that do not go back, within one turn.
+
+    None when it cannot be assembled. Where points have to stand together far from the curve, the least found
+    may be a local one.
+    """
+    passages = _passages(linkage, task, same_branch, theta2_start)
+    guesses = [(guess, passage) for passage in passages for guess in passage.guesses(middles=False)]
+    if not guesses:
+        return None
+    guesses.sort(key=lambda item: item[0].distance)
+    first = guesses[0][0]
+    near = [item for item in guesses[:_BASINS] if item[0].distance <= first.distance + 2 * first.slack]
+    for crowded in {id(passage): passage for guess, passage in near if guess.crowded}.values():
+        near += [(guess, crowded) for guess in crowded.guesses(middles=True)]
+    theta2, floor, ceiling, assembly = (
+        np.array([getattr(guess, name) for guess, _ in near])
+        for name in ("theta2", "floor", "ceiling", "assembly")
+    )
+    low, high = np.array([passage.bounds() for _, passage in near]).swapaxes(0, 1)
+    points = np.array([passage.points for _, passage in near])
+    model = squares(linkage, task, assembly, np.array([passage.order for _, passage in near]))
+
+    def gaps(angle: FloatArray) -> FloatArray:
+        p = solve_position(linkage, angle, assembly[..., None]).p @ np.array([1, 1j])
+        return np.asarray(np.nan_to_num(np.abs(p - points[..., None]), nan=np.inf))
+
+    theta2, value = lowest_in_order(model, theta2, (low, high), (floor, ceiling))
+    moved = _beside(gaps, model, theta2, value, np.maximum(floor, low), np.minimum(ceiling, high))
+    if (moved != theta2).any():
+        moved, depth = lowest_in_order(model, moved, (low, high), (floor, ceiling))
+        deeper = (depth.sum(axis=1) < value.sum(axis=1))[:, None]
+        theta2, value = np.where(deeper, moved, theta2), np.where(deeper, depth, value)
+    level = as_good(task, value.sum(axis=1))
+    row = int(np.argmin(np.where(level, np.ptp(theta2, axis=1), np.inf)))
+    sense = near[row][1].direction
+    return theta2[row][::sense], assembly[row][::sense], sense
+
+
+def _beside(
+    gaps: Callable[[FloatArray], FloatArray],
+    model: Callable[[FloatArray], Model],
+    theta2: FloatArray,
+    value: FloatArray,
+    lowest_angle: FloatArray,
+    highest_angle: FloatArray,
+) -> FloatArray:
+    """Angles moved over into the next valley where that is deeper, as it may be beside a cusp."""
+    room = (TURN - (theta2[:, -1:] - theta2[:, :1])) / 2
+    before = np.concatenate([theta2[:, :1] - room, theta2[:, :-1]], axis=1)
+    after = np.concatenate([theta2[:, 1:], theta2[:, -1:] + room], axis=1)
+    low = np.maximum.reduce([before, lowest_angle, theta2 - _BESIDE])
+    high = np.minimum.reduce([after, highest_angle, theta2 + _BESIDE])
+    angle = np.clip(theta2[..., None] + _BESIDE * _LOOK * np.abs(_LOOK), low[..., None], high[..., None])
+    gap = gaps(angle)
+    valley = (gap[..., 1:-1] < gap[..., :-2]) & (gap[..., 1:-1] < gap[..., 2:])
+    valley[..., len(_LOOK) // 2 - 1] = False
+    other = np.where(valley, gap[..., 1:-1], np.inf)
+    if np.isinf(other).all():
+        return theta2
+    chosen = np.argmin(other, axis=-1)[..., None] + 1
+    start = np.where(valley.any(axis=-1), np.take_along_axis(angle, chosen, axis=-1)[..., 0], theta2)
+    moved, depth = lowest(model, start, low, high)
+    return np.maximum.accumulate(np.where(depth < value * (1 - 1e-6), moved, theta2), axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class _Passage:
+    """One sense of the driver on one of its motions: points and weights (N,) as growing angles meet them.
+
+    `direction` is -1 when that reverses the task's order; `first` the driver angle (rad) given at the task's
+    first point, and `start` P there on each assembly.
+    """
+
+    track: Track
+    points: ComplexArray
+    weights: FloatArray
+    direction: int
+    first: float | None = None
+    start: ComplexArray | None = None
+
+    @property
+    def order(self) -> IntArray:
+        """Numbers of the targets."""
+        return np.arange(len(self.points))[:: self.direction]
+
+    def guesses(self, *, middles: bool) -> list[Guess]:
+        if self.first is None or self.start is None:
+            return ordered_guesses(self.track, self.points, self.weights, middles=middles)
+        at = 0 if self.direction > 0 else -1
+        gaps = np.abs(self.start - self.points[at])
+        sign, distance = int(self.track.signs[np.argmin(gaps)]), float(self.weights[at] ** 0.5 * gaps.min())
+        rest, weights = np.delete(self.points, at), np.delete(self.weights, at)
+        found = ordered_guesses(self.track, rest, weights, middles=middles)
+        return [_with(guess, self.first, sign, distance, at) for guess in found]
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest driver angle at each point."""
+        low, high = np.full(len(self.points), -np.inf), np.full(len(self.points), np.inf)
+        if self.first is not None:
+            low[:] = self.first if self.direction > 0 else self.first - TURN
+            high[:] = low + TURN
+            at = 0 if self.direction > 0 else -1
+            low[at] = high[at] = self.first
+        return low, high
+
+
+def _with(guess: Guess, theta2: float, assembly: int, distance: float, at: int) -> Guess:
+    """A guess for the other targets, with one more at a given driver angle before or after them."""
+    place = 0 if at == 0 else len(guess.theta2)
+    added = {"theta2": theta2, "floor": guess.floor[at], "ceiling": guess.ceiling[at], "assembly": assembly}
+    fields: dict[str, Any] = {
+        name: np.insert(getattr(guess, name), place, value) for name, value in added.items()
+    }
+    return replace(guess, **fields, distance=float(np.hypot(guess.distance, distance)))
+
+
+def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> list[_Passage]:
+    points = task.positions @ np.array([1, 1j])
+    ordered = [(points[::sense], task.weights[::sense], sense) for sense in (1, -1)]
+    if theta2_start is None:
+        every = tracks(linkage, PIECES, same_branch)
+        return [_Passage(track, *one) for track in every for one in ordered]
+    ends = range_around(linkage, theta2_start)
+    passages = []
+    for one in ordered:
+        far = float(np.clip(theta2_start + one[-1] * TURN, *ends))
+        if far == theta2_start or np.isnan(far):
+            continue
+        low, high = sorted((theta2_start, far))
+        track = between(linkage, low, high, ends, PIECES, same_branch)
+        start = coupler_curve(linkage, theta2_start, track.signs)[0]
+        passages.append(_Passage(track, *one, theta2_start, start))
+    return passages

@@ -1,0 +1,188 @@
+"""Poses met each by itself, where a linkage comes nearest to them, or in order, by least squares."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
+from grashof.analysis.judge.meeting.misses import as_good, misses, squares
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.mechanism.driver_samples import closer_at_ends
+from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
+from grashof.analysis.numerics.minimisation import lowest_in_order
+from grashof.problems import Linkage, Task
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
+
+_EXACT = 1e-13  # errors below this share of the size are rounding
+_SAMPLES = 361
+_VALLEYS = 6
+_BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
+_PLACES = 120  # driver angles of a turn, or of a range, among which poses are assigned in order
+_MOST = 360  # such angles at most: the valleys of many poses lie so close together that some stand for all
+_FOLLOWED = 2.0  # times the least sum there: such guesses are followed
+_FREE = np.array(np.inf)
+
+
+def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
+    """The linkage nearest to each pose, by itself, on its own assembly unless the other is nearer.
+
+    Gauss-Newton steps begin where A would be if the body stood in the pose; where a pose is not met, a scan
+    over all driver angles finds the lowest valleys.
+    """
+    turned = np.exp(1j * (task.angles - linkage.body_angle))
+    a = task.positions @ np.array([1, 1j]) - complex(*linkage.coupler_point) * turned - complex(*linkage.o2)
+    own = int(linkage.assembly)
+    signs = np.broadcast_to(np.array([[own], [-own]]), (2, len(task)))
+    guess = np.where(task.has_position & task.has_angle, np.angle(a), 0.0)
+    angle = np.broadcast_to(_into_ranges(driver_ranges(linkage), guess), signs.shape)
+    angle, miss = _descend(linkage, task, angle, signs)
+    if not _met(miss, task):
+        more, more_signs, more_miss = _valleys(linkage, task)
+        angle, signs = np.concatenate([angle, more]), np.concatenate([signs, more_signs])
+        miss = np.concatenate([miss, more_miss])
+    miss = np.where(miss <= _rounding(task), 0.0, miss)  # of several that meet a pose the own assembly
+    chosen, target = np.argmin(miss, axis=0), np.arange(len(task))
+    return Targets.of(linkage, task, angle[chosen, target], signs[chosen, target])
+
+
+def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (K, N)."""
+    angle, signs = _scan(linkage, task)
+    angle, miss = _descend(linkage, task, angle, signs)
+    return angle, signs, miss
+
+
+def _met(miss: FloatArray, task: Task) -> bool:
+    return bool((miss.min(axis=0) <= _rounding(task)).all())
+
+
+def _rounding(task: Task) -> float:
+    return (_EXACT * task.angle_length) ** 2
+
+
+def _descend(
+    linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Driver angles after Gauss-Newton steps, and what they miss by; each shape (K, N)."""
+    ends, model = driver_ranges(linkage), squares(linkage, task, signs)
+    best = misses(linkage, task, angle, signs)
+    for _ in range(6):
+        if _met(best, task):
+            break
+        _, slope, _, positive = model(angle)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = -slope / positive
+        step = np.where(np.isfinite(step), np.clip(step, -0.5, 0.5), 0.0)
+        moved = _into_ranges(ends, angle + step)
+        miss = misses(linkage, task, moved, signs)
+        better = miss < best
+        if not better.any():
+            break
+        angle, best = np.where(better, moved, angle), np.where(better, miss, best)
+    return angle, best
+
+
+def _scan(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray]:
+    """Driver angles and assemblies in the lowest valleys of the miss over all driver angles, (K, N)."""
+    ends = driver_ranges(linkage)
+    ranges = ends[np.isfinite(ends[:, 0])]
+    # Closer towards dead positions, where a linkage runs away from its driver.
+    around = np.concatenate([closer_at_ends(low, high, _SAMPLES) for low, high in ranges] or [np.zeros(1)])
+    miss = misses(linkage, task, around[:, None], np.array([1, -1])[:, None, None])
+    valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
+    lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
+    angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
+    width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
+    for look in (_BESIDE, *[9] * 11):
+        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, look)[:, None, None])
+        nearest = np.argmin(misses(linkage, task, tried, signs), axis=0)
+        angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
+        width /= 4
+    return angle, signs
+
+
+def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:
+    """Driver angles, moved to the nearest end of a range where they lie outside all."""
+    low, high = ranges[np.isfinite(ranges[:, 0])].T
+    if not low.size:
+        return theta2
+    inside = ((theta2[..., None] - low) % TURN <= high - low).any(axis=-1)
+    if inside.all():
+        return theta2
+    ends = np.concatenate([low, high])
+    nearest = ends[np.argmin(np.abs(turned_from(theta2[..., None], ends)), axis=-1)]
+    return np.where(inside, theta2, nearest)
+
+
+def poses_in_order(
+    linkage: Linkage, task: Task, nearest: Targets, motion: TaskMotion
+) -> tuple[Targets, TaskMotion]:
+    """Driver angles that do not go back, within one turn, with the least weighted squares.
+
+    On the own assembly and in one range; what is given where there are none. Poses free in part are met at
+    several angles, so nearest places may be out of order: dynamic programming over samples and valleys of the
+    misses, then Newton's method in all angles.
+    """
+    own = np.full(len(task), int(linkage.assembly))
+    found = list[tuple[FloatArray, float]]()
+    for places, miss, low, high in _by_range(linkage, task):
+        limits = np.full((1, len(task)), low), np.full((1, len(task)), high)
+        for sense in (1, -1):  # counted backwards, driver angles that fall grow
+            order = slice(None, None, sense)
+            guesses = _guesses(places, miss[order], turns=not np.isfinite(low))
+            model = squares(linkage, task, own, order)
+            theta2, value = lowest_in_order(model, guesses, (-_FREE, _FREE), limits)
+            found += zip(theta2[:, order], value.sum(axis=1).tolist(), strict=True)
+    totals = np.array([value for _, value in found])
+    if not np.isfinite(totals).any():
+        return nearest, motion
+    best = [theta2 for (theta2, _), good in zip(found, as_good(task, totals), strict=True) if good]
+    shortest = min(best, key=lambda theta2: float(np.ptp(theta2)))
+    ordered = task_motion(linkage, shortest, True)
+    if not ordered.in_order:
+        return nearest, motion
+    return Targets.of(linkage, task, shortest, own), ordered
+
+
+def _by_range(linkage: Linkage, task: Task) -> list[tuple[FloatArray, FloatArray, float, float]]:
+    """Driver angles (M,) and weighted misses there (N, M), with the ends of each range of the driver."""
+    angle, signs, _ = _valleys(linkage, task)
+    bottoms = angle[signs == int(linkage.assembly)]
+    ranges = list[tuple[FloatArray, float, float]]()
+    if (rotatability(linkage) >= 0).all():
+        around = linkage.theta1 + np.linspace(0, TURN, _PLACES, endpoint=False)
+        ranges.append((np.concatenate([around, bottoms]) % TURN, -np.inf, np.inf))
+    else:
+        index, inside = range_index(linkage, bottoms)
+        ranges += [
+            (np.concatenate([closer_at_ends(low, high, _PLACES), inside[index == number]]), low, high)
+            for number, (low, high) in enumerate(driver_ranges(linkage).tolist())
+            if high > low
+        ]
+    judged = []
+    for places, low, high in ranges:
+        places = _some(np.unique(places))
+        miss = misses(linkage, task, places[:, None], np.asarray(int(linkage.assembly)))
+        judged.append((places, (miss * task.weights).T, low, high))
+    return judged
+
+
+def _some(places: FloatArray) -> FloatArray:
+    """Driver angles in order, of too many at most `_MOST` that lie as evenly as can be."""
+    if len(places) <= _MOST:
+        return places
+    cells = np.floor((places - places[0]) / (places[-1] - places[0]) * _MOST)
+    return places[np.unique(np.minimum(cells, _MOST - 1), return_index=True)[1]]
+
+
+def _guesses(places: FloatArray, miss: FloatArray, *, turns: bool) -> FloatArray:
+    """Driver angles (K, N) among given ones (M,) that do not go back, of the least sums of misses (N, M)."""
+    if turns:
+        chosen, costs, cuts = assigned_around(miss)
+        chosen = chosen + cuts
+    else:
+        chosen, costs = assigned(miss[:, :, None])
+    turn, place = np.divmod(chosen, len(places))
+    near = np.isfinite(costs) & (costs <= _FOLLOWED * costs.min(initial=np.inf))
+    guesses: FloatArray = (places[place] + TURN * turn).T[near]
+    return guesses

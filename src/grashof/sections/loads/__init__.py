@@ -1,0 +1,1 @@
+"""Sections of forces and torques, and of what carries or balances them."""

@@ -1,0 +1,98 @@
+"""Formulas of what varies along the task motion: torque, joint forces, velocities; their greatest magnitude.
+
+Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
+from grashof.synth.quantities.burden import NOTHING, Burden
+from grashof.synth.quantities.drive import drive_torque, joint_forces
+from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+
+SCREENED = 25  # instants at which many linkages are compared
+LOOKED_AT = 30 * SCREENED  # instants at which one linkage is looked at
+AGREES = 2e-3  # share of its bound by which a magnitude may exceed it
+MOST_PEAKS = 4  # that are reported at once
+
+
+# What is bounded over the task motion, by the key of the quantity, in `Problem.scale`: of scalars and vectors
+# the magnitude, of several the greatest.
+Along: TypeAlias = Callable[[Instant, Burden | None], list[Any]]
+ALONG: dict[str, Along] = {
+    "mechanical_advantage": lambda at, _: [at.rates.speed4],
+    "omega4_max": lambda at, _: [at.driver.pace * at.rates.speed4],
+    "point_speed_max": lambda at, _: [at.velocity(3, at.point)],
+    "point_acceleration_max": lambda at, _: [at.acceleration(3, at.point)],
+    "torque_peak": lambda at, burden: drive_torque(at, burden or NOTHING),
+    "joint_force_peak": lambda at, burden: joint_forces(at, burden or NOTHING),
+}
+
+
+# Those whose value is one over the greatest magnitude.
+INVERSE = frozenset({"mechanical_advantage"})
+
+
+def value_of(key: str, peak: Any) -> Any:
+    """The value of a quantity whose greatest magnitude is known, and the other way round."""
+    return 1 / peak if key in INVERSE else peak
+
+
+def magnitudes(
+    scaled: ScaledProblem,
+    key: str,
+    points: ComplexArray,
+    theta2: FloatArray,
+    direction: FloatArray,
+    assembly: FloatArray,
+    count: int,
+) -> FloatArray:
+    """A quantity of `ALONG` at `count` even times over the task motion of many linkages, (n, count).
+
+    In `Problem.scale` of the quantity; infinite where a linkage does not close. From points O2, O4, and A, B,
+    P at the first target (n, 5) in sizes, driver angles in the order of visit (n, N) in rad, direction and
+    assembly (n,).
+    """
+    problem, kind = scaled.problem, scaled.kind
+    ground, lengths, arm = kind.sides(points[:, None])
+    o2 = points[:, :1]
+    last = theta2[:, 0] + direction * TURN if problem.task.closed else theta2[:, -1]
+    share = np.linspace(0, 1, count)
+    ends = theta2[:, :1], last[:, None]
+    with np.errstate(all="ignore"):
+        driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
+        base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
+        at = kind.instant(base, along, lengths, point, assembly[:, None], driver)
+        values = ALONG[key](at, Burden.of(problem))
+        found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
+    greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
+    return greatest
+
+
+def overlooked(
+    scaled: ScaledProblem,
+    key: str,
+    points: ComplexArray,
+    theta2: FloatArray,
+    direction: int,
+    assembly: int,
+    bound: float,
+) -> list[float]:
+    """Where a linkage has peaks above a bound, as shares of the motion; the worst few.
+
+    Points (5,) in sizes and driver angles (N,) in rad as in `magnitudes`; the bound in `Problem.scale`.
+    """
+    ways = theta2[None], np.array([direction]), np.array([assembly])
+    (curve,) = magnitudes(scaled, key, points[None], *ways, LOOKED_AT)
+    beside = np.concatenate([[-np.inf], curve, [-np.inf]])
+    peaks = np.flatnonzero((curve >= beside[:-2]) & (curve > beside[2:]) & (curve > bound * (1 + AGREES)))
+    worst = peaks[np.argsort(-curve[peaks], kind="stable")][:MOST_PEAKS]
+    return [float(peak) / (LOOKED_AT - 1) for peak in worst]

@@ -1,0 +1,185 @@
+"""What a burden takes: the drive torque and the joint forces of a linkage at an instant.
+
+Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.dynamics.acting import JOINTS, TURNING
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
+from grashof.synth.quantities.burden import Burden, Mass, Push
+from grashof.synth.quantities.driver_way import pieces
+
+_TURN_DEG = 360.0
+_FRICTION_ROUNDS = 3  # each takes the joint forces of the last
+_TINY = 1e-30  # under roots
+
+
+def drive_torque(at: Instant, burden: Burden) -> list[Any]:
+    """Virtual work: T = sum of (m (a - g) - F) . dr + (I alpha - M) dtheta, by the driver angle."""
+    moments = _joint_moments(at, burden)
+    torque: Any = 0.0
+    for link, arm, force in _forces(at, burden):
+        torque = torque + force.dot(at.moved(link, arm))
+    for link, moment in _moments(at, burden):
+        torque = torque + moment * at.speed(link)
+    for joint, moment in enumerate(moments):
+        torque = torque - moment * at.opening(joint)
+    return [torque]
+
+
+def joint_forces(at: Instant, burden: Burden) -> list[Any]:
+    """Forces in O2, A, B and O4, or a slide there, friction in the joints included."""
+    return _reactions(at, burden, _joint_moments(at, burden))[0]
+
+
+def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
+    """Forces in O2, A, B and O4, and what presses in the slide."""
+    # about A of link 3 and the origin of the frame of link 4; a moment in a pin is a force along a slide
+    force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
+    turning = [0.0 if joint == at.slide else moment for joint, moment in enumerate(moments)]
+    about: dict[int, Any] = {2: 0.0, 3: turning[2] - turning[1], 4: -turning[2] - turning[3]}
+    for link, arm, demand in _forces(at, burden):
+        force[link] = force[link] + demand
+        about[link] = about[link] + arm.cross(demand)
+    for link, moment in _moments(at, burden):
+        about[link] = about[link] + moment
+    in_b = at.force_in_b(force, about, 0.0 if at.slide is None else moments[at.slide])
+    in_a = force[3] - in_b  # by link 2 on link 3
+    return [force[2] + in_a, in_a, in_b, force[4] + in_b], at.pressing(in_b, force, about)
+
+
+def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]:
+    """Link, place from the origin of its frame, and the force that the joints have to give there."""
+    weight = Vector(*burden.weight)
+    for each in burden.masses:
+        mass, _, arm = _body(at, each)
+        yield each.link, arm, mass * (burden.inertia * at.acceleration(each.link, arm) - weight)
+    for push in burden.pushes:
+        if not push.moment:
+            force = Vector(*_values(at, push))
+            if push.turning:
+                along = at.link(push.link)
+                force = (force.x * along + force.y * along.left) / np.sqrt(along.square)
+            yield push.link, at.on_link(push.link, push.at), -force
+    for pull in burden.pulls:
+        first, second = map(at.place, pull.links, pull.places)
+        rates = [
+            at.velocity(link, at.on_link(link, place)) if link != 1 else Vector(0.0, 0.0)
+            for link, place in zip(pull.links, pull.places, strict=True)
+        ]
+        way = second - first
+        force = pull.stiffness * way
+        if pull.free_length or pull.damping:
+            along = way / np.sqrt(way.square + _TINY)
+            slack = pull.damping * along.dot(rates[1] - rates[0]) - pull.stiffness * pull.free_length
+            force = force + slack * along
+        for link, place, demand in zip(pull.links, pull.places, (-force, force), strict=True):
+            if link != 1:
+                yield link, at.on_link(link, place), demand
+
+
+def _moments(at: Instant, burden: Burden) -> Iterator[tuple[int, Any]]:
+    """Link, and the moment that it takes besides that of forces."""
+    for each in burden.masses:
+        inertia = _body(at, each)[1]
+        if each.inertia or each.per_size:
+            yield each.link, burden.inertia * inertia * at.turned(each.link)
+    for push in burden.pushes:
+        if push.moment:
+            (moment,) = _values(at, push)
+            yield push.link, -moment
+
+
+def _body(at: Instant, mass: Mass) -> tuple[Any, Any, Vector]:
+    """Mass, inertia about its centre, and the centre from the origin of its link's frame."""
+    if mass.at_point:
+        return mass.mass, 0.0, at.point
+    if not mass.per_size:
+        return mass.mass, mass.inertia, at.on_link(mass.link, mass.place)
+    found = at.bar(mass.link)
+    if found is None:
+        return 0.0, 0.0, Vector(0.0, 0.0)
+    square, middle = found
+    bar = mass.per_size * np.sqrt(square)
+    return bar, bar * (square + mass.width**2) / 12, middle
+
+
+def _values(at: Instant, push: Push) -> list[Any]:
+    """Components of a force or moment: constant, or of the curve through its rows."""
+    if not push.over:
+        return list(push.values)
+    if push.over == "time":
+        place = at.driver.time
+    elif push.over == "travel":
+        place = at.travel
+    else:
+        degrees = np.degrees(1.0) * at.turn(2 if push.over == "theta2" else 4)
+        place = push.places[0] + np.remainder(degrees - push.places[0], _TURN_DEG)
+    return [_curve(push, column, place) for column in range(len(push.rows[0]))]
+
+
+def _curve(push: Push, column: int, place: Any) -> Any:
+    """The monotone cubic through a column; a sum of what each piece adds, so that nothing branches."""
+    places, values = np.array(push.places), np.array(push.rows)[:, column]
+    if push.over in TURNING:  # its slopes look at the neighbours on the other turn
+        beside = min(2, len(places) - 1)
+        places = np.concatenate(
+            [places[-1 - beside : -1] - _TURN_DEG, places, places[1 : 1 + beside] + _TURN_DEG]
+        )
+        values = np.concatenate([values[-1 - beside : -1], values, values[1 : 1 + beside]])
+    value: Any = values[0]
+    for (cubic, square, slope), low, high in zip(
+        pieces(places, values), places[:-1], places[1:], strict=True
+    ):
+        way = np.minimum(np.maximum(place - low, 0.0), high - low)
+        value = value + ((cubic * way + square) * way + slope) * way
+    return value
+
+
+def _joint_moments(at: Instant, burden: Burden) -> list[Any]:
+    """On the second link of each joint: of torsion springs and friction; in a slide its friction along it."""
+    moments: list[Any] = [0.0] * len(JOINTS)
+    for joint, stiffness, free in burden.windings:
+        first, second = JOINTS[joint]
+        angle = at.turn(second) - at.turn(first) - free
+        moments[joint] = moments[joint] - stiffness * (np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+    viscous, constant, slides = list(burden.viscous), list(burden.constant), at.slide is not None
+    if at.slide is not None:
+        viscous[at.slide], constant[at.slide] = burden.slide_viscous, burden.slide_constant
+    for joint in range(len(JOINTS)):
+        rate = at.driver.pace * at.opening(joint)
+        if viscous[joint]:
+            moments[joint] = moments[joint] - viscous[joint] * rate
+        if constant[joint]:
+            moments[joint] = moments[joint] - constant[joint] * np.sign(rate)
+    if not any(burden.radius) and not (slides and burden.slide_mu):
+        return moments
+    known = moments
+    for _ in range(_FRICTION_ROUNDS):
+        forces, pressed = _reactions(at, burden, moments)
+        sizes = [
+            burden.slide_mu * _pressing(burden, *pressed)
+            if joint == at.slide
+            else burden.radius[joint] * np.sqrt(force.square + _TINY)
+            for joint, force in enumerate(forces)
+        ]
+        moments = [
+            moment - size * np.sign(at.driver.pace * at.opening(joint))
+            for joint, (moment, size) in enumerate(zip(known, sizes, strict=True))
+        ]
+    return moments
+
+
+def _pressing(burden: Burden, across: Any, moment: Any) -> Any:
+    """What friction in the slide grows with: max(|N|, 2 |M| / length)."""
+    across = np.sqrt(across**2 + _TINY)
+    if not burden.slide_length:
+        return across
+    return np.maximum(across, 2 * np.sqrt(moment**2 + _TINY) / burden.slide_length)

@@ -1,0 +1,81 @@
+"""How the driver goes from the first target to the last: as analysis has it, by formulas of its own.
+
+Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy
+
+from grashof.problems import Problem
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.synth.loop.instant import Moment
+
+
+def driver_at(motor: MotorSpec | None, omega2: Any, share: Any, first: Any, last: Any, sense: Any) -> Moment:
+    """The driver at shares (0 to 1) of the time from the first target to the last; no motor is steady speed.
+
+    Mean speed `omega2` in rad/s, `first` and `last` angles in rad, `sense` +1 or -1, that of the rotation.
+    """
+    turn = sense * (last - first)
+    if motor is None or motor.steady:
+        return Moment(first + share * (last - first), sense, 0.0, share * turn / omega2)
+    way, rate, bend = _profile(motor, share)
+    pace = turn / (omega2 * _lasts(motor)) if motor.values is not None else 1.0
+    time = share * _lasts(motor) if motor.values is not None else share * turn / omega2
+    return Moment(first + way * (last - first), sense * pace * rate, sense * pace**2 * bend / turn, time)
+
+
+def drive_of(problem: Problem) -> tuple[MotorSpec | None, float]:
+    """The motor of a problem and its mean speed, rad/s."""
+    spec = problem.dynamics
+    return (None, 1.0) if spec is None else (spec.motor, spec.omega2)
+
+
+def _lasts(motor: MotorSpec) -> float:
+    rows = motor.values or ()
+    return rows[-1][0] - rows[0][0]
+
+
+def _profile(motor: MotorSpec, share: Any) -> tuple[Any, Any, Any]:
+    """Share of the way, with its first two derivatives by the share of the time."""
+    if motor.values is not None:
+        rows = np.array(motor.values)
+        times, angles = ((rows - rows[0]) / (rows[-1] - rows[0])).T
+        return _cubics(times, angles, share)
+    if motor.profile == "cycloid":
+        phase = 2 * np.pi * share
+        return share - np.sin(phase) / (2 * np.pi), 1 - np.cos(phase), 2 * np.pi * np.sin(phase)
+    ramp = motor.ramp
+    top = 1 / (1 - ramp)
+    rising, even, falling = (
+        np.minimum(np.maximum(share - low, 0.0), high - low)
+        for low, high in ((0.0, ramp), (ramp, 1 - ramp), (1 - ramp, 1.0))
+    )
+    way = top * (rising**2 / (2 * ramp) + even + falling - falling**2 / (2 * ramp))
+    bend = top / ramp * (1.0 * (share <= ramp) - 1.0 * (share >= 1 - ramp))
+    return way, top / ramp * (rising - falling), bend
+
+
+def _cubics(places: FloatArray, values: FloatArray, at: Any) -> tuple[Any, Any, Any]:
+    """The monotone cubic curve through values, with its first two derivatives."""
+    value, rate, bend = values[0], 0.0, 0.0
+    for (cubic, square, slope), low, high in zip(
+        pieces(places, values), places[:-1], places[1:], strict=True
+    ):
+        way = np.minimum(np.maximum(at - low, 0.0), high - low)
+        value = value + ((cubic * way + square) * way + slope) * way
+        inside = 1.0 * (at >= low) * (at < high) if high < places[-1] else 1.0 * (at >= low)
+        rate = rate + inside * ((3 * cubic * way + 2 * square) * way + slope)
+        bend = bend + inside * (6 * cubic * way + 2 * square)
+    return value, rate, bend
+
+
+def pieces(places: FloatArray, values: FloatArray) -> FloatArray:
+    """Coefficients of (x - place)^3, ^2, ^1 in each piece of the monotone cubic curve, shape (N - 1, 3)."""
+    coefficients: FloatArray = scipy.interpolate.PchipInterpolator(places, values).c[:3].T
+    return coefficients

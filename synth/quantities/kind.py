@@ -1,0 +1,191 @@
+"""What a kind of linkage is to the search: what its loop closure decides, and nothing else.
+
+The loop is taken in a frame in which the ground line lies along the real axis: with r1 = 1, or of a
+slider-crank, whose O4 lies there at infinity, with r3 = 1. With e4 = e^(i theta4), across what slides,
+all kinds have one equation, Re(e4* (r2 e2 + r3 e3)) = const, so that all share its derivatives. For an
+inverted slider-crank r3 is there the variable length from A along the rod to B.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol, Self, TypeAlias, cast
+
+import numpy as np
+
+from grashof.problems import Linkage, Requirements
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.dimensions import Closure
+from grashof.synth.loop.dyad import ClosingDyad, as_complex, as_vector
+from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.vector import Vector
+from grashof.synth.quantities.formulas import Part
+from grashof.synth.quantities.frame import Frame
+from grashof.synth.theory.functions.output import Generators
+
+# r2, r3, r4 (n,) of loops, and their derivatives (n, 3 lengths, 3 proportions).
+Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
+# e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
+LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+
+
+_LENGTHS = ("r1", "r2", "r3", "r4")
+_ONLY: dict[type, Any] = {}  # the one value of each kind
+
+
+class LoopOf(Protocol):
+    """What of a `Loop` says where it stands; its frame is that of the module."""
+
+    @property
+    def r4(self) -> FloatArray:
+        """Or the offset, shape (n,)."""
+
+    @property
+    def e3(self) -> ComplexArray:
+        """Directions of the coupler, shape (n, N)."""
+
+    @property
+    def e4(self) -> ComplexArray:
+        """Directions of O4B, or across what slides, shape (n, N)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Kind(ABC):
+    """A kind of linkage; a value without fields, so that it travels to workers."""
+
+    linkage: ClassVar[type[Linkage]]
+    proportions: ClassVar[int]  # numbers that are neither place nor size
+    formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
+    smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
+    # slider kinds: the other is the same linkage with its slide, or its rod, taken the other way round
+    one_assembly: ClassVar[bool]
+    closure: ClassVar[Closure]
+    instant: ClassVar[type[Instant]]
+    generators: ClassVar[type[Generators]]  # those that generate functions
+    turns_with_coupler: ClassVar[bool] = False  # the output link
+
+    def __new__(cls) -> Self:
+        """The only one, so that kinds are compared by identity, in every process."""
+        if cls not in _ONLY:
+            _ONLY[cls] = object.__new__(cls)
+        return cast("Self", _ONLY[cls])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), ()
+
+    @property
+    def mechanism(self) -> str:
+        """As files name it."""
+        return self.linkage.mechanism.word
+
+    @abstractmethod
+    def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
+        """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
+
+    @abstractmethod
+    def placed(
+        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """O4 (n,), and B at every target (n, N), of loops whose frame is turned and scaled by `ground`.
+
+        Of a slider-crank, in place of O4, the point of the slide's line that lies r3 ahead of B at the first
+        target.
+        """
+
+    @abstractmethod
+    def many(
+        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
+    ) -> FloatArray:
+        """Give a `Many` its lengths and directions beside those of the dyads; signed sin mu (n, N)."""
+
+    @abstractmethod
+    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
+        """r1, r2, r3, r4 from O2, O4, A, B, P; the offset in place of r4, 0 for what the kind lacks."""
+
+    @abstractmethod
+    def arguments(self, points: ComplexArray) -> dict[str, Any]:
+        """What its value takes besides coupler point, assembly and body angle, from points (..., 5).
+
+        Places as complex numbers, all lengths in the unit of the points.
+        """
+
+    @abstractmethod
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+        """What `Instant.of` takes, from points (..., 5): ground, lengths, and P in the coupler's frame."""
+
+    @abstractmethod
+    def completed(
+        self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
+    ) -> dict[str, complex]:
+        """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+
+    @property
+    def dyad(self) -> ClosingDyad:
+        """Links 3 and 4."""
+        return self.instant.dyad
+
+    def closed(
+        self, lengths: tuple[FloatArray, FloatArray, FloatArray], e2: ComplexArray, assembly: FloatArray
+    ) -> LoopAt:
+        """The loop closed at driver directions e2 (n, N), with numbers also where it is open."""
+        r2, r3, r4 = (each[:, None] for each in lengths)
+        loop = self.dyad.closed(Vector(1.0, 0.0), as_vector(r2 * e2), r3, r4, assembly, _root_of_any)
+        e3, e4 = (as_complex(each) for each in self.dyad.directions(loop, r3, r4))
+        closes: BoolArray = np.all(loop.square > 1e-12, axis=1)
+        return e3, np.broadcast_to(e4, e2.shape), loop.rod, closes
+
+    def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
+        """Other linkages of the kind, each (5,), that lead P along the same curve, or the body as this does.
+
+        From points (5,) at one position; `timed` leaves those in which P follows the driver as before.
+        """
+        return []
+
+    def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
+        """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
+        names, every = self.linkage.mechanism.lengths, dict(zip(_LENGTHS, lengths, strict=True))
+        found = {name: length if name in names else None for name, length in every.items()}
+        offset = None if "r4" in names else every["r4"]
+        slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
+        return {
+            **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism
+        }  # fmt: skip
+
+    def coupler(self, points: ComplexArray) -> ComplexArray:
+        """Direction of the coupler, from points (..., 5)."""
+        coupler = points[..., 3] - points[..., 2]
+        direction: ComplexArray = coupler / np.abs(coupler)
+        return direction
+
+    def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
+        """O4 in a frame, of a linkage whose B is there at the first target."""
+        return complex(frame.inward(linkage.o4))
+
+    def theta1_of(self, points: ComplexArray) -> float:
+        """Direction of the ground line from O2, O4, A, B, P, rad."""
+        return float(np.angle(points[1] - points[0]))
+
+    def b_of(
+        self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
+    ) -> ComplexArray:
+        """B where A and the direction of the coupler are known, shape (...)."""
+        return a + lengths[2] * turned
+
+    def drawn(self, rng: np.random.Generator, count: int, *, anything: bool) -> FloatArray:
+        """Random free numbers of `lengths`, shape (count, 3)."""
+        of_cranks = rng.normal(size=(count, 3)) * (1.2, 1.5, 1.0) - (0.0, 1.0, 0.0)
+        return rng.normal(0.0, 0.7, (count, 3)) if anything else of_cranks
+
+
+def _root_of_any(square: FloatArray) -> FloatArray:
+    """Of what is not positive the root of 1: what is open has numbers, too."""
+    root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
+    return root
+
+
+def by_two(*rows: list[FloatArray]) -> FloatArray:
+    """Derivatives (n, 3 lengths, 3 proportions) from rows by the first two proportions."""
+    zero = np.zeros_like(rows[0][0])
+    return np.stack([np.stack([*row, zero], axis=-1) for row in rows], axis=1)
