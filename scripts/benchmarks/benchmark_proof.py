@@ -1,6 +1,6 @@
 """How many tasks of four poses have their best design proven, or that there is none, and in what time.
 
-python scripts/benchmarks/benchmark_proof.py               # 200 tasks: planted, random, practical limits, boxes
+python scripts/benchmarks/benchmark_proof.py               # 200 tasks, planted, random, with practical limits
 python scripts/benchmarks/benchmark_proof.py --compare 60  # of random ones also a long search
 """
 
