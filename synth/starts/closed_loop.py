@@ -7,6 +7,7 @@ taken in the frame that `grashof.synth.quantities.kinds` gives to its kind.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -31,6 +32,8 @@ class SearchTargets:
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
     kind: Kind
     closed: bool = False  # the task motion is a whole turn
+    # (N,), rad: how far the last link has turned from the first target on, in the driver's sense
+    outputs: FloatArray | None = None
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
@@ -98,6 +101,22 @@ def joined(first: Batch, second: Batch) -> Batch:
     )
 
 
+class Leading(Protocol):
+    """The link that leads P at every target; z0 + z1 origin + z2 along is P."""
+
+    @property
+    def origin(self) -> ComplexArray:
+        """Its origin, (n, N)."""
+
+    @property
+    def along(self) -> ComplexArray:
+        """Its direction, (n, N)."""
+
+    @property
+    def closes(self) -> BoolArray:
+        """Whether the loops close everywhere, (n,)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Loop:
     """The closed loop in the frame of its kind, at every point; derivatives by the unknowns."""
@@ -113,41 +132,50 @@ class Loop:
     rod: FloatArray  # r3, (n, N) or (n, 1)
     closes: BoolArray
 
+    @property
+    def origin(self) -> ComplexArray:
+        """That of the coupler in A, for a crank of length 1."""
+        return self.e2
+
+    @property
+    def along(self) -> ComplexArray:
+        """That of the coupler."""
+        return self.e3
+
     @classmethod
     def of(cls, target: SearchTargets, batch: Batch) -> Loop:
         """Close the loop of every linkage at every target."""
         proportions = batch.unknowns[:, :PROPORTIONS]
         lengths, by_lengths = target.kind.lengths(proportions, batch.longer_driver, target.wanted)
-        theta2 = _driver_angles(target, batch)
+        theta2 = driver_angles(target, batch.unknowns[:, PROPORTIONS:], batch.direction)
         e2 = np.exp(1j * theta2)
         e3, e4, rod, closes = target.kind.closed(lengths, e2, batch.assembly)
         return cls(*lengths, by_lengths, theta2, e2, e3, e4, rod, closes)
 
 
-def _driver_angles(target: SearchTargets, batch: Batch) -> FloatArray:
-    """Driver angles (n, N)."""
-    unknowns, sense = batch.unknowns, batch.direction[:, None]
+def driver_angles(target: SearchTargets, unknowns: FloatArray, direction: FloatArray) -> FloatArray:
+    """Driver angles (n, N) from the unknowns that they are made of, (n, K)."""
+    sense = direction[:, None]
     if target.timed:
-        return unknowns[:, 3:4] + sense * target.timing
+        return unknowns[:, :1] + sense * target.timing
     if target.jumbled:
-        return unknowns[:, 3:]
-    _, gone = shares_of_turn(unknowns[:, 4:])
-    return unknowns[:, 3:4] + TURN * sense * gone
+        return unknowns
+    _, gone = shares_of_turn(unknowns[:, 1:])
+    return unknowns[:, :1] + TURN * sense * gone
 
 
-def by_unknowns(target: SearchTargets, batch: Batch) -> FloatArray:
-    """Derivative of the driver angles, (n, N, M)."""
-    n = len(target.points)
+def by_angles(target: SearchTargets, batch: Batch, before: int = PROPORTIONS) -> FloatArray:
+    """Derivative of the driver angles, (n, N, M), by all unknowns; `before` them are those of the shape."""
+    n, first = len(target.points), before + 1
     slope = np.zeros((len(batch), n, batch.unknowns.shape[1]))
     if target.jumbled:
-        slope[:, :, 3:] = np.eye(n)
+        slope[:, :, before:] = np.eye(n)
         return slope
-    slope[:, :, 3] = 1
+    slope[:, :, before] = 1
     if not target.timed:
-        share, gone = shares_of_turn(batch.unknowns[:, 4:])
-        before = np.tril(np.ones((n, n)), -1)
-        np.subtract(before, gone[:, :, None], out=slope[:, :, 4:])
-        slope[:, :, 4:] *= (TURN * batch.direction[:, None] * share)[:, None]
+        share, gone = shares_of_turn(batch.unknowns[:, first:])
+        np.subtract(np.tril(np.ones((n, n)), -1), gone[:, :, None], out=slope[:, :, first:])
+        slope[:, :, first:] *= (TURN * batch.direction[:, None] * share)[:, None]
     return slope
 
 
@@ -158,12 +186,12 @@ def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     return share, np.concatenate([np.zeros((len(share), 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)
 
 
-def body_turns(target: SearchTargets, loop: Loop) -> tuple[FloatArray, FloatArray]:
+def body_turns(target: SearchTargets, at: Leading) -> tuple[FloatArray, FloatArray]:
     """Angles of the body missed, weighted (n, N), and the best angle from the coupler in the loop (n,)."""
     if not target.has_angles:
-        return np.zeros((len(loop.r2), 0)), np.zeros(len(loop.r2))  # no target has an angle
+        return np.zeros((len(at.along), 0)), np.zeros(len(at.along))  # no target has an angle
     weights = target.turn_weights
-    off = np.exp(1j * target.turns) * loop.e3.conj()
+    off = np.exp(1j * target.turns) * at.along.conj()
     middle = np.angle((weights * off).sum(axis=1))  # how the body sits on the coupler is solved for exactly
     missed = np.angle(off * np.exp(-1j * middle)[:, None])
     mean = (weights * missed).sum(axis=1) / weights.sum()

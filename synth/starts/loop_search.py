@@ -19,12 +19,13 @@ from grashof.problems import Rotatability
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.starts.closed_loop import (
     Batch,
+    Leading,
     Loop,
     SearchTargets,
     body_turns,
+    by_angles,
     by_body_turns,
     by_theta3_of,
-    by_unknowns,
 )
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.theory.stopping import asked_to_stop, leave_off
@@ -68,9 +69,7 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
     proportions = target.kind.drawn(rng, count, anything=rotatability is Rotatability.ANY)
     columns = [proportions, rng.uniform(-np.pi, np.pi, (count, 1))]
     if not target.timed and target.wanted.order:
-        steps = target.steps
-        gaps = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
-        gaps += rng.normal(0, 0.4, (count, n - 1))
+        gaps = drawn_gaps(target, count, rng)
         if astray:  # on that share P makes a detour between two targets
             rows, at = np.flatnonzero(rng.random(count) < astray), rng.integers(n - 1, size=count)
             share = rng.uniform(*DETOUR, count)
@@ -90,6 +89,14 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
         assembly=np.broadcast_to(signs, (count, n)),
         direction=rng.choice([-1.0, 1.0], count),
     )
+
+
+def drawn_gaps(target: SearchTargets, count: int, rng: np.random.Generator) -> FloatArray:
+    """Logarithms of random gaps between driver angles that follow the points, (count, N - 1)."""
+    steps = target.steps
+    gaps: FloatArray = np.log(steps / steps.sum()) * rng.uniform(0.3, 1, (count, 1))
+    gaps += rng.normal(0, 0.4, (count, len(steps)))
+    return gaps
 
 
 def place(target: SearchTargets, batch: Batch) -> Placed:
@@ -167,17 +174,19 @@ def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> Fl
     return step
 
 
-def project(target: SearchTargets, loop: Loop) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
+def project(
+    target: SearchTargets, at: Leading
+) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
     """Best z0, z1, z2 (n, 3), the QR factors of what they span (n, N, 3) and (n, 3, 3), and the error."""
     root = np.sqrt(target.weights)
-    basis = np.stack([np.ones_like(loop.e2), loop.e2, loop.e3], axis=-1) * root[:, None]
-    q, r = np.linalg.qr(np.where(loop.closes[:, None, None], basis, 0.0))
+    basis = np.stack([np.ones_like(at.along), at.origin, at.along], axis=-1) * root[:, None]
+    q, r = np.linalg.qr(np.where(at.closes[:, None, None], basis, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.swapaxes(q.conj(), 1, 2) @ (target.points * root)
         z = _back_substituted(r, share)
         residual = target.points * root - (q @ share[..., None])[..., 0]
         error = (np.abs(residual) ** 2).sum(axis=1)
-    sound = loop.closes & np.isfinite(error) & np.isfinite(z).all(axis=1)
+    sound = at.closes & np.isfinite(error) & np.isfinite(z).all(axis=1)
     return z, q, r, np.where(sound, error, np.inf)
 
 
@@ -197,7 +206,7 @@ def fitting(target: SearchTargets) -> Model:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             loop = Loop.of(target, batch)
             z, q, r, error = project(target, loop)
-            by_theta2 = by_unknowns(target, batch)
+            by_theta2 = by_angles(target, batch)
             by_theta3 = by_theta3_of(loop, by_theta2)
             residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
             share = np.swapaxes(q.conj(), 1, 2) @ slope
@@ -220,7 +229,7 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
             inner = replace(batch, unknowns=batch.unknowns[:, :-PLACES])
             n, width = batch.unknowns.shape
             by_theta2 = np.zeros((*loop.theta2.shape, width))
-            by_theta2[..., :-PLACES] = by_unknowns(target, inner)
+            by_theta2[..., :-PLACES] = by_angles(target, inner)
             by_theta3 = by_theta3_of(loop, by_theta2)
             by_z = np.zeros((n, 3, width), dtype=np.complex128)
             for k in range(3):

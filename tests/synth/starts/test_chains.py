@@ -1,0 +1,105 @@
+"""Linkages of every mechanism through planted points, poses and pairs, without a word about any of them."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from six_bar_examples import SIX_BARS
+
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Requirements, SixBar, SliderCrank
+from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.starts.chains import Shapes, draw, fitted, linkages
+from grashof.synth.starts.closed_loop import SearchTargets
+
+ONE_LOOP: dict[str, Linkage] = {
+    "four-bar": FourBar((0, 0), (4, 0), 1, 4, 3, (2, 1)),
+    "slider-crank": SliderCrank((0, 0), 1, 4, offset=0.5, slide_angle=0.3, coupler_point=(2, 1)),
+    "inverted-slider-crank": InvertedSliderCrank((0, 0), (4, 0), 1, offset=0.3, coupler_point=(2, 1)),
+}
+# P on the coupler of the second dyad: on a driver it would trace a circle, on a slider a line.
+EVERY = ONE_LOOP | {name: SixBar(**one.stated | {"point_link": 5}) for name, one in SIX_BARS.items()}
+# P is on the coupler of a loop with one pin on the ground and one on a link that turns about it.
+FOUR_BAR_CURVES = "watt-2 on the driver", "watt-2 on the output", "press of a watt-2"
+ROUND = np.linspace(0, 2 * np.pi, 3601)
+
+
+def planted(name: str, count: int) -> tuple[Linkage, FloatArray]:
+    rng = np.random.default_rng(count)
+    gaps = rng.uniform(0.3, 1, count)
+    return EVERY[name], 0.3 + 5 * np.cumsum(gaps) / gaps.sum()
+
+
+def targets(count: int, **given: Any) -> SearchTargets:
+    nothing = np.zeros(count)
+    fields: dict[str, Any] = dict.fromkeys(("points", "weights", "turns", "turn_weights", "timing"), nothing)
+    return SearchTargets(**fields | given, wanted=Requirements(), kind=FOUR_BAR)
+
+
+def found(name: str, target: SearchTargets, seed: int = 1) -> list[Linkage]:
+    """Those of no error to speak of."""
+    shapes = Shapes(EVERY[name].mechanism)
+    batch, error = fitted(target, shapes, draw(target, shapes, 60_000, np.random.default_rng(seed)), 6)
+    return linkages(target, shapes, batch[error < 1e-18])
+
+
+def p_of(linkage: Linkage, theta2: FloatArray) -> ComplexArray:
+    xy = solve_position(linkage, theta2, int(linkage.assembly)).p
+    return np.asarray(xy[..., 0] + 1j * xy[..., 1])
+
+
+@pytest.mark.quick("stephenson-3", "inverted-slider-crank", "press of a watt-2")
+@pytest.mark.parametrize("name", EVERY)
+def test_nine_planted_points(name: str) -> None:
+    """Some turn fully, and the judge follows the whole curve: it comes to every point."""
+    count = 5 if name in ONE_LOOP else 6 if name in FOUR_BAR_CURVES else 9
+    linkage, theta2 = planted(name, count)
+    p = p_of(linkage, theta2)
+    every = found(name, targets(count, points=p - p.mean(), weights=np.ones(count)))
+    made = [one for one in every if np.isfinite(p_of(one, ROUND)).all()]
+    assert made
+    for one in made:
+        assert one.mechanism == linkage.mechanism
+        curve = p_of(one, ROUND)
+        for point in p - p.mean():
+            off = np.abs(curve - point)
+            near = np.flatnonzero((off <= np.roll(off, 1)) & (off <= np.roll(off, -1)))
+            best = ROUND[near[np.argsort(off[near])[:4]]]
+            fine = p_of(one, best[:, None] + np.linspace(-2e-3, 2e-3, 2001))
+            assert np.abs(fine - point).min() < 1e-5
+
+
+def test_poses_of_a_six_bar() -> None:
+    name, count = "watt-1 on coupler and output", 5
+    linkage, theta2 = planted(name, count)
+    p, carries = p_of(linkage, theta2), linkage.mechanism.carries
+    turns = np.asarray(getattr(solve_position(linkage, theta2, int(linkage.assembly)), f"theta{carries}"))
+    target = targets(
+        count, points=p - p.mean(), weights=np.ones(count), turns=turns, turn_weights=np.ones(count)
+    )
+    made = [one for one in found(name, target) if np.isfinite(p_of(one, ROUND)).all()]
+    assert made
+    for one in made:
+        curve, state = p_of(one, ROUND), solve_position(one, ROUND, int(one.assembly))
+        body = np.asarray(getattr(state, f"theta{carries}")) + float(one.body_angle)
+        for point, turn in zip(p - p.mean(), turns, strict=True):
+            off = np.hypot(np.abs(curve - point), np.abs(np.exp(1j * body) - np.exp(1j * turn)))
+            assert off.min() < 5e-3
+
+
+def test_a_function_of_a_six_bar() -> None:
+    name, count = "watt-2 on the output", 8
+    linkage, theta2 = planted(name, count)
+    theta6 = np.unwrap(np.asarray(solve_position(linkage, theta2, int(linkage.assembly)).theta6))
+    turned, outputs = theta2 - theta2[0], theta6 - theta6[0]
+    made = found(name, targets(count, timing=turned, outputs=outputs))
+    assert made
+    for one in made:
+        least = np.inf
+        for start in ROUND[::9]:
+            for sense in (1, -1):
+                state = solve_position(one, start + sense * turned, int(one.assembly))
+                off = sense * np.unwrap(np.asarray(state.theta6)) - outputs
+                least = min(least, float(np.ptp(off)))
+        assert least < 0.05
