@@ -18,6 +18,8 @@ from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusab
 from grashof.synth.quantities.merit import same_error
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
+from grashof.synth.search.finder import finder_for
+from grashof.synth.starts.whole_designs import WholeDesigns
 
 _TRADED = 1.001  # times the least error: designs of more were made better at something else
 
@@ -48,8 +50,7 @@ def track(
     Raises
     ------
     ProblemError
-        An argument is invalid; the problem is one of a function or a stroke, or does not ask for the kind
-        of a design.
+        An argument is invalid, or the problem does not ask for the kind of a design.
 
     Notes
     -----
@@ -75,8 +76,6 @@ def track(
     refuse_no_list(constraints)
     if not isinstance(problem, Problem):
         raise wrong_value("problem", problem, "a Problem")
-    if not problem.task.has_position.any():
-        raise ProblemError(f"designs of a {problem.task.kind} cannot be tracked; search again")
     kinds = _kinds_of(designs, problem)
     ready = {kind: ScaledProblem.of(problem.for_kind(kind), constraints, objective) for kind in kinds}
     for scaled in ready.values():
@@ -111,7 +110,15 @@ def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
 
 
 def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
-    """A design after one solve from where it is; one that traded error for more may err as much again."""
+    """A design after one solve from where it is; one that traded error for more may err as much again.
+
+    Of a function or a stroke: the design of the new task that is nearest to it.
+    """
+    finder = finder_for(scaled)
+    if isinstance(finder, WholeDesigns):
+        tried = [attempt(scaled, each, number).candidate for each in finder.follow(design)]
+        nearest = next((one for one in tried if one is not None), judged_again(scaled, design))
+        return replace(nearest, best_at=design.best_at, family=design.family)
     same = design.verdict.theta2.shape == (len(scaled.problem.task),)
     verdict = design.verdict if same else judged_again(scaled, design).verdict
     start = Start.of_linkage(scaled, design.linkage, verdict)

@@ -68,6 +68,10 @@ class WholeDesigns(ABC):
         """One round of designs."""
 
     @abstractmethod
+    def follow(self, design: Candidate) -> Sequence[Start | Linkage]:
+        """What does the task near a design of another one; none where nothing does."""
+
+    @abstractmethod
     def closest_to(
         self, asked: ScaledProblem, key: str, rng: np.random.Generator
     ) -> Sequence[Start | Linkage]:

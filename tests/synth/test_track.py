@@ -9,7 +9,8 @@ import pytest
 
 from grashof import load, synthesize, track
 from grashof.analysis import solve_position, verify
-from grashof.problems import MotionTask, PathTask, Problem, ProblemError, Requirements
+from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, ProblemError, Requirements
+from grashof.synth import Candidate
 
 LINE = np.array([[0.0, 0.0], [0.4, 0.1], [0.9, 0.15], [1.4, 0.1], [1.8, 0.0]])
 
@@ -95,9 +96,46 @@ def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
         track(designs, replace(problem, mechanism="four-bar"))
 
 
-def test_functions_cannot_be_tracked() -> None:
-    with pytest.raises(ProblemError, match="designs of a function cannot be tracked; search again"):
-        track([], load("function-log10"))
+def moved_by(one: Candidate, other: Candidate) -> float:
+    """How far lengths moved, as a share of the longest."""
+    before, after = one.linkage.lengths, other.linkage.lengths
+    return float(np.abs(after / after.max() - before / before.max()).max())
+
+
+@pytest.mark.parametrize("turn", [0.02, -0.02])
+def test_pairs_of_a_function_are_followed(turn: float) -> None:
+    task = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
+    there = replace(task, outputs=task.outputs + np.radians([0, turn, 0, 0, turn]))
+    designs = synthesize(Problem(task=task)).candidates
+    after = track(designs, Problem(task=there))
+    assert len(after) == len(designs) > 0
+    for one, other in zip(designs, after, strict=True):
+        assert other.verdict.ok
+        assert other.verdict.output_error.max() < 1e-9
+        assert 0 < moved_by(one, other) < 0.1
+
+
+def test_fitted_functions_are_followed_to_the_least_error_nearby() -> None:
+    task = FunctionTask.from_degrees([0, 15, 30, 45, 60, 75], [0, 12, 22, 30, 36, 40])
+    problem = Problem(task=task)
+    there = replace(problem, task=replace(task, outputs=1.01 * task.outputs))
+    designs = synthesize(problem).candidates
+    after = track(designs, there)
+    assert all(one.verdict.ok for one in after)
+    least = min(one.error(there) for one in after)
+    assert least < 1.001 * synthesize(there).best.error(there)
+
+
+@pytest.mark.parametrize("name", ["quick-return", "quick-return-slide"])
+def test_strokes_are_followed(name: str) -> None:
+    problem = load(name)
+    there = replace(problem, task=replace(problem.task, time_ratio=problem.task.time_ratio + 0.01))
+    designs = synthesize(problem).candidates[:6]
+    after = track(designs, there)
+    for one, other in zip(designs, after, strict=True):
+        assert other.verdict.ok
+        assert moved_by(one, other) < 0.1
+        assert np.sign(other.linkage.assembly) == np.sign(one.linkage.assembly)
 
 
 def test_a_limit_that_is_raised_moves_designs_no_farther_than_onto_it(luggage) -> None:  # type: ignore[no-untyped-def]

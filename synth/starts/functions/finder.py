@@ -18,6 +18,8 @@ from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.optima import Optima
 from grashof.synth.starts.functions.pairs import KNOWN, exact_functions
 from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.theory.functions.fit import fitted
+from grashof.synth.theory.functions.optima import refined
 from grashof.synth.theory.functions.output import Generators
 
 LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg of transmission, that a choice is offered at
@@ -127,6 +129,17 @@ class Functions(WholeDesigns):
         found.sort(key=lambda each: each[0].error)
         settled = [(search.settled(optimum), search) for optimum, search in found[:1]]
         return self._linkages([(optimum.made, search.driver) for optimum, search in found + settled])
+
+    def follow(self, design: Candidate) -> list[Linkage]:
+        """The generator that a design leads to: through all pairs, or of least error nearby."""
+        found = list[tuple[Generators, int]]()
+        for search, made in self._again([design]):
+            if self.aims.exact:
+                pairs, held = self.aims.pairs(search.sense), search.first is not None
+                found.append((fitted(pairs, made, search.limits.of, held=held)[0], search.driver))
+            else:
+                found.append((refined(search.aim(), made).made, search.driver))
+        return self._linkages([each for each in found if len(each[0])])
 
     def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
         """By senses of output and driver the generators that designs are."""

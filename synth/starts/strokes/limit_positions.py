@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import ClassVar, TypeAlias
@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, StrokeTask
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
@@ -121,22 +122,28 @@ class LimitPositions(WholeDesigns):
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""
         starts = list[Start]()
-        for family, mirrored, ranges in within:
-
-            def inside(share: FloatArray, family: Family = family, mirrored: bool = mirrored) -> FloatArray:
-                return self._inside(family(share), mirrored)
-
-            for low, high in ranges:
-                shares = np.linspace(low, high, _SAMPLES)
-                k = int(np.argmax(inside(shares)))
-                between = highest(
-                    inside, float(shares[max(k - 1, 0)]), float(shares[min(k + 1, _SAMPLES - 1)])
-                )
-                tried = np.array([shares[k], between])
-                member = family(tried[[np.argmax(inside(tried))]])
-                # where these limits, or those of another problem, allow it
-                starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
+        for _, member, mirrored in _best(within, self._inside):
+            # where these limits, or those of another problem, allow it
+            starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
         return starts
+
+    def follow(self, design: Candidate) -> list[Start]:
+        """The member whose proportions are nearest to those of a design."""
+        row, linkage = design.linkage.mechanism, design.linkage
+        names = (*row.lengths, *(each.name for each in row.parameters if each.kind == "distance"))
+        shape = np.abs([float(getattr(linkage, name)) for name in names])
+
+        def near(members: Members, mirrored: bool) -> FloatArray:
+            lengths = np.abs(members.lengths)
+            size = np.linalg.norm(lengths, axis=1, keepdims=True)
+            off = np.linalg.norm(lengths / size - shape / np.linalg.norm(shape), axis=1)
+            side = (members.mirrored if mirrored else members).assembly
+            apart: FloatArray = -off - 10.0 * (side != float(linkage.assembly))
+            return apart
+
+        found = _best(self._stretches, near)
+        nearest = max(found, key=lambda each: each[0], default=None)
+        return [] if nearest is None else self._starts(*nearest[1:])
 
     def _round(self, starts: list[Start]) -> Round:
         return Round(starts, {"feasible finds": len(starts)})
@@ -282,3 +289,22 @@ class LimitPositions(WholeDesigns):
             terms=Terms(self.scaled.objective, settled=True),
             kind=self.scaled.kind,
         )
+
+
+def _best(
+    within: _Stretches, value: Callable[[Members, bool], FloatArray]
+) -> Iterator[tuple[float, Members, bool]]:
+    """In each of some stretches the member, (1,), of the greatest value, with that, and whether mirrored."""
+    for family, mirrored, ranges in within:
+
+        def of_share(share: FloatArray, family: Family = family, mirrored: bool = mirrored) -> FloatArray:
+            return value(family(share), mirrored)
+
+        for low, high in ranges:
+            shares = np.linspace(low, high, _SAMPLES)
+            k = int(np.argmax(of_share(shares)))
+            before, behind = float(shares[max(k - 1, 0)]), float(shares[min(k + 1, _SAMPLES - 1)])
+            tried = np.array([shares[k], highest(of_share, before, behind)])
+            values = of_share(tried)
+            best = int(np.argmax(values))
+            yield float(values[best]), family(tried[[best]]), mirrored

@@ -181,3 +181,21 @@ def test_the_keys_of_misses_are_not_those_of_designs_to_come(document: dict[str,
     (*_, again), _ = told(Job("search", document, "luggage", shown=shown))
     assert again["found"]
     assert not set(keys(again)) & set(keys(found))
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "changed"),
+    [
+        ("function-five-pairs", "function", {"output_deg": [0, 12.01, 31, 55, 80.02]}),
+        ("quick-return", "stroke", {"swing_deg": 80.5}),
+    ],
+)
+def test_designs_of_functions_and_strokes_follow(name: str, kind: str, changed: dict[str, Any]) -> None:
+    document = document_of(problem_text(name), name)
+    (*_, found), shown = told(Job("search", document, name))
+    (followed,), _ = told(Job("track", {**document, kind: {**document[kind], **changed}}, name, shown=shown))
+    assert keys(followed) == keys(found)[:TRACKED]
+    before = {design["key"]: design["linkage"]["r2"] for design in found["designs"]}
+    for design in followed["designs"]:
+        assert design["linkage"]["r2"] == pytest.approx(before[design["key"]], rel=0.05)
+        assert design["linkage"]["r2"] != before[design["key"]]
