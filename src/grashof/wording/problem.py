@@ -136,9 +136,6 @@ def _span(sizes: FloatArray, unit: str) -> str:
 def _search(problem: Problem) -> str:
     """How long is searched."""
     search = problem.search
-    if problem.task.has_output.any():
-        enough = f"up to {search.enough} designs, " if ends_with_enough(problem) else ""
-        return f"{enough}seed {search.seed}, effort {search.effort:g}"
     enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
     effort = f", effort {search.effort:g}" if search.effort != 1 else ""
     return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
