@@ -30,6 +30,16 @@ def test_errors_of_rounding_are_all_the_least() -> None:
 
 
 SIX = FunctionTask.from_degrees([0, 20, 45, 70, 90, 110], [0, 5, 12, 22, 27, 26])
+
+
+def test_a_list_offers_more_transmission_for_more_error() -> None:
+    best, *others = synthesize(Problem(task=SIX)).candidates
+    assert best.best_at == "least error"
+    transmission = [float(np.degrees(one.verdict.transmission_min_task)) for one in others]
+    assert "transmission from 60 deg" in {one.best_at for one in others}
+    assert all(any(level - 2 < each < level + 2 for each in transmission) for level in (30, 40, 50, 60))
+
+
 FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
 
 
