@@ -15,12 +15,14 @@ from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requir
 from grashof.synth import Result
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.explain import explain
-from grashof.synth.results.relaxations import relaxations
+from grashof.synth.results.relaxations import rejudged, relaxations
 from grashof.synth.results.relaxed_limits import Relaxation, limiting, loosest, relaxation
 from grashof.synth.results.trade_offs import Chosen
+from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import Here
+from grashof.synth.starts.whole_designs import WholeDesigns
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -240,3 +242,15 @@ def test_where_no_single_requirement_does_it_is_said() -> None:
     )
     assert "nor all but one" in notes(result)
     assert {"o2", "o4"} <= {defect.requirement for defect in result.nearest[0].verdict.defects}
+
+
+@pytest.mark.parametrize("mechanism", ["four-bar", "slider-crank", "inverted-slider-crank"])
+def test_linkages_of_every_kind_judged_again_miss_the_same(mechanism: str) -> None:
+    points = [[0, 0], [1, 0.4], [2, 0.5], [3, 0.1], [3.5, -0.4]]
+    scaled = ScaledProblem.of(Problem(task=PathTask(points), mechanism=mechanism))
+    finder = finder_for(scaled)
+    assert not isinstance(finder, WholeDesigns)
+    linkages = finder.near(np.random.default_rng(0))
+    again = rejudged(scaled, linkages)
+    np.testing.assert_allclose(again.violations, linkages.violations, atol=1e-12)
+    np.testing.assert_allclose(again.transmission, linkages.transmission, atol=1e-9)
