@@ -5,12 +5,11 @@ from __future__ import annotations
 import reprlib
 from dataclasses import dataclass
 
-import numpy as np
-
-from grashof.analysis import Verdict, solve_position, verify
-from grashof.figures.slides import Travel
+from grashof.analysis import Verdict, verify
+from grashof.drawing.scene import Scene
 from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
+from grashof.problems.values.linkages.linkage_parts import Link
 from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
 
@@ -58,19 +57,15 @@ class Subject:
         return self.spec.linkage
 
     @property
-    def travel(self) -> Travel:
-        """How far its slide goes; NaN where it has none."""
-        if not self.linkage.mechanism.slides:
-            return Travel(np.nan, np.nan)
-        far = [solve_position(self.linkage, each).travel for each in self.sweep.angles()]
-        every = np.concatenate(far)
-        return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
+    def scene(self) -> Scene:
+        """What is drawn of it, over all that its driver can do."""
+        return Scene(self.linkage, tuple(self.sweep.angles()))
 
     @property
-    def cylinder_on(self) -> str:
-        """The link that a cylinder acts on; empty without one."""
+    def cylinder_link(self) -> Link | None:
+        """The link that a cylinder acts on; None without one."""
         cylinder = None if self.verdict is None else self.verdict.cylinder
-        return "" if cylinder is None else cylinder.on
+        return None if cylinder is None else self.linkage.mechanism.links[cylinder.link - 1]
 
     @property
     def sweep(self) -> Sweep:

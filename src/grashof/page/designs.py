@@ -20,6 +20,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
+from grashof.drawing.scene import bodies_of
 from grashof.page.render import compact, plain
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -75,9 +76,8 @@ def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()
     [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
     """
     found: dict[str, list[str]] = {}
-    for link in (link for kind in kinds for link in kind.links[1:]):
-        name = f"{link.name} {'-'.join(link.labels)}"
-        found.setdefault(_STYLES[link.number - 2], []).append(name)
+    for body in (body for kind in kinds for body in bodies_of(kind)):
+        found.setdefault(_STYLES[body.link.number - 2], []).append(body.words)
     words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
     return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
 
@@ -106,7 +106,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             if design.verdict.branch_ok
             else None,
             "torque": torque,
-            **_cylinder(design),
+            **cylinder_data(design.verdict.cylinder, design.values["cylinder_closed"]),
             **_function(problem, linkage, design),
             "figures": {key: plain(value) for key, value in figures.items()},
         }
@@ -117,12 +117,10 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
     ]
 
 
-def _cylinder(design: Candidate) -> dict[str, Any]:
-    """The cylinder as the scripts draw it."""
-    driven = design.verdict.cylinder
+def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
+    """A cylinder of some closed length, which may be unknown, as the scripts draw it; nothing without one."""
     if driven is None:
         return {}
-    closed = design.values["cylinder_closed"]
     return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
 
 

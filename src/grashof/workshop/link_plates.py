@@ -9,7 +9,8 @@ from itertools import combinations
 import numpy as np
 import shapely
 
-from grashof.models.frames import points_on
+from grashof.drawing.frames import points_on
+from grashof.drawing.scene import bodies_of
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
@@ -24,8 +25,7 @@ _P = "P"
 
 def plated(kind: Mechanism) -> tuple[Link, ...]:
     """The links that are plates: all that move, but for a slider or a block, which is a pin in a slot."""
-    pins = {slider for _, slider in kind.slides}
-    return tuple(link for link in kind.links[1:] if link.number not in pins)
+    return tuple(body.link for body in bodies_of(kind) if not body.slides)
 
 
 def link_plates(
