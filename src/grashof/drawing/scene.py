@@ -37,25 +37,25 @@ class Body:
         """Its name and its points, as legends have them."""
         return f"{self.link.name} {'-'.join(self.link.labels)}"
 
-    def lines(self, places: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
+    def lines(self, stand: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
         """Through which points, each of shape (2,), it is drawn: its bar or plate, its block, or its rod."""
         if self.slides:
             return (CORNERS, self.link.points) if len(self.link.points) > 1 else (CORNERS,)
-        return (_ROD, _ARM) if self.guides else (self._sides(places),)
+        return (_ROD, _ARM) if self.guides else (self._sides(stand),)
 
-    def areas(self, places: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
+    def areas(self, stand: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
         """The corners of its plate or block, which covers what is below."""
-        plate = (self._sides(places),) if len(self.link.points) > 2 else ()
+        plate = (self._sides(stand),) if len(self.link.points) > 2 else ()
         return (*plate, CORNERS) if self.slides else plate
 
-    def _sides(self, places: Mapping[str, FloatArray]) -> tuple[str, ...]:
+    def _sides(self, stand: Mapping[str, FloatArray]) -> tuple[str, ...]:
         """The ends of a bar; the corners of a plate all round, in an order that does not cross itself."""
         corners = list(self.link.points)
         if len(corners) == 2:
             return self.link.points
         if len(corners) > 3:
-            middle = np.mean([places[name] for name in corners], axis=0)
-            corners.sort(key=lambda name: float(np.arctan2(*(places[name] - middle)[::-1])))
+            middle = np.mean([stand[name] for name in corners], axis=0)
+            corners.sort(key=lambda name: float(np.arctan2(*(stand[name] - middle)[::-1])))
         return (*corners, corners[0])
 
 
@@ -137,6 +137,26 @@ class Scene:
                 angle, guide = float(getattr(self.linkage, loop.slide_angle)), loop.dyad.hosts[1]
                 found.append(Slide(number, second, guide, loop.e, loop.e, angle, offset))
         return tuple(found)
+
+    def frame(self, link: Link) -> dict[str, FloatArray]:
+        """Points (2,) of a link, in their order, in its frame; the ground's is global.
+
+        >>> from grashof.problems import FourBar
+        >>> norton = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(50, 20))
+        >>> {name: at.tolist() for name, at in Scene(norton).frame(norton.mechanism.links[2]).items()}
+        {'a': [0.0, 0.0], 'b': [120.0, 0.0], 'p': [50.0, 20.0]}
+        """
+        return self.ground if link.number == 1 else {name: self._on(link, name) for name in link.points}
+
+    def _on(self, link: Link, name: str) -> FloatArray:
+        if name == link.points[0]:
+            return np.zeros(2)
+        if name in ("p", "c", "d"):
+            arm: FloatArray = getattr(self.linkage, "coupler_point" if name == "p" else name)
+            return arm
+        length = f"r{link.number}"  # of a block none: B is as far from O4 as the rod is
+        length = length if hasattr(self.linkage, length) else "offset"
+        return np.array([float(getattr(self.linkage, length)), 0.0])
 
     def reach(self, slide: Slide) -> tuple[float, float]:
         """Least and largest travel of a slide over the motion."""

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.drawing.frames import points_on
 from grashof.drawing.scene import Scene
 from grashof.models.model import Model
 from grashof.models.xml import add
@@ -154,8 +153,8 @@ def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
 
     The first link of a dyad hangs on the host of C, the second on that of D; a rod hangs on its block.
     """
-    linkage, at, kind = model.linkage, model.first, model.linkage.mechanism
-    frames = {link.number: points_on(linkage, link) for link in kind.links}
+    scene, at, kind = Scene(model.linkage), model.first, model.linkage.mechanism
+    frames = {link.number: scene.frame(link) for link in kind.links}
     angles = {1: 0.0, 2: model.start} | {
         link.number: float(at.angles[link.number]) for link in kind.links[2:]
     }
@@ -168,7 +167,7 @@ def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
         bodies[number] = _Body(link, host, place, angle, _Joint(joint, angle), points)
 
     hang(2, 1, "O2", _named(frames[2]))
-    slides = {slide.loop: slide for slide in Scene(linkage).slides}
+    slides = {slide.loop: slide for slide in scene.slides}
     for number, loop in enumerate(kind.loops):
         (first, second), (on_c, on_d), slide = loop.links, loop.dyad.hosts, slides.get(number)
         points, e = _named(frames[second]), loop.e.upper()

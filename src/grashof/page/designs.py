@@ -68,6 +68,12 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     return Travel(low, high, False)
 
 
+def moves(design: Candidate) -> bool:
+    """Whether there is any position of it that could be drawn."""
+    theta2 = design.verdict.theta2
+    return bool(np.isfinite(theta2).all()) and not np.isnan(driver_travel(design.linkage, theta2).low)
+
+
 def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
     """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
