@@ -24,6 +24,10 @@ CORNERS = ("block1", "block2", "block3", "block4", "block1")  # all round
 _ROD, _ARM = ("rod1", "rod2"), ("foot", "p")  # ends of the rod; from the rod to P beside it
 
 
+# Of links 2, 3, ...: links of one role look alike in all drawings.
+ROLES = ("driver", "coupler", "output", "coupler-2", "output-2")
+
+
 @dataclass(frozen=True, slots=True)
 class Body:
     """A moving link: a bar or plate; a slider or block, which slides on another; a rod, which guides one."""
@@ -31,6 +35,11 @@ class Body:
     link: Link
     slides: bool = False
     guides: bool = False
+
+    @property
+    def role(self) -> str:
+        """Its name, but that a slider or block counts as an output."""
+        return ROLES[self.link.number - 2]
 
     @property
     def words(self) -> str:

@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, writers
@@ -191,14 +192,10 @@ class _Moving:
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
         """Name the moving points, and tell driver angle and time."""
-        named = {
-            name: place for name, place in self._stands[0].items() if name in subject.linkage.mechanism.moving
-        }
+        look: dict[str, Any] = {"textcoords": "offset points", "color": GROUND, "zorder": 8}
         self._names = {
-            name: axes.annotate(
-                name.upper(), tuple(place), (6, 6), textcoords="offset points", color=GROUND, zorder=8
-            )
-            for name, place in named.items()
+            name: axes.annotate(name.upper(), tuple(self._stands[0][name]), (6, 6), **look)
+            for name in subject.linkage.mechanism.moving
         }
         self._told = list(_clock(subject, state.theta2))
         self._clock = axes.text(0.01, 0.99, self._told[0], transform=axes.transAxes, va="top", zorder=8)

@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
 
 from grashof.analysis import solve_position
-from grashof.drawing.scene import Scene
+from grashof.drawing.scene import ROLES, Scene
 from grashof.figures.subject import Subject
 from grashof.problems import FunctionTask, Problem, Task
 from grashof.problems.values.arrays import FloatArray
@@ -22,11 +22,7 @@ from grashof.problems.values.arrays import FloatArray
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
 COUPLER_2, OUTPUT_2 = "#5b3fd6", "#6b3d00"
-COLOURS = {
-    "driver": DRIVER,
-    **{"coupler": COUPLER, **dict.fromkeys(("output", "slider", "block"), OUTPUT)},
-    **{"coupler-2": COUPLER_2, **dict.fromkeys(("output-2", "slider-2"), OUTPUT_2)},
-}
+COLOURS = dict(zip(ROLES, (DRIVER, COUPLER, OUTPUT, COUPLER_2, OUTPUT_2), strict=True))
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6

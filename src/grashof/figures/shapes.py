@@ -58,7 +58,7 @@ def shapes_of(subject: Subject, scene: Scene, stand: Stand, *, named: bool = Tru
         label = body.words if named else None
         width = 2.4 if len(body.link.points) == 2 else 1.6
         for points in body.lines(stand):
-            look = {"color": COLOURS[body.link.name], "linewidth": width, "label": label, "zorder": 4}
+            look = {"color": COLOURS[body.role], "linewidth": width, "label": label, "zorder": 4}
             yield Shape(points, look)
             label = None
     kind = scene.linkage.mechanism
@@ -68,11 +68,12 @@ def shapes_of(subject: Subject, scene: Scene, stand: Stand, *, named: bool = Tru
     for body in scene.bodies:
         for points in body.areas(stand):
             alpha = 0.25 if points is CORNERS else 0.1
-            look = {"color": COLOURS[body.link.name], "linewidth": 0, "alpha": alpha, "zorder": 3}
+            look = {"color": COLOURS[body.role], "linewidth": 0, "alpha": alpha, "zorder": 3}
             yield Shape(points, look, filled=True)
-    if (link := subject.cylinder_link) is not None:
-        bracket = (link.points[0], _PIVOT, link.points[:2][-1])  # a slider has one point alone
-        yield Shape(bracket, {"color": COLOURS[link.name], "linewidth": 1.0, "zorder": 3.1})
+    if (cylinder := subject.cylinder) is not None:
+        body = scene.bodies[cylinder.link - 2]
+        bracket = (body.link.points[0], _PIVOT, body.link.points[:2][-1])  # a slider has one point alone
+        yield Shape(bracket, {"color": COLOURS[body.role], "linewidth": 1.0, "zorder": 3.1})
         look = {"solid_capstyle": "butt", "zorder": 3.2}
         yield Shape((_END, _PIVOT), {"color": _ROD, "linewidth": 2.6, **look})
         label = "cylinder" if named else None

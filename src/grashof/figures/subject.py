@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from grashof.analysis import Verdict, verify
 from grashof.drawing.scene import Scene
-from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
+from grashof.problems import Cylinder, DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
-from grashof.problems.values.linkages.linkage_parts import Link
 from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
 
@@ -62,10 +61,9 @@ class Subject:
         return Scene(self.linkage, tuple(self.sweep.angles()))
 
     @property
-    def cylinder_link(self) -> Link | None:
-        """The link that a cylinder acts on; None without one."""
-        cylinder = None if self.verdict is None else self.verdict.cylinder
-        return None if cylinder is None else self.linkage.mechanism.links[cylinder.link - 1]
+    def cylinder(self) -> Cylinder | None:
+        """The cylinder that drives it; None where the task is without one."""
+        return None if self.verdict is None else self.verdict.cylinder
 
     @property
     def sweep(self) -> Sweep:

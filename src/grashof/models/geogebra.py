@@ -163,15 +163,8 @@ def _angle(made: ET.Element, model: Model) -> None:
     slider = {"width": "300", "x": "30", "y": "40", "fixed": "true", "horizontal": "true"}
     add(element, "slider", min=low, max=high, absoluteScreenLocation="true", **slider)
     to_and_fro, onward = "0", "1"
-    step = repr((model.high - model.low) / 360)
-    add(
-        element,
-        "animation",
-        step=step,
-        speed="1",
-        type=onward if model.turns else to_and_fro,
-        playing="false",
-    )
+    way = {"speed": "1", "type": onward if model.turns else to_and_fro, "playing": "false"}
+    add(element, "animation", step=repr((model.high - model.low) / 360), **way)
     add(element, "caption", val="driver angle, rad")
 
 

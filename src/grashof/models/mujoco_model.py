@@ -155,9 +155,7 @@ def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
     """
     scene, at, kind = Scene(model.linkage), model.first, model.linkage.mechanism
     frames = {link.number: scene.frame(link) for link in kind.links}
-    angles = {1: 0.0, 2: model.start} | {
-        link.number: float(at.angles[link.number]) for link in kind.links[2:]
-    }
+    angles = {1: 0.0} | {number: float(angle) for number, angle in at.angles.items()}
     bodies, loops = dict[int, _Body](), list[_Loop]()
 
     def hang(number: int, host: int, joint: str, points: dict[str, FloatArray]) -> None:

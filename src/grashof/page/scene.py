@@ -54,9 +54,7 @@ def loci_of(result: Result) -> dict[str, Any] | None:
 
 
 def _targets(task: Task) -> dict[str, Any]:
-    if not (
-        task.has_position.any() or task.has_angle.any()
-    ):  # limit positions are where the linkage has them
+    if not task.has_position.any() and not task.has_angle.any():  # limit positions: the linkage has them
         return {"points": [], "closed": task.closed}
     if task.only_points:
         return {"points": task.positions.tolist(), "closed": task.closed}
