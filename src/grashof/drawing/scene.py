@@ -17,15 +17,13 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
 from grashof.problems.values.linkages.mechanism import Mechanism
 
+# Of links 2, 3, ...; links of one role look alike in all drawings.
+ROLES = ("driver", "coupler", "output", "coupler-2", "output-2")
 # Of a block: half of its length in lengths of the driver, its width in that half.
 _HALF, _WIDE = 0.22, 0.6
 _TICKS = 14  # of the hatching of a guide, at least
 CORNERS = ("block1", "block2", "block3", "block4", "block1")  # all round
 _ROD, _ARM = ("rod1", "rod2"), ("foot", "p")  # ends of the rod; from the rod to P beside it
-
-
-# Of links 2, 3, ...: links of one role look alike in all drawings.
-ROLES = ("driver", "coupler", "output", "coupler-2", "output-2")
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +113,7 @@ class Slide:
         return state.loops[self.loop].travel
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """A single linkage as drawings show it, with driver angles (N,) of each range of its motion, rad."""
 

@@ -64,9 +64,8 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     with rc_context(STYLE):
         figure = Figure(figsize=(11.0, 8.5) if generates else (8.5, 7.0))
         room = (0.07, 0.4, 0.9, 0.5) if generates else (0.08, 0.08, 0.89, 0.83)
-        fit_title(
-            plot_linkage(candidate, problem, ax=figure.add_axes(room)), _heading(problem, candidate, rank)
-        )
+        axes = plot_linkage(candidate, problem, ax=figure.add_axes(room))
+        fit_title(axes, _heading(problem, candidate, rank))
         if isinstance(task, FunctionTask):  # below it wanted and generated output, and the structural error
             below = figure.add_axes((0.07, 0.07, 0.41, 0.25)), figure.add_axes((0.56, 0.07, 0.41, 0.25))
             plot_function(task, candidate, ax=below)
