@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.animation import FuncAnimation, writers
@@ -16,22 +17,19 @@ from matplotlib.text import Annotation, Text
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
-from grashof.figures.cylinder import DrawnCylinder, cylinder_places
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,
     GROUND,
     PATH,
-    Links,
     body_outline,
     draw_ground,
     draw_scene,
     draw_task,
     missing_glyphs_unwarned,
     name_points,
-    stands,
 )
-from grashof.figures.slides import CORNERS, ROD
+from grashof.figures.shapes import Drawn, Shape, Stand, shapes_of, stands
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -170,47 +168,34 @@ class _Moving:
     def __init__(
         self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
     ) -> None:
-        linkage, problem = subject.linkage, subject.problem
-        travel = subject.travel
-        self._stands, self._path = stands(linkage, state, travel), path
+        scene, carried = subject.scene, _carried(subject, state)
+        self._stands, self._path = stands(subject, scene, state), path
+        shapes = list(shapes_of(subject, scene, self._stands[0], named=False))
+        if carried:
+            self._stands = [stand | body for stand, body in zip(self._stands, carried, strict=True)]
+            shapes.append(Shape(tuple(carried[0]), {"color": BODY, "alpha": 0.7, "zorder": 3.5}, filled=True))
         self._names: dict[str, Annotation] = {}
         self._told: list[str] = []
         self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._links = Links(axes, linkage.mechanism, self._stands[0], named=False)
-        self._rams = cylinder_places(subject, state)
-        self._cylinder = [
-            DrawnCylinder(axes, subject.cylinder_on, places, named=False) for places in self._rams[:1]
-        ]
+        self._shapes = Drawn(axes, shapes, self._stands[0])
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
-        self._corners = _carried(subject, state)
-        if problem is not None:
-            draw_scene(axes, problem)
+        if subject.problem is not None:
+            draw_scene(axes, subject.problem)
             draw_task(axes, subject)
-        self._bodies = [
-            axes.fill(*corners.T, facecolor=BODY, edgecolor=BODY, alpha=0.7, zorder=3.5)[0]
-            for corners in self._corners[:1]
-        ]
-        draw_ground(axes, linkage, travel)
+        draw_ground(axes, scene)
         plane(axes, subject.spec.length_unit)
-        seen = {*linkage.mechanism.joints, *CORNERS, *ROD}
-        joints = [place for stand in self._stands for name, place in stand.items() if name in seen]
-        rams = self._rams[:, :3].reshape(-1, 2)
-        axes.update_datalim(np.concatenate([joints, path, rams, *self._corners]))
-        name_points(axes, {name.upper(): getattr(linkage, name) for name in linkage.mechanism.ground})
+        axes.update_datalim(np.concatenate([[*stand.values()] for stand in self._stands] + [path]))
+        name_points(axes, {name.upper(): place for name, place in scene.ground.items()})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
         """Name the moving points, and tell driver angle and time."""
-        named = {
-            name: place for name, place in self._stands[0].items() if name in subject.linkage.mechanism.moving
-        }
+        look: dict[str, Any] = {"textcoords": "offset points", "color": GROUND, "zorder": 8}
         self._names = {
-            name: axes.annotate(
-                name.upper(), tuple(place), (6, 6), textcoords="offset points", color=GROUND, zorder=8
-            )
-            for name, place in named.items()
+            name: axes.annotate(name.upper(), tuple(self._stands[0][name]), (6, 6), **look)
+            for name in subject.linkage.mechanism.moving
         }
         self._told = list(_clock(subject, state.theta2))
         self._clock = axes.text(0.01, 0.99, self._told[0], transform=axes.transAxes, va="top", zorder=8)
@@ -221,15 +206,10 @@ class _Moving:
             text.xy = tuple(self._stands[frame][name])
         if self._clock is not None:
             self._clock.set_text(self._told[frame])
-        self._links.move(self._stands[frame])
-        for drawn in self._cylinder:
-            drawn.move(self._rams[frame])
+        self._shapes.move(self._stands[frame])
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
-        for body in self._bodies:
-            body.set_xy(self._corners[frame])
         told = [] if self._clock is None else [*self._names.values(), self._clock]
-        rams = [artist for drawn in self._cylinder for artist in drawn.artists]
-        return [*self._links.artists, *rams, self._trace, *self._bodies, *told]
+        return [*self._shapes.artists, self._trace, *told]
 
 
 def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:
@@ -243,11 +223,15 @@ def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:
         yield f"{time}theta2 = {angle:.0f} deg"
 
 
-def _carried(subject: Subject, state: Position) -> list[FloatArray]:
-    """Corners of the body that the task has P carry, in every frame; none where it has none."""
+def _carried(subject: Subject, state: Position) -> list[Stand]:
+    """Corners of the body that the task has P carry, by name, in every frame; none where it has none."""
     if subject.problem is None:
         return []
     task = subject.problem.task
     angles = state.theta3 + subject.linkage.body_angle
     found = (body_outline(task, place, float(angle)) for place, angle in zip(state.p, angles, strict=True))
-    return [corners for corners in found if corners is not None]
+    return [
+        {f"corner{number}": corner for number, corner in enumerate(corners)}
+        for corners in found
+        if corners is not None
+    ]

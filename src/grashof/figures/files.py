@@ -59,22 +59,16 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     matplotlib.figure.Figure
         Equal axes, in the problem's unit; the linkage darkens from the first target to the last.
     """
+    task = problem.task
+    generates = isinstance(task, FunctionTask)
     with rc_context(STYLE):
-        if isinstance(problem.task, FunctionTask):
-            return _draw_generator(problem, problem.task, candidate, rank)
-        figure = Figure(figsize=(8.5, 7.0))
-        axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.08, 0.08, 0.89, 0.83)))
+        figure = Figure(figsize=(11.0, 8.5) if generates else (8.5, 7.0))
+        room = (0.07, 0.4, 0.9, 0.5) if generates else (0.08, 0.08, 0.89, 0.83)
+        axes = plot_linkage(candidate, problem, ax=figure.add_axes(room))
         fit_title(axes, _heading(problem, candidate, rank))
-    return figure
-
-
-def _draw_generator(problem: Problem, task: FunctionTask, candidate: Candidate, rank: int) -> Figure:
-    """A function generator, beside it wanted and generated output and the structural error."""
-    figure = Figure(figsize=(11.0, 8.5))
-    axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.07, 0.4, 0.9, 0.5)))
-    fit_title(axes, _heading(problem, candidate, rank))
-    beside = figure.add_axes((0.07, 0.07, 0.41, 0.25)), figure.add_axes((0.56, 0.07, 0.41, 0.25))
-    plot_function(task, candidate, ax=beside)
+        if isinstance(task, FunctionTask):  # below it wanted and generated output, and the structural error
+            below = figure.add_axes((0.07, 0.07, 0.41, 0.25)), figure.add_axes((0.56, 0.07, 0.41, 0.25))
+            plot_function(task, candidate, ax=below)
     return figure
 
 

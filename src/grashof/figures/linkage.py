@@ -9,14 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import Position, solve_position
-from grashof.figures.cylinder import DrawnCylinder, cylinder_places
 from grashof.figures.function import plot_wanted
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
     KEPT_OUT,
     PATH,
-    Links,
     apart,
     draw_ground,
     draw_path,
@@ -26,9 +24,9 @@ from grashof.figures.parts import (
     draw_task,
     in_points,
     name_points,
-    stands,
     targets_shown,
 )
+from grashof.figures.shapes import Drawn, shapes_of, stands
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, FunctionTask, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -80,20 +78,17 @@ def plot_linkage(
     """
     subject = Subject.of(linkage, problem)
     state = _state(subject, theta2)
-    positions = stands(subject.linkage, state, subject.travel)
-    cylinders = cylinder_places(subject, state)
+    scene = subject.scene
+    positions = stands(subject, scene, state)
     ax = new_axes(ax)
     if subject.problem is not None:
         draw_scene(ax, subject.problem)
-    draw_path(ax, subject)
+    draw_path(ax, subject, scene)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
-    for points, shade in zip(positions, shades, strict=True):
-        Links(ax, subject.linkage.mechanism, points, shade, named=points is positions[-1])
-    for number, places in enumerate(cylinders, start=1):
-        on, named = subject.cylinder_on, number == len(cylinders)
-        DrawnCylinder(ax, on, places, shades[number - 1], named=named)
+    for stand, shade in zip(positions, shades, strict=True):
+        Drawn(ax, shapes_of(subject, scene, stand, named=stand is positions[-1]), stand, shade)
     draw_task(ax, subject)
-    draw_ground(ax, subject.linkage, subject.travel)
+    draw_ground(ax, scene)
     draw_sense(ax, subject)
     plane(ax, subject.spec.length_unit)
     names: dict[tuple[float, ...], str] = {}
@@ -177,7 +172,7 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
     tens = [step * np.arange(np.ceil(low / step), np.ceil(high / step)) for low, high in subject.sweep.ranges]
     dots = solve_position(subject.linkage, np.concatenate(tens)).p
     ax = new_axes(ax)
-    draw_path(ax, subject)
+    draw_path(ax, subject, subject.scene)
     ax.plot(
         *dots.T, linestyle="none", marker="o", markersize=3.5, color=PATH, label="every 10 deg of the driver",
         zorder=3,

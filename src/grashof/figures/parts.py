@@ -1,4 +1,4 @@
-"""What pictures of linkages are put together from: links, ground, the path of P, the task and its scene."""
+"""What stands still in pictures of linkages: ground, the path of P, names, the task and its scene."""
 
 from __future__ import annotations
 
@@ -8,31 +8,21 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from matplotlib.text import Annotation
 
-from grashof.analysis import Position, solve_position
-from grashof.analysis.mechanism.position import places
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
-from grashof.figures.slides import ARM, CORNERS, ROD, Travel, draw_guide, slide_points
+from grashof.analysis import solve_position
+from grashof.drawing.scene import ROLES, Scene
 from grashof.figures.subject import Subject
-from grashof.problems import FunctionTask, Linkage, Problem, Task
+from grashof.problems import FunctionTask, Problem, Task
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage_parts import Link
-from grashof.problems.values.linkages.mechanism import Mechanism
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
 BODY = TARGET = "#e69f00"  # both are what is asked
 COUPLER_2, OUTPUT_2 = "#5b3fd6", "#6b3d00"
-COLOURS = {
-    "driver": DRIVER,
-    **{"coupler": COUPLER, **dict.fromkeys(("output", "slider", "block"), OUTPUT)},
-    **{"coupler-2": COUPLER_2, **dict.fromkeys(("output-2", "slider-2"), OUTPUT_2)},
-}
+COLOURS = dict(zip(ROLES, (DRIVER, COUPLER, OUTPUT, COUPLER_2, OUTPUT_2), strict=True))
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
@@ -49,101 +39,6 @@ def missing_glyphs_unwarned() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
         yield
-
-
-def stands(linkage: Linkage, state: Position, travel: Travel) -> list[dict[str, FloatArray]]:
-    """The points of a linkage and of what slides in each of N positions, by name, each of shape (2,)."""
-    found = places(linkage, state) | slide_points(linkage, state, travel)
-    return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
-
-
-class Links:
-    """The moving links as drawn in one position, with the points (2,) of `stands`, to be moved to others.
-
-    `shade` is from 0, invisible, to 1; `named` if the legend names them, needed once for several positions.
-    """
-
-    def __init__(
-        self,
-        axes: Axes,
-        kind: Mechanism,
-        points: Mapping[str, FloatArray],
-        shade: float = 1.0,
-        *,
-        named: bool = True,
-    ) -> None:
-        self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
-        for names, look in _looks(kind, points, named):
-            self._drawn += [(names, line) for line in axes.plot(*_at(points, names).T, alpha=shade, **look)]
-        for names, look in _faces(kind, points):
-            face = axes.fill(*_at(points, names).T, linewidth=0, **look | {"alpha": look["alpha"] * shade})[0]
-            self._drawn.append((names, face))
-
-    @property
-    def artists(self) -> list[Artist]:
-        """All that moves."""
-        return [artist for _, artist in self._drawn]
-
-    def move(self, points: Mapping[str, FloatArray]) -> None:
-        """Put the links where the points now are, each of shape (2,)."""
-        for names, artist in self._drawn:
-            corners = _at(points, names)
-            if isinstance(artist, Polygon):
-                artist.set_xy(corners)
-            else:
-                artist.set_data(*corners.T)
-
-
-def _looks(
-    kind: Mechanism, points: Mapping[str, FloatArray], named: bool
-) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
-    """Through which points the bars, the sides of the plate, the joints and P are drawn, and how."""
-    for link in sorted(kind.links[1:], key=lambda link: len(link.points)):
-        label = f"{link.name} {'-'.join(link.labels)}" if named else None
-        width = 2.4 if len(link.points) == 2 else 1.6
-        for names in _outlines(kind, link, points):
-            yield names, {"color": COLOURS[link.name], "linewidth": width, "label": label, "zorder": 4}
-            label = None
-    dot: dict[str, Any] = {"marker": "o", "linestyle": "none"}
-    joints = tuple(name for name in kind.moving if name in kind.joints)
-    yield joints, {**dot, "color": "white", "markeredgecolor": COUPLER, "markersize": 5, "zorder": 5}
-    yield ("p",), {**dot, "color": PATH, "markersize": 4, "zorder": 6}
-
-
-def _faces(
-    kind: Mechanism, points: Mapping[str, FloatArray]
-) -> Iterator[tuple[tuple[str, ...], dict[str, Any]]]:
-    """The corners of what is filled: plates, and blocks, which cover what is below."""
-    for link in kind.links[1:]:
-        if len(link.points) > 2:
-            yield _sides(link, points), {"color": COLOURS[link.name], "alpha": 0.1, "zorder": 3}
-    for _, block in kind.slides:
-        yield CORNERS, {"color": COLOURS[kind.links[block - 1].name], "alpha": 0.25, "zorder": 3}
-
-
-def _outlines(kind: Mechanism, link: Link, points: Mapping[str, FloatArray]) -> list[tuple[str, ...]]:
-    """The lines of a link: its bar or plate, its block and bar, or the rod that a block slides on."""
-    for rod, block in kind.slides:
-        if link.number == block:
-            return [CORNERS, link.points] if len(link.points) > 1 else [CORNERS]
-        if link.number == rod:
-            return [ROD, ARM]
-    return [_sides(link, points)]
-
-
-def _sides(link: Link, points: Mapping[str, FloatArray]) -> tuple[str, ...]:
-    """The ends of a bar, the corners of a plate all round: of many in an order that does not cross itself."""
-    if len(link.points) == 2:
-        return link.points
-    corners = list(link.points)
-    if len(corners) > 3:
-        middle = _at(points, corners).mean(axis=0)
-        corners.sort(key=lambda name: float(np.arctan2(*(points[name] - middle)[::-1])))
-    return (*corners, corners[0])
-
-
-def _at(points: Mapping[str, FloatArray], names: Sequence[str]) -> FloatArray:
-    return np.array([points[name] for name in names])
 
 
 def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
@@ -204,10 +99,12 @@ def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
     return not any((np.abs(place - other) < _TEXT).all() for other in others)
 
 
-def draw_ground(axes: Axes, linkage: Linkage, travel: Travel) -> None:
+def draw_ground(axes: Axes, scene: Scene) -> None:
     """The ground pivots, and the guide of a slide."""
-    draw_guide(axes, linkage, travel, {"color": GROUND, "zorder": 1.8})
-    for pivot in (getattr(linkage, name) for name in linkage.mechanism.ground):
+    for guide in (scene.guide(slide) for slide in scene.slides if not slide.carried):
+        for line, width in zip(guide, (1.6, 0.7), strict=True):
+            axes.plot(*line.T, linewidth=width, color=GROUND, zorder=1.8)
+    for pivot in scene.ground.values():
         axes.plot(*pivot[:, None], marker="^", color=GROUND, markersize=11, zorder=6)
         axes.plot(*pivot[:, None], marker="o", color="white", markersize=3, zorder=7)
 
@@ -227,29 +124,24 @@ def draw_sense(axes: Axes, subject: Subject) -> None:
     axes.annotate("", tuple(head), tuple(tail), arrowprops=style, zorder=7)
 
 
-def draw_path(axes: Axes, subject: Subject) -> None:
+def draw_path(axes: Axes, subject: Subject, scene: Scene) -> None:
     """The path of P over all that the driver can do; of an open task dotted, and the part used drawn out."""
-    linkage, problem, sweep = subject.linkage, subject.problem, subject.sweep
+    problem = subject.problem
     verdict = None if problem is None or problem.task.closed else subject.verdict
     style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
-    signs = [int(linkage.assembly)]
+    signs = [int(scene.linkage.assembly)]
     if verdict is not None:
-        whole = "whole turn" if sweep.turns else "all that it reaches"
+        whole = "whole turn" if subject.sweep.turns else "all that it reaches"
         style |= {"linewidth": 0.8, "linestyle": ":", "label": f"path of P, {whole}"}
         signs = sorted(set(verdict.assembly.tolist()))
     for sign in signs:
-        for angles in sweep.angles():
-            axes.plot(*_path_of_p(linkage, angles, sign).T, **style)
+        for track in scene.tracks(sign):
+            axes.plot(*track.T, **style)
             style["label"] = None
     if verdict is not None and verdict.branch_ok:  # else no motion joins the targets
         angles = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 181)
-        way = _path_of_p(linkage, angles, int(verdict.assembly[0]))
+        way = scene.path(angles, int(verdict.assembly[0]))
         axes.plot(*way.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
-
-
-def _path_of_p(linkage: Linkage, theta2: FloatArray, assembly: int) -> FloatArray:
-    """P at some driver angles and as many between them as its path needs, shape (N, 2)."""
-    return smooth_polygon(lambda angles: solve_position(linkage, angles, assembly).p, theta2)[1]
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:

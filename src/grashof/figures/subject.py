@@ -5,11 +5,9 @@ from __future__ import annotations
 import reprlib
 from dataclasses import dataclass
 
-import numpy as np
-
-from grashof.analysis import Verdict, solve_position, verify
-from grashof.figures.slides import Travel
-from grashof.problems import DynamicsSpec, LinkageSpec, Problem, ProblemError
+from grashof.analysis import Verdict, verify
+from grashof.drawing.scene import Scene
+from grashof.problems import Cylinder, DynamicsSpec, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
 from grashof.study.sweep import Sweep
 from grashof.synth import Candidate
@@ -58,19 +56,14 @@ class Subject:
         return self.spec.linkage
 
     @property
-    def travel(self) -> Travel:
-        """How far its slide goes; NaN where it has none."""
-        if not self.linkage.mechanism.slides:
-            return Travel(np.nan, np.nan)
-        far = [solve_position(self.linkage, each).travel for each in self.sweep.angles()]
-        every = np.concatenate(far)
-        return Travel(float(np.nanmin(every)), float(np.nanmax(every)))
+    def scene(self) -> Scene:
+        """What is drawn of it, over all that its driver can do."""
+        return Scene(self.linkage, tuple(self.sweep.angles()))
 
     @property
-    def cylinder_on(self) -> str:
-        """The link that a cylinder acts on; empty without one."""
-        cylinder = None if self.verdict is None else self.verdict.cylinder
-        return "" if cylinder is None else cylinder.on
+    def cylinder(self) -> Cylinder | None:
+        """The cylinder that drives it; None where the task is without one."""
+        return None if self.verdict is None else self.verdict.cylinder
 
     @property
     def sweep(self) -> Sweep:

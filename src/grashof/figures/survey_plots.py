@@ -8,6 +8,7 @@ from dataclasses import replace
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from grashof.drawing.scene import bodies_of
 from grashof.figures.curves import DYNAMICS, KINEMATICS, SLIDE, Panel, draw_curves
 from grashof.figures.files import STYLE, fit_title, shortened
 from grashof.figures.linkage import figure_of, plot_linkage
@@ -59,8 +60,8 @@ def _path(report: LinkageReport) -> Figure:
         figure = Figure(figsize=(8.5, 7.0), layout="constrained")
         axes = plot_linkage(replace(report.sweep.spec, problem=None), ax=figure.subplots())
         halfway = "" if report.masses is not None else " (halfway)"
-        links = report.sweep.spec.linkage.mechanism.links[1:]
-        colours = {f"link {link.number}": COLOURS[link.name] for link in links}
+        bodies = bodies_of(report.sweep.spec.linkage.mechanism)
+        colours = {f"link {body.link.number}": COLOURS[body.role] for body in bodies}
         for name, track in mass_tracks(report).items():
             label = f"centre of mass, {name}{'' if name == 'all links' else halfway}"
             width = 1.6 if name == "all links" else 1.0

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from grashof.live.jobs import Job, Line, error_line
-from grashof.page.designs import driver_travel
+from grashof.page.designs import moves
 from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
@@ -175,13 +175,6 @@ def _list_line(
         lost=[{"key": key, "why": why} for key, why in (lost or {}).items()],
         **data,
     )
-
-
-def moves(design: Candidate) -> bool:
-    """Whether there is any position of it that could be drawn."""
-    if not np.isfinite(design.verdict.theta2).all():
-        return False
-    return not np.isnan(driver_travel(design.linkage, design.verdict.theta2).low)
 
 
 def _asked(problem: Problem) -> list[str]:

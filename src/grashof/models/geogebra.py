@@ -9,10 +9,12 @@ from io import BytesIO
 import numpy as np
 
 from grashof.analysis import solve_position
+from grashof.analysis.mechanism.position import places
+from grashof.drawing.scene import Scene
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import Linkage
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
+from grashof.problems.values.linkages.mechanism import DyadKind
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the same linkage gives the same bytes
 _WINDOW = (600, 450)  # pixels
@@ -98,8 +100,8 @@ def worksheet(model: Model) -> str:
     _angle(made, model)
     for name, value in _numbers(linkage).items():
         _number(made, name, repr(value))
-    for name in linkage.mechanism.ground:
-        x, y = getattr(linkage, name).tolist()
+    for name, pivot in Scene(linkage).ground.items():
+        x, y = pivot.tolist()
         _point(made, name.upper(), f"({x!r}, {y!r})", fixed=True)
     for name, formula in _formulas(linkage).items():
         (_point if name.isupper() else _number)(made, name, formula)
@@ -136,22 +138,20 @@ def _formulas(linkage: Linkage) -> dict[str, str]:
         origin, (e, g) = kind.links[link - 1].labels[0], turned[link]
         return f"{origin} + {u} * ({e}, {g}) + {v} * (-{g}, {e})"
 
-    for index, dyad in enumerate(kind.dyads):
-        first, second = 2 * index + 3, 2 * index + 4
-        c, d, e = (point.upper() for point in LOOP_POINTS[index])
-        for host, point in zip(dyad.hosts, (c, d), strict=True):
+    for loop in kind.loops:
+        (first, second), ending = loop.links, loop.assembly.removeprefix("assembly")
+        c, d, e = loop.c.upper(), loop.d.upper(), loop.e.upper()
+        for host, point in zip(loop.dyad.hosts, (c, d), strict=True):
             if host != 1 and point not in found:
                 found[point] = carried(host, f"u_{point}", f"v_{point}")
-        turned[first] = (f"e_{first}", f"g_{first}") if index else ("e", "g")
-        names = {"C": c, "D": d, "E": e, "m": f"r{first}", "n": f"r{second}", "_": "_2" if index else ""}
+        turned[first] = (f"e_{first}", f"g_{first}") if ending else ("e", "g")
+        names = {"C": c, "D": d, "E": e, "m": f"r{first}", "n": f"r{second}", "_": ending}
         names |= zip("eg", turned[first], strict=True)
-        steps = {
-            name.format_map(names): formula.format_map(names) for name, formula in _STEPS[dyad.kind].items()
-        }
-        found |= steps
+        for name, formula in _STEPS[loop.dyad.kind].items():
+            found[name.format_map(names)] = formula.format_map(names)
         if second == kind.carries or any(second in other.hosts for other in kind.dyads):
             turned[second] = (f"e_{second}", f"g_{second}")
-            formulas = (formula.format_map(names) for formula in _SECOND[dyad.kind])
+            formulas = (formula.format_map(names) for formula in _SECOND[loop.dyad.kind])
             found |= zip(turned[second], formulas, strict=True)
     return found | {"P": carried(kind.carries, "u", "v")}
 
@@ -163,15 +163,8 @@ def _angle(made: ET.Element, model: Model) -> None:
     slider = {"width": "300", "x": "30", "y": "40", "fixed": "true", "horizontal": "true"}
     add(element, "slider", min=low, max=high, absoluteScreenLocation="true", **slider)
     to_and_fro, onward = "0", "1"
-    step = repr((model.high - model.low) / 360)
-    add(
-        element,
-        "animation",
-        step=step,
-        speed="1",
-        type=onward if model.turns else to_and_fro,
-        playing="false",
-    )
+    way = {"speed": "1", "type": onward if model.turns else to_and_fro, "playing": "false"}
+    add(element, "animation", step=repr((model.high - model.low) / 360), **way)
     add(element, "caption", val="driver angle, rad")
 
 
@@ -206,9 +199,7 @@ def _segment(made: ET.Element, link: str, one: str, other: str) -> None:
 def _view(model: Model) -> ET.Element:
     """The window: all that moves, at equal scales."""
     state = solve_position(model.linkage, np.linspace(model.low, model.high, 361)[1:-1])
-    moving = [getattr(state, name) for name in model.linkage.mechanism.moving]
-    fixed = [getattr(model.linkage, name)[None] for name in model.linkage.mechanism.ground]
-    every = np.concatenate([*moving, *fixed])
+    every = np.concatenate(list(places(model.linkage, state).values()))
     low, high = np.nanmin(every, axis=0), np.nanmax(every, axis=0)
     width, height = _WINDOW
     scale = 0.8 * min(width / (high[0] - low[0]), height / (high[1] - low[1]))

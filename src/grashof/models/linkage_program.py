@@ -6,12 +6,11 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from grashof.analysis import solve_position
+from grashof.drawing.scene import Scene, Slide
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 _UNITS = {"mm": "Millimeters", "in": "Inches"}  # what the program shows
 _LONGER = 0.1  # share of the travel that a guide is longer at each end
@@ -42,27 +41,24 @@ def linkage2(model: Model) -> str:
     >>> linkage2(Model.of(load_linkage_spec("pumpjack"))).count("<Link ")
     3
     """
-    linkage, at = model.linkage, model.first
-    kind = linkage.mechanism
-    fixed = {name: getattr(linkage, name) for name in kind.ground}
-    links = {link.name: link.points for link in kind.links[1:] if len(link.points) > 1}
+    kind, scene = model.linkage.mechanism, Scene(model.linkage, (np.linspace(model.low, model.high, 721),))
+    fixed = dict(scene.ground)
+    links = {body.link.name: body.link.points for body in scene.bodies if len(body.link.points) > 1}
     guided = dict[str, tuple[str, str]]()
-    for index, dyad in enumerate(kind.dyads):
-        if dyad.kind is DyadKind.RPR:
+    for slide in scene.slides:
+        if slide.carried:
             raise ProblemError(
                 "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about "
                 "a pivot"
             )
-        if dyad.kind is DyadKind.RRP:
-            slider, guide = kind.links[2 * index + 3], "guide" if index == 0 else f"guide-{index + 1}"
-            if slider.name in links:
-                raise ProblemError(
-                    f"--linkage2 cannot hold a {kind.word} with P on its {slider.name}: a slider of Linkage "
-                    "is a point"
-                )
-            links[guide] = guided[LOOP_POINTS[index][2]] = f"{guide} start", f"{guide} end"
-            fixed |= zip(links[guide], _guide(model, index), strict=True)
-    places = fixed | {name: getattr(at, name) for name in kind.moving}
+        slider, guide = kind.links[slide.slider - 1].name, f"guide{slide.ending}"
+        if slider in links:
+            raise ProblemError(
+                f"--linkage2 cannot hold a {kind.word} with P on its {slider}: a slider of Linkage is a point"
+            )
+        links[guide] = guided[slide.pin] = f"{guide} start", f"{guide} end"
+        fixed |= zip(links[guide], _guide(model, scene, slide), strict=True)
+    places = fixed | {name: getattr(model.first, name) for name in kind.moving}
     root = ET.Element("linkage2")
     shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
     add(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
@@ -90,13 +86,9 @@ def _rpm(model: Model) -> float:
     return _RPM if dynamics is None else float(abs(dynamics.speed_rpm))
 
 
-def _guide(model: Model, index: int) -> FloatArray:
-    """Ends of a guide that is somewhat longer than the way of the slider of a dyad, shape (2, 2)."""
-    state = solve_position(model.linkage, np.linspace(model.low, model.high, 721))
-    travel = state.loops[index].travel
-    low, high = float(np.nanmin(travel)), float(np.nanmax(travel))
+def _guide(model: Model, scene: Scene, slide: Slide) -> FloatArray:
+    """Ends of a guide on the ground that is somewhat longer than the way of its slider, shape (2, 2)."""
+    low, high = scene.reach(slide)
     ends = np.array([low, high]) + _LONGER * (high - low) * np.array([-1, 1])
-    angle = float(getattr(model.linkage, f"slide_angle_{index + 1}" if index else "slide_angle"))
-    along = np.array([np.cos(angle), np.sin(angle)])
-    slider: FloatArray = getattr(model.first, LOOP_POINTS[index][2])
-    return slider + np.outer(ends - model.first.loops[index].travel, along)
+    along = np.array([np.cos(slide.angle), np.sin(slide.angle)])
+    return model.first.point(slide.pin) + np.outer(ends - slide.travel(model.first), along)

@@ -9,12 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.models.frames import points_on
+from grashof.drawing.scene import Scene
 from grashof.models.model import Model
 from grashof.models.xml import add
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 
 STEPS = 50_000  # in a turn of the driver: the loop then stays closed to a millionth of a radian
 _LIGHT = 1e-4  # share of the heaviest link: what a link without mass has, as MuJoCo wants some
@@ -154,11 +153,9 @@ def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
 
     The first link of a dyad hangs on the host of C, the second on that of D; a rod hangs on its block.
     """
-    linkage, at, kind = model.linkage, model.first, model.linkage.mechanism
-    frames = {link.number: points_on(linkage, link) for link in kind.links}
-    angles = {1: 0.0, 2: model.start} | {
-        link.number: float(at.angles[link.number]) for link in kind.links[2:]
-    }
+    scene, at, kind = Scene(model.linkage), model.first, model.linkage.mechanism
+    frames = {link.number: scene.frame(link) for link in kind.links}
+    angles = {1: 0.0} | {number: float(angle) for number, angle in at.angles.items()}
     bodies, loops = dict[int, _Body](), list[_Loop]()
 
     def hang(number: int, host: int, joint: str, points: dict[str, FloatArray]) -> None:
@@ -168,31 +165,27 @@ def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
         bodies[number] = _Body(link, host, place, angle, _Joint(joint, angle), points)
 
     hang(2, 1, "O2", _named(frames[2]))
-    for index, dyad in enumerate(kind.dyads):
-        first, second = 2 * index + 3, 2 * index + 4
-        c, d, e = LOOP_POINTS[index]
-        slide, travel = "slide" + (f"-{index + 1}" if index else ""), float(at.loops[index].travel)
-        ending = f"_{index + 1}" if index else ""
-        if dyad.kind is not DyadKind.RPR:
-            hang(first, dyad.hosts[0], c.upper(), _named(frames[first]))
-            loops.append(_Loop(first, second, frames[first][e]))
-        if dyad.kind is DyadKind.RRP:
-            angle = float(getattr(linkage, f"slide_angle{ending}"))
-            joint = _Joint(slide, travel, (1, 0, 0), "slide")
-            bodies[second] = _Body(
-                kind.links[second - 1], 1, getattr(at, e), angle, joint, _named(frames[second])
-            )
-        elif dyad.kind is DyadKind.RRR:
-            points = _named(frames[second])
-            points[f"{e.upper()}{second}"] = points.pop(e.upper())
-            hang(second, dyad.hosts[1], d.upper(), points)
-        else:
-            hang(second, dyad.hosts[1], d.upper(), {})
-            joint = _Joint(slide, travel, (-1, 0, 0), "slide")
-            points = _named(frames[first]) | {e.upper(): np.array([travel, 0.0])}
-            place = np.array([float(getattr(linkage, f"offset{ending}")), travel])
+    slides = {slide.loop: slide for slide in scene.slides}
+    for number, loop in enumerate(kind.loops):
+        (first, second), (on_c, on_d), slide = loop.links, loop.dyad.hosts, slides.get(number)
+        points, e = _named(frames[second]), loop.e.upper()
+        if slide is None or not slide.carried:
+            hang(first, on_c, loop.c.upper(), _named(frames[first]))
+            loops.append(_Loop(first, second, frames[first][loop.e]))
+        if slide is None:
+            points[f"{e}{second}"] = points.pop(e)
+            hang(second, on_d, loop.d.upper(), points)
+            continue
+        travel, name = float(slide.travel(at)), f"slide{slide.ending}"
+        if slide.carried:
+            hang(second, on_d, loop.d.upper(), {})
+            place, joint = np.array([-slide.offset, travel]), _Joint(name, travel, (-1, 0, 0), "slide")
+            points = _named(frames[first]) | {e: np.array([travel, 0.0])}
             bodies[first] = _Body(kind.links[first - 1], second, place, -np.pi / 2, joint, points)
-            loops.append(_Loop(dyad.hosts[0], first, frames[dyad.hosts[0]][c]))
+            loops.append(_Loop(on_c, first, frames[on_c][loop.c]))
+        else:
+            joint = _Joint(name, travel, (1, 0, 0), "slide")
+            bodies[second] = _Body(kind.links[second - 1], 1, at.point(slide.pin), slide.angle, joint, points)
     return bodies, loops
 
 

@@ -34,10 +34,8 @@ def rows(model: Model) -> list[Row]:
         for name, value in linkage.columns.items()
         if name not in left_out
     ]
-    angles = {2: model.start} | {
-        number: float(model.first.angles[number]) for number in range(3, len(kind.links) + 1)
-    }
-    return found + [Row(f"theta{number}_deg", math.degrees(angle), "deg") for number, angle in angles.items()]
+    angles = model.first.angles.items()
+    return found + [Row(f"theta{number}_deg", math.degrees(angle), "deg") for number, angle in angles]
 
 
 def solidworks(model: Model) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import verify
-from grashof.page.designs import legend, linkage_data
+from grashof.page.designs import cylinder_data, legend, linkage_data
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import DRAWING, render
@@ -50,6 +50,8 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
         for section in (*motion_sections(report), *report.sections)
         if section.facts or section.tables or section.plots or section.notes
     ]
+    facts = {fact.key: fact.value for section in report.sections for fact in section.facts}
+    cylinder = cylinder_data(spec.cylinder, float(facts.get("cylinder_closed", 0.0)))
     data = {
         "name": spec.name,
         "scene": scene,
@@ -60,7 +62,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
                 "high": high,
                 "turns": sweep.turns,
                 "direction": 1 if sweep.speed_rpm >= 0 else -1,
-                **_cylinder(report),
+                **cylinder,
                 **targets,
             }
             for low, high in sweep.ranges
@@ -101,15 +103,6 @@ def _targets(spec: LinkageSpec) -> dict[str, Any]:
     if not np.isfinite(verdict.theta2).all():
         return {}
     return {"theta2": verdict.theta2.tolist(), "assemblies": verdict.assembly.tolist()}
-
-
-def _cylinder(report: LinkageReport) -> dict[str, Any]:
-    """The cylinder as the scripts draw it."""
-    driven = report.sweep.spec.cylinder
-    facts = {fact.key: fact.value for section in report.sections for fact in section.facts}
-    return (
-        {} if driven is None else {"cylinder": {**driven.stated, "closed": facts.get("cylinder_closed", 0.0)}}
-    )
 
 
 def _facts(facts: Iterable[Fact]) -> list[tuple[str, str, str]]:

@@ -20,6 +20,7 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
+from grashof.drawing.scene import bodies_of
 from grashof.page.render import compact, plain
 from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -31,7 +32,6 @@ from grashof.synth import Candidate
 from grashof.synth.designs.table import Row
 
 STEPS = 180
-_STYLES = ("driver", "coupler", "output", "coupler-2", "output-2")  # of links 2, 3, ...
 _ROUNDING = 1e-12  # of a turn
 
 
@@ -67,6 +67,12 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
     return Travel(low, high, False)
 
 
+def moves(design: Candidate) -> bool:
+    """Whether there is any position of it that could be drawn."""
+    theta2 = design.verdict.theta2
+    return bool(np.isfinite(theta2).all()) and not np.isnan(driver_travel(design.linkage, theta2).low)
+
+
 def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
     """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
 
@@ -75,9 +81,8 @@ def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()
     [('driver', 'driver O2-A'), ('coupler', 'coupler A-B-P'), ('output', 'slider B')]
     """
     found: dict[str, list[str]] = {}
-    for link in (link for kind in kinds for link in kind.links[1:]):
-        name = f"{link.name} {'-'.join(link.labels)}"
-        found.setdefault(_STYLES[link.number - 2], []).append(name)
+    for body in (body for kind in kinds for body in bodies_of(kind)):
+        found.setdefault(body.role, []).append(body.words)
     words = [(style, ", ".join(dict.fromkeys(names))) for style, names in found.items()]
     return words + [("cylinder", "cylinder")] * any(each is not None for each in cylinders)
 
@@ -87,13 +92,23 @@ def linkage_data(linkage: Linkage) -> dict[str, Any]:
     return {"mechanism": linkage.mechanism.word, **linkage.stated}
 
 
+class _Drawn(NamedTuple):
+    """A design, its linkage on the assembly that meets the first target, and how far its driver goes."""
+
+    design: Candidate
+    linkage: Linkage
+    travel: Travel
+
+    @classmethod
+    def of(cls, design: Candidate) -> _Drawn:
+        """A design as it is drawn."""
+        linkage = design.linkage.changed(assembly=design.verdict.assembly[0])
+        return cls(design, linkage, driver_travel(linkage, design.verdict.theta2))
+
+
 def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Designs that can be assembled as JSON in full precision; the rows are those of `rows_of`."""
-    linkages = [each.linkage.changed(assembly=each.verdict.assembly[0]) for each in designs]
-    travels = [
-        driver_travel(linkage, each.verdict.theta2) for linkage, each in zip(linkages, designs, strict=True)
-    ]
-    torques = _torques(problem, designs, linkages, travels)
+    drawn = list(map(_Drawn.of, designs))
     return [
         {
             "id": design.id,
@@ -106,23 +121,21 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             if design.verdict.branch_ok
             else None,
             "torque": torque,
-            **_cylinder(design),
+            **cylinder_data(design.verdict.cylinder, design.values["cylinder_closed"]),
             **_function(problem, linkage, design),
             "figures": {key: plain(value) for key, value in figures.items()},
         }
-        for design, linkage, travel, torque, figures in zip(
-            designs, linkages, travels, torques, rows, strict=True
+        for (design, linkage, travel), torque, figures in zip(
+            drawn, _torques(problem, drawn), rows, strict=True
         )
         for ahead in [travel.ahead(design.verdict.theta2[0])]
     ]
 
 
-def _cylinder(design: Candidate) -> dict[str, Any]:
-    """The cylinder as the scripts draw it."""
-    driven = design.verdict.cylinder
+def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
+    """A cylinder of some closed length, which may be unknown, as the scripts draw it; nothing without one."""
     if driven is None:
         return {}
-    closed = design.values["cylinder_closed"]
     return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
 
 
@@ -141,45 +154,26 @@ def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str
     return {"function": names | {name: compact(values.tolist()) for name, values in columns.items()}}
 
 
-def _torques(
-    problem: Problem,
-    designs: Sequence[Candidate],
-    linkages: Sequence[Linkage],
-    travels: Sequence[Travel],
-) -> list[list[float | None] | None]:
+def _torques(problem: Problem, drawn: Sequence[_Drawn]) -> list[list[float | None] | None]:
     """Drive torque over the travel of each linkage, N m; None for each without dynamics.
 
     Of a driver that starts and stops, over the task alone.
     """
-    found: list[list[float | None] | None] = [None] * len(linkages)
+    found: list[list[float | None] | None] = [None] * len(drawn)
     if problem.dynamics is None:
         return found
-    for rows in by_kind(linkages):
-        torques = _of_one_kind(
-            problem,
-            problem.dynamics,
-            [designs[row] for row in rows],
-            [linkages[row] for row in rows],
-            [travels[row] for row in rows],
-        )
+    for rows in by_kind([each.linkage for each in drawn]):
+        torques = _of_one_kind(problem, problem.dynamics, [drawn[row] for row in rows])
         for row, torque in zip(rows, torques, strict=True):
             found[row] = torque
     return found
 
 
-def _of_one_kind(
-    problem: Problem,
-    spec: DynamicsSpec,
-    designs: Sequence[Candidate],
-    linkages: Sequence[Linkage],
-    travels: Sequence[Travel],
-) -> list[list[float | None]]:
+def _of_one_kind(problem: Problem, spec: DynamicsSpec, drawn: Sequence[_Drawn]) -> list[list[float | None]]:
     metre = metres(problem.length_unit)
-    batch = linkages[0].stacked(linkages)[:, None]
-    laws = [driver_law(problem, *motion_ends(problem.task, each.verdict)) for each in designs]
-    theta2 = np.stack(
-        [_angles_of_motion(travel, each.verdict) for travel, each in zip(travels, designs, strict=True)]
-    )
+    batch = drawn[0].linkage.stacked([each.linkage for each in drawn])[:, None]
+    laws = [driver_law(problem, *motion_ends(problem.task, each.design.verdict)) for each in drawn]
+    theta2 = np.stack([_angles_of_motion(each.travel, each.design.verdict) for each in drawn])
     ways = list(zip(laws, theta2, strict=True))
     motion = zip(*(law.at_angle(angles) for law, angles in ways), strict=True)
     with dead_positions_unwarned():

@@ -12,6 +12,7 @@ from grashof.study.kinds import forces_of, turning
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
 
+_RATES = ("velocity", "s"), ("acceleration", "s²")
 _MU = {"mu_deg": "μ", "mu_2_deg": "μ of loop 2"}
 # Of a plot: key, title, unit, and the columns with their labels.
 Panel = tuple[str, str, str, Mapping[str, str]]
@@ -56,12 +57,9 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
         ("angular-velocity", "angular velocity", "rad/s", {f"omega{n}": f"ω{n}" for n in links}),
         ("angular-acceleration", "angular acceleration", "rad/s²", {f"alpha{n}": f"α{n}" for n in links}),
         ("slide", "travel of the slide", unit, {"slide_travel": "travel"}),
-        ("slide-velocity", "velocity of the slide", f"{unit}/s", {"slide_velocity": "velocity"}),
-        (
-            "slide-acceleration",
-            "acceleration of the slide",
-            f"{unit}/s²",
-            {"slide_acceleration": "acceleration"},
+        *(
+            (f"slide-{rate}", f"{rate} of the slide", f"{unit}/{per}", {f"slide_{rate}": rate})
+            for rate, per in _RATES
         ),
         ("speeds", f"speed of {every}", f"{unit}/s", speeds),
         ("accelerations", f"acceleration of {every}", f"{unit}/s²", accelerations),
@@ -87,7 +85,7 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
     places: list[Panel] = []
     for name, point in reversed(points.items()):
         places.append((f"place-of-{name}", f"place of {point}", unit, _xy(name)))
-        for rate, per in (("velocity", "s"), ("acceleration", "s²")):
+        for rate, per in _RATES:
             columns = _xy(f"{name}_{rate}")
             places.append((f"{rate}-of-{name}", f"{rate} of {point}", f"{unit}/{per}", columns))
     return [

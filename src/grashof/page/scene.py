@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from grashof.analysis import driver_ranges, solve_position
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.analysis import driver_ranges
+from grashof.drawing.scene import Scene
 from grashof.page.render import compact, plain
 from grashof.problems import FourBar, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
@@ -54,9 +54,7 @@ def loci_of(result: Result) -> dict[str, Any] | None:
 
 
 def _targets(task: Task) -> dict[str, Any]:
-    if not (
-        task.has_position.any() or task.has_angle.any()
-    ):  # limit positions are where the linkage has them
+    if not task.has_position.any() and not task.has_angle.any():  # limit positions: the linkage has them
         return {"points": [], "closed": task.closed}
     if task.only_points:
         return {"points": task.positions.tolist(), "closed": task.closed}
@@ -75,8 +73,7 @@ def _published(problem: Problem) -> dict[str, Any] | None:
         return None  # another problem of the same name
     best = known[0]
     low, high = driver_ranges(best.linkage)[0]
-    angles = np.linspace(low, high, _SAMPLES)
-    path = smooth_polygon(lambda theta2: solve_position(best.linkage, theta2).p, angles)[1]
+    path = Scene(best.linkage).path(np.linspace(low, high, _SAMPLES))
     return {
         "label": f"{best.method} {best.year}",
         "path": [compact(point) for point in path if np.isfinite(point).all()],

@@ -7,10 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from grashof.page.columns import Column, columns_of, figures_of
-from grashof.page.designs import designs_of, driver_travel, legend
+from grashof.page.designs import designs_of, legend, moves
 from grashof.page.render import DRAWING, render
 from grashof.page.scene import loci_of, scene_of
 from grashof.problems import Problem
@@ -54,9 +52,8 @@ def search_page(
     listing = result.candidates or result.nearest
     if rows is None:
         rows = rows_of(problem, listing) if result.candidates else rows_of_nearest(problem, listing)
-    moving = [not np.isnan(driver_travel(each.linkage, each.verdict.theta2).low) for each in listing]
-    designs = [each for each, moves in zip(listing, moving, strict=True) if moves]
-    rows = [row for row, moves in zip(rows, moving, strict=True) if moves]
+    rows = [row for row, each in zip(rows, listing, strict=True) if moves(each)]
+    designs = list(filter(moves, listing))
     note, ways = note_parts(result.note)
     data = search_data(problem, designs, rows, found=bool(result.candidates))
     data["loci"] = loci_of(result)

@@ -9,23 +9,16 @@ from itertools import combinations
 import numpy as np
 import shapely
 
-from grashof.models.frames import points_on
+from grashof.drawing.scene import Scene
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
-from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.workshop.plates import Plate, PlateSizes, plate_of
 from grashof.workshop.slots import Slot, base_angle, rotated
 
 # A link longer than so many widths is a slip in the unit, and no plate.
 _SLENDEREST = 1000
 _P = "P"
-
-
-def plated(kind: Mechanism) -> tuple[Link, ...]:
-    """The links that are plates: all that move, but for a slider or a block, which is a pin in a slot."""
-    pins = {slider for _, slider in kind.slides}
-    return tuple(link for link in kind.links[1:] if link.number not in pins)
 
 
 def link_plates(
@@ -35,7 +28,7 @@ def link_plates(
 
     ProblemError for a link too short or too long for its width, or holes and slots too near to each other.
     """
-    kind = linkage.mechanism
+    kind, scene = linkage.mechanism, Scene(linkage)
     for name, length in zip(kind.lengths, linkage.lengths.tolist(), strict=True):
         _refuse_length(name, length, sizes)
         if length < sizes.least_spacing:
@@ -44,8 +37,8 @@ def link_plates(
                 f"at least {sizes.least_spacing:g} mm: as much between two holes as beside them"
             )
     plates, notes = dict[str, Plate](), list[str]()
-    for link in plated(kind):
-        holes = {name.upper(): at for name, at in points_on(linkage, link).items()}
+    for link in (body.link for body in scene.bodies if not body.slides):  # else a pin in a slot
+        holes = {name.upper(): at for name, at in scene.frame(link).items()}
         cut = {slot.pin: slot.ends for slot in slots if slot.link == link.number}
         spots = np.concatenate([np.array(list(holes.values())), *cut.values()])
         farthest = max(link.labels[2:] or link.labels[1:], key=lambda name: float(np.hypot(*holes[name])))
@@ -55,9 +48,8 @@ def link_plates(
             del holes[_P]
         _refuse_near({name: at for name, at in holes.items() if name != _P}, cut, sizes)
         plates[link.name] = plate_of(link.name, holes, sizes, cut)
-    carrier = kind.links[kind.carries - 1]
-    if carrier not in plated(kind):
-        notes.append(f"the {carrier.name} is a pin and has no hole for P")
+    if (carrier := kind.links[kind.carries - 1].name) not in plates:
+        notes.append(f"the {carrier} is a pin and has no hole for P")
     return plates, notes
 
 
@@ -68,8 +60,8 @@ def base_plate(
 
     The linkage is in mm with O2 at the origin; `posts` (2,) are other holes, the last after the pivots'.
     """
-    ground = points_on(linkage, linkage.mechanism.links[0])
-    holes = {name.upper(): rotated(at[None], -base_angle(linkage))[0] for name, at in ground.items()}
+    angle = -base_angle(linkage)
+    holes = {name.upper(): rotated(at[None], angle)[0] for name, at in Scene(linkage).ground.items()}
     cut = {slot.pin: slot.ends for slot in slots if slot.link == 1}
     for name, at in holes.items():
         _refuse_length(f"O2-{name}", float(np.hypot(*at)), sizes)

@@ -119,9 +119,7 @@ def _column(plan: Plan, gap: float) -> tuple[list[Shape], tuple[float, float]]:
 
 def _part(part: Part, thickness: float) -> list[Shape]:
     plate = part.plate
-    shapes: list[Shape] = [Outline(CUT, plate.outline)]
-    shapes += [Circle(CUT, float(x), float(y), plate.hole / 2) for x, y in plate.holes]
-    shapes += [Outline(CUT, outline(ends, plate.hole / 2)) for _, ends in plate.slots]
+    shapes = list(_drawn(plate, CUT, np.zeros(3)))
     words = f"{plate.name} {'-'.join(plate.joints)} t{thickness:g}"
     if len(plate.corners) > 1:
         middle, angle, room = _room(plate)
@@ -130,6 +128,19 @@ def _part(part: Part, thickness: float) -> list[Shape]:
             x, y = middle.tolist()
             shapes.append(Text(ENGRAVE, x, y, height, words, angle, centred=True))
     return shapes
+
+
+def _drawn(plate: Plate, layer: str, place: FloatArray) -> Iterator[Shape]:
+    """Outline, holes and slots of a plate that is in a place, shape (3,), mm, mm and rad."""
+
+    def line(vertices: FloatArray) -> Outline:
+        return Outline(layer, np.column_stack([placed(vertices[:, :2], place), vertices[:, 2]]))
+
+    yield line(plate.outline)
+    for x, y in placed(plate.holes, place):
+        yield Circle(layer, float(x), float(y), plate.hole / 2)
+    for _, ends in plate.slots:
+        yield line(outline(ends, plate.hole / 2))
 
 
 def _room(plate: Plate) -> tuple[FloatArray, float, float]:
@@ -162,16 +173,7 @@ def _assembly(plan: Plan) -> tuple[list[Shape], tuple[float, float]]:
     corners = []
     for part in plan.parts:
         for level, place in zip(part.layers, part.places, strict=True):
-            layer = f"ASSEMBLY_{level}"
-            vertices = part.plate.outline.copy()
-            vertices[:, :2] = placed(vertices[:, :2], place)
-            shapes.append(Outline(layer, vertices))
-            holes = placed(part.plate.holes, place)
-            shapes += [Circle(layer, float(x), float(y), part.plate.hole / 2) for x, y in holes]
-            for _, ends in part.plate.slots:
-                slot = outline(ends, part.plate.hole / 2)
-                slot[:, :2] = placed(slot[:, :2], place)
-                shapes.append(Outline(layer, slot))
+            shapes += _drawn(part.plate, f"ASSEMBLY_{level}", place)
             reach = part.plate.width / 2
             at = placed(part.plate.corners, place)
             corners += [at - reach, at + reach]

@@ -9,9 +9,9 @@ import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.analysis.mechanism.extremes import dense_places, refined
+from grashof.drawing.scene import Scene, Slide
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.mechanism import LOOP_POINTS, DyadKind
 from grashof.workshop.plates import PlateSizes
 
 
@@ -35,19 +35,11 @@ class Slot(NamedTuple):
 def slots_of(linkage: Linkage, ranges: Iterable[tuple[float, float]], sizes: PlateSizes) -> tuple[Slot, ...]:
     """Slots, in mm, half a clearance longer at either end than the travel over `ranges` of theta2, rad."""
     ranges, found = tuple(ranges), []
-    for index, dyad in enumerate(linkage.mechanism.dyads):
-        if not dyad.slides:
-            continue
-        first, (_, d, e) = 2 * index + 3, LOOP_POINTS[index]
-        ending = f"_{index + 1}" if index else ""
-        along = _travel(linkage, index, ranges) + np.array([-sizes.gap, sizes.gap]) / 2
-        offset = float(getattr(linkage, f"offset{ending}"))
-        if dyad.kind is DyadKind.RRP:
-            ends = np.column_stack([along, np.full(2, offset)])
-            turned = float(getattr(linkage, f"slide_angle{ending}")) - base_angle(linkage)
-            found.append(Slot(e.upper(), first + 1, 1, rotated(ends, turned)))
-        else:
-            found.append(Slot(d.upper(), first + 1, first, np.column_stack([along, np.full(2, -offset)])))
+    for slide in Scene(linkage).slides:
+        along = _travel(linkage, slide, ranges) + np.array([-sizes.gap, sizes.gap]) / 2
+        ends = np.column_stack([along, np.full(2, slide.offset)])
+        turned = slide.angle - (0.0 if slide.carried else base_angle(linkage))
+        found.append(Slot(slide.pin.upper(), slide.slider, slide.guide, rotated(ends, turned)))
     return tuple(found)
 
 
@@ -63,11 +55,11 @@ def rotated(points: FloatArray, angle: float) -> FloatArray:
     return turned
 
 
-def _travel(linkage: Linkage, index: int, ranges: Iterable[tuple[float, float]]) -> FloatArray:
-    """Least and largest travel of the slide of a dyad, shape (2,), mm."""
+def _travel(linkage: Linkage, slide: Slide, ranges: Iterable[tuple[float, float]]) -> FloatArray:
+    """Least and largest travel of a slide, shape (2,), mm."""
 
     def travel(theta2: FloatArray) -> FloatArray:
-        return solve_position(linkage, theta2).loops[index].travel
+        return slide.travel(solve_position(linkage, theta2))
 
     ends = []
     for low, high in ranges:

@@ -14,11 +14,10 @@ from matplotlib.patches import Polygon
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
+from grashof.drawing.scene import CORNERS
 from grashof.figures.animation import animate, save_animation
 from grashof.figures.curves import plot_dynamics, plot_kinematics
 from grashof.figures.linkage import plot_linkage
-from grashof.figures.parts import stands
-from grashof.figures.slides import CORNERS, Travel
 from grashof.figures.subject import Subject
 from grashof.problems import (
     DynamicsSpec,
@@ -48,8 +47,8 @@ def test_blocks_sit_on_their_slides_and_rods_pass_them(linkage: Linkage, share: 
     subject = Subject.of(linkage)
     low, high = subject.sweep.ranges[0]
     theta2 = np.array([low + (high - low) * share])
-    state, travel = solve_position(linkage, theta2), subject.travel
-    points = {name: complex(*place) for name, place in stands(linkage, state, travel)[0].items()}
+    state = solve_position(linkage, theta2)
+    points = {name: complex(*place[0]) for name, place in subject.scene.places(state).items()}
     corners = np.array([points[name] for name in CORNERS[:4]])
     ((_, block),) = linkage.mechanism.slides
     pin = points[LOOP_POINTS[block // 2 - 2][2]]
@@ -87,11 +86,11 @@ def test_the_guide_covers_the_travel(linkage: Linkage) -> None:
 
 
 def test_travel_is_that_of_all_ranges() -> None:
-    subject = Subject.of(SLIDER)
+    scene = Subject.of(SLIDER).scene
     far, near = np.sqrt(16 - 0.4**2), np.sqrt(4 - 0.4**2)
-    assert subject.travel == pytest.approx((-far, -near), abs=1e-3)
-    assert np.isnan(Subject.of(FourBar((0, 0), (4, 0), 1, 4, 3)).travel).all()
-    assert isinstance(subject.travel, Travel)
+    (slide,) = scene.slides
+    assert scene.reach(slide) == pytest.approx((-far, -near), abs=1e-3)
+    assert Subject.of(FourBar((0, 0), (4, 0), 1, 4, 3)).scene.slides == ()
 
 
 @pytest.mark.parametrize("linkage", [SLIDER, INVERTED, SWINGING, *PRESSES])

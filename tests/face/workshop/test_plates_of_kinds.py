@@ -17,10 +17,10 @@ from body_plans import plan_of
 from random_linkages import six_bars
 from six_bar_examples import SIX_BARS
 
+from grashof.drawing.scene import bodies_of
 from grashof.problems import InvertedSliderCrank, Linkage, ProblemError, SixBar, SliderCrank, load_linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop import Plan, PlateSizes, plan_parts, write_dxf
-from grashof.workshop.link_plates import plated
 
 SIZES = PlateSizes(width=20, hole=6, thickness=5, clearance=1)
 SCALE = 60.0  # mm per unit, of six-bars
@@ -191,7 +191,8 @@ def test_every_pin_ends_in_plates_of_its_joint(made: Made) -> None:
 
 def test_holes_and_slots_have_material_round_them(made: Made) -> None:
     _, linkage, plan = made
-    names = {"base", "spacer", "return crank", *(link.name for link in plated(linkage.mechanism))}
+    plated = (body.link.name for body in bodies_of(linkage.mechanism) if not body.slides)
+    names = {"base", "spacer", "return crank", *plated}
     for plate in (part.plate for part in plan.parts):
         assert plate.name in names
         core = shapely.convex_hull(shapely.multipoints(plate.corners))

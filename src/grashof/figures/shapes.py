@@ -1,0 +1,115 @@
+"""What moves in pictures, shape by shape: links, a cylinder, and the body that P carries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Polygon
+
+from grashof.analysis import Position
+from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.judge.driven import figures_of
+from grashof.drawing.scene import CORNERS, Scene
+from grashof.figures.parts import COLOURS, COUPLER, GROUND, PATH, SCENE
+from grashof.figures.subject import Subject
+from grashof.problems.values.arrays import FloatArray
+
+Stand = dict[str, FloatArray]  # places (2,) of the points in one position, by name
+_BASE, _END, _PIVOT = _CYLINDER = ("base", "end", "pivot")
+_ROD = "#aab2b9"  # of a cylinder
+_SHARE = 0.9  # of the closed length is the body of a cylinder
+
+
+def stands(subject: Subject, scene: Scene, state: Position) -> list[Stand]:
+    """Where everything is in each of N positions."""
+    found = scene.places(state) | _cylinder_places(subject, state)
+    return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
+
+
+def _cylinder_places(subject: Subject, state: Position) -> dict[str, FloatArray]:
+    """Base, end of the body and pivot of a cylinder in N positions, each of shape (N, 2), if it has one."""
+    verdict, problem = subject.verdict, subject.problem
+    if verdict is None or problem is None or verdict.cylinder is None:
+        return {}
+    found = cylinder_state(verdict.cylinder, subject.linkage, state)
+    figures = figures_of(subject.linkage, problem.task, verdict)
+    closed = float(found.length.min()) if figures is None else figures.closed
+    base = np.broadcast_to(np.asarray(verdict.cylinder.base), found.pivot.shape)
+    share = np.minimum(_SHARE * closed / np.maximum(found.length, 1e-300), 1.0)[:, None]
+    return dict(zip(_CYLINDER, (base, base + share * (found.pivot - base), found.pivot), strict=True))
+
+
+class Shape(NamedTuple):
+    """A line through points, or the area that they surround, and how matplotlib draws it."""
+
+    points: tuple[str, ...]
+    look: dict[str, Any]
+    filled: bool = False
+
+
+def shapes_of(subject: Subject, scene: Scene, stand: Stand, *, named: bool = True) -> Iterator[Shape]:
+    """All that moves, in the position it is drawn in first; `named` if the legend is to name it."""
+    for body in sorted(scene.bodies, key=lambda body: len(body.link.points)):
+        label = body.words if named else None
+        width = 2.4 if len(body.link.points) == 2 else 1.6
+        for points in body.lines(stand):
+            look = {"color": COLOURS[body.role], "linewidth": width, "label": label, "zorder": 4}
+            yield Shape(points, look)
+            label = None
+    kind = scene.linkage.mechanism
+    joints = tuple(name for name in kind.moving if name in kind.joints)
+    yield Shape(joints, _dots("white", COUPLER, 5, 5))
+    yield Shape(("p",), _dots(PATH, PATH, 4, 6))
+    for body in scene.bodies:
+        for points in body.areas(stand):
+            alpha = 0.25 if points is CORNERS else 0.1
+            look = {"color": COLOURS[body.role], "linewidth": 0, "alpha": alpha, "zorder": 3}
+            yield Shape(points, look, filled=True)
+    if (cylinder := subject.cylinder) is not None:
+        body = scene.bodies[cylinder.link - 2]
+        bracket = (body.link.points[0], _PIVOT, body.link.points[:2][-1])  # a slider has one point alone
+        yield Shape(bracket, {"color": COLOURS[body.role], "linewidth": 1.0, "zorder": 3.1})
+        look = {"solid_capstyle": "butt", "zorder": 3.2}
+        yield Shape((_END, _PIVOT), {"color": _ROD, "linewidth": 2.6, **look})
+        label = "cylinder" if named else None
+        yield Shape((_BASE, _END), {"color": SCENE, "linewidth": 6.5, "label": label, **look})
+        yield Shape((_BASE, _PIVOT), _dots("white", GROUND, 5, 5.5))
+
+
+def _dots(colour: str, edge: str, size: float, zorder: float) -> dict[str, Any]:
+    look = {"marker": "o", "linestyle": "none", "color": colour, "markeredgecolor": edge}
+    return look | {"markersize": size, "zorder": zorder}
+
+
+class Drawn:
+    """Shapes as drawn in one position, to be moved to others; `shade` is from 0, invisible, to 1."""
+
+    def __init__(self, axes: Axes, shapes: Iterable[Shape], stand: Stand, shade: float = 1.0) -> None:
+        self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
+        for points, look, filled in shapes:
+            draw = axes.fill if filled else axes.plot
+            artists = draw(*_at(stand, points).T, **look | {"alpha": look.get("alpha", 1.0) * shade})
+            self._drawn += [(points, artist) for artist in artists]
+
+    @property
+    def artists(self) -> list[Artist]:
+        """All that moves."""
+        return [artist for _, artist in self._drawn]
+
+    def move(self, stand: Stand) -> None:
+        """Put the shapes where their points now are."""
+        for points, artist in self._drawn:
+            corners = _at(stand, points)
+            if isinstance(artist, Polygon):
+                artist.set_xy(corners)
+            else:
+                artist.set_data(*corners.T)
+
+
+def _at(stand: Stand, points: Sequence[str]) -> FloatArray:
+    return np.array([stand[name] for name in points])
