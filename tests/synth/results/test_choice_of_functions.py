@@ -32,6 +32,13 @@ def test_errors_of_rounding_are_all_the_least() -> None:
 SIX = FunctionTask.from_degrees([0, 20, 45, 70, 90, 110], [0, 5, 12, 22, 27, 26])
 
 
+def test_errors_are_angles_whatever_the_size() -> None:
+    wanted = Requirements(r1=(200, 200), exact=False, transmission_min_deg=60)
+    found = synthesize(Problem(task=SIX, requirements=wanted))
+    least = min(one.error(found.problem) for one in found.candidates)
+    assert found.least_error == pytest.approx(least, rel=1e-9)
+
+
 def test_a_list_offers_more_transmission_for_more_error() -> None:
     best, *others = synthesize(Problem(task=SIX)).candidates
     assert best.best_at == "least error"

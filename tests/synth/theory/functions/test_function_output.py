@@ -7,7 +7,7 @@ import pytest
 
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_function
-from grashof.problems import Linkage
+from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
@@ -179,3 +179,17 @@ def test_limits_of_the_offset_leave_a_scale() -> None:
         assert found or not fits
         close = ((tried >= bounds[0] - 1e-2) & (tried <= bounds[1] + 1e-2)).all(axis=1).any()
         assert close or not found
+
+
+@EVERY
+@pytest.mark.parametrize("driver", [1, -1])
+def test_a_generator_is_found_again_in_its_linkage(mechanism: str, driver: int) -> None:
+    made = several(mechanism, 3, 1.0)[:40]
+    wanted, unit = Requirements().resolved(1.0), 2.0
+    for k in range(len(made)):
+        one = made[k : k + 1]
+        linkage = one.linkage(wanted, unit, driver)
+        theta2 = one.direction(wanted) + driver * float(one.first[0])
+        again = type(one).of_linkage(linkage, unit, driver, theta2)
+        np.testing.assert_allclose(again.shape, one.shape, atol=1e-12)
+        np.testing.assert_array_equal(again.assembly, one.assembly)
