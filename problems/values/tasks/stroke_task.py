@@ -51,6 +51,8 @@ class StrokeTask(Task):
 
     kind: ClassVar[Literal["stroke"]] = "stroke"
     target: ClassVar[Literal["limit position"]] = "limit position"
+    no_cylinder: ClassVar[str] = "whose driver turns all round"
+    in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
 
     swing: float | None
     stroke: float | None
