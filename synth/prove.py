@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import Problem, ProblemError, StrokeTask
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.proof.claims.bounds import Bounds, Proving
@@ -98,7 +98,7 @@ def prove(
         number_within(at_least, 0.0, 90.0, "at_least")
     proving = Proving.patient(gap)
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
-    stroke = isinstance(problem.task, StrokeTask)
+    stroke = problem.task.at_limits
     kind = problem.mechanism[0] if stroke or FOUR_BAR not in problem.mechanism else FOUR_BAR
     if certificate is not None:
         _certifiable(problem, constraints, Path(certificate))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import Problem, StrokeTask
+from grashof.problems import Problem, Task
 from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.starts.strokes.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
@@ -17,6 +17,7 @@ _HALVINGS = 12
 def advice(problem: Problem) -> str:
     """For a stroke that no linkage transmits well: how well the best does and what does better; else empty.
 
+    >>> from grashof.problems import StrokeTask
     >>> advice(Problem(task=StrokeTask.from_degrees(swing_deg=80, time_ratio=1.05)))
     ''
     >>> print(advice(Problem(task=StrokeTask.from_degrees(swing_deg=40, time_ratio=1.5))))
@@ -24,7 +25,7 @@ def advice(problem: Problem) -> str:
 time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     """
     task, places = problem.task, places_of(kind_of(problem))
-    if not isinstance(task, StrokeTask) or not places.advised:
+    if not task.at_limits or not places.advised:
         return ""
     if (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
         return ""
@@ -41,7 +42,7 @@ time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     )
 
 
-def _ratio_that_allows(task: StrokeTask) -> float:
+def _ratio_that_allows(task: Task) -> float:
     """The greatest time ratio, in hundredths, that allows a good transmission angle; 1 where none does."""
     low, high = 1.0, task.time_ratio
     for _ in range(_HALVINGS):
