@@ -19,7 +19,7 @@ from grashof.figures.function import plot_function
 from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import FunctionTask, Problem
+from grashof.problems import Problem, Task
 from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
@@ -60,7 +60,7 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
         Equal axes, in the problem's unit; the linkage darkens from the first target to the last.
     """
     with rc_context(STYLE):
-        if isinstance(problem.task, FunctionTask):
+        if problem.task.has_output.any():
             return _draw_generator(problem, problem.task, candidate, rank)
         figure = Figure(figsize=(8.5, 7.0))
         axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.08, 0.08, 0.89, 0.83)))
@@ -68,7 +68,7 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
     return figure
 
 
-def _draw_generator(problem: Problem, task: FunctionTask, candidate: Candidate, rank: int) -> Figure:
+def _draw_generator(problem: Problem, task: Task, candidate: Candidate, rank: int) -> Figure:
     """A function generator, beside it wanted and generated output and the structural error."""
     figure = Figure(figsize=(11.0, 8.5))
     axes = plot_linkage(candidate, problem, ax=figure.add_axes((0.07, 0.4, 0.9, 0.5)))
@@ -148,7 +148,7 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     exact = problem.requirements.is_exact(problem.task)
     fit = "" if exact else f", error rms {candidate.values['error']:.3g}"  # as the list has it
-    if isinstance(problem.task, FunctionTask):
+    if problem.task.has_output.any():
         worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
         fit = f", structural error {worst}"
     return (

@@ -30,7 +30,7 @@ from grashof.figures.parts import (
     targets_shown,
 )
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import AssemblyError, FunctionTask, Problem, ProblemError
+from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements.requirements import QUANTITIES
@@ -129,7 +129,7 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     'x (m)'
     """
     ax, task = new_axes(ax), problem.task
-    if isinstance(task, FunctionTask):
+    if task.has_output.any():
         plot_wanted(ax, task, problem.length_unit)
         return ax
     draw_scene(ax, problem)

@@ -19,7 +19,7 @@ from grashof.analysis.mechanism.position import places
 from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.figures.slides import ARM, CORNERS, ROD, Travel, draw_guide, slide_points
 from grashof.figures.subject import Subject
-from grashof.problems import FunctionTask, Linkage, Problem, Task
+from grashof.problems import Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
 from grashof.problems.values.linkages.mechanism import Mechanism
@@ -280,7 +280,7 @@ def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray)
     if task.only_points:
         _draw_points(axes, task)
         return
-    if isinstance(task, FunctionTask) and task.fits_range:
+    if task.fits_range:
         return
     for pose in _dozen(len(task)):
         _draw_pose(axes, task, pose, places[pose], float(angles[pose]))
