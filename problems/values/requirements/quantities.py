@@ -138,6 +138,8 @@ _LEVER = (
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
 TURNING = having("o4")  # kinds whose link 4 turns
+ROCKERS = having("r4")  # those where it is a bar
+TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
 _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 
 # In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.

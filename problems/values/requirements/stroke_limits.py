@@ -8,7 +8,7 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements.quantities import ROCKERS
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 
@@ -23,7 +23,7 @@ def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> lis
     wrong += _too_small(task, wanted)
     if wanted.exact is False:
         wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
-    if wanted.rotatability is Rotatability.DOUBLE_CRANK and FOUR_BAR in kinds:
+    if wanted.rotatability is Rotatability.DOUBLE_CRANK and not {*kinds}.isdisjoint(ROCKERS):
         wrong.append(
             'requirements.rotatability is "double-crank", whose output does not swing; '
             "with stroke it must be full-crank or crank-rocker"

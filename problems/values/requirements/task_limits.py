@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK
-from grashof.problems.values.requirements.quantities import TURNING, Needs, Quantity
+from grashof.problems.values.requirements.quantities import TRAVELLING, TURNING, Needs, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 
@@ -48,7 +47,7 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     """Kinds of linkages whose output does not move as a function asks for."""
     if not task.has_output.any():
         return []
-    suited, what, unit = ((SLIDER_CRANK,), "travel", "") if task.travels else (TURNING, "rotation", "_deg")
+    suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
     others = [word for word in kinds if word not in suited]
     if not others:
         return []

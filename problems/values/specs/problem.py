@@ -25,10 +25,10 @@ from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.dynamics.reference_torque import reference_torque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
-    INVERTED,
+    closing_dyad,
     freedoms,
     mechanisms,
     not_had,
@@ -37,7 +37,7 @@ from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import Needs, Quantity
+from grashof.problems.values.requirements.quantities import ROCKERS, Needs, Quantity
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -243,7 +243,7 @@ class Problem(ReadOnly):
         """What is weighed or limited though no kind of linkage that is asked for has it."""
         having = {where: quantity.kinds for where, quantity in self._asked.items()}
         if self.requirements.rotatability in ROCKING:
-            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
+            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
             not_had(where, self.mechanism, kinds)
             for where, kinds in having.items()
@@ -266,11 +266,11 @@ class Problem(ReadOnly):
         usual = Requirements()
         lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
         wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
-        if kind != FOUR_BAR and wanted.rotatability in ROCKING:
+        if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
         objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
-        if kind == INVERTED and objective == Objective() and self.by_objective:
+        if closing_dyad(kind) is DyadKind.RPR and objective == Objective() and self.by_objective:
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
