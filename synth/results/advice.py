@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import Problem, Task
-from grashof.synth.quantities.kinds import kind_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.strokes.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
 
@@ -24,10 +24,11 @@ def advice(problem: Problem) -> str:
     crank-rockers with this swing and time ratio transmit at 31.8 deg at best, less than the usual 40 deg; \
 time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     """
-    task, places = problem.task, places_of(kind_of(problem))
-    if not task.at_limits or not places.advised:
+    task = problem.task
+    if not task.at_limits:
         return ""
-    if (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+    places = places_of(ScaledProblem.of(problem).kind)
+    if not places.advised or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
         return ""
     kinds, what = places.what, places.advised
     usual = f"{np.degrees(GOOD):.0f} deg"

@@ -9,8 +9,8 @@ import numpy as np
 
 from grashof.problems import Requirements, Rotatability, Task
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
+from grashof.problems.values.linkages.mechanisms import closing_dyad
 from grashof.synth.proof.curve.asked import SLACK
 from grashof.synth.proof.strokes.members import (
     Family,
@@ -65,7 +65,8 @@ def families_of_stroke(scaled: ScaledProblem) -> list[Family]:
     if not task.at_limits:
         raise TypeError("only a swing or a stroke has limit positions")
     wanted = scaled.problem.requirements.resolved(task.size, scale_free=task.scale_free)
-    return _FAMILIES[scaled.problem.mechanism[0]](task, _Sizes.of(task, wanted, scaled.problem.mechanism[0]))
+    kind = scaled.kind.mechanism
+    return _FAMILIES[closing_dyad(kind)](task, _Sizes.of(task, wanted, kind))
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +120,8 @@ def _of_blocks(task: Task, sizes: _Sizes) -> list[Family]:
     return [] if task.swing is None else [crank_shapers(task.swing, limits) for limits in sizes.sides]
 
 
-_FAMILIES: Mapping[str, Callable[[Task, _Sizes], list[Family]]] = {
-    FOUR_BAR: _of_rockers,
-    SLIDER_CRANK: _of_slides,
-    INVERTED: _of_blocks,
+_FAMILIES: Mapping[DyadKind, Callable[[Task, _Sizes], list[Family]]] = {
+    DyadKind.RRR: _of_rockers,
+    DyadKind.RRP: _of_slides,
+    DyadKind.RPR: _of_blocks,
 }
