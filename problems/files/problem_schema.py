@@ -70,7 +70,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
-    for other in TASKS if kind in TASKS else ():
+    for other in TASKS if kind in [*TASKS] else ():  # a file may state a table as its kind
         if other != kind and other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []

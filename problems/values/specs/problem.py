@@ -25,10 +25,9 @@ from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.dynamics.reference_torque import reference_torque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
-    closing_dyad,
     freedoms,
     mechanisms,
     not_had,
@@ -37,7 +36,7 @@ from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import ROCKERS, Needs, Quantity
+from grashof.problems.values.requirements.quantities import BLOCKS, ROCKERS, Needs, Quantity
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -270,7 +269,7 @@ class Problem(ReadOnly):
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
         objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
-        if closing_dyad(kind) is DyadKind.RPR and objective == Objective() and self.by_objective:
+        if kind in BLOCKS and objective == Objective() and self.by_objective:
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
