@@ -13,8 +13,8 @@ Ipopt, one is text for GeoGebra. A function that takes a root and names the asse
 suspect. Most suspects find something else, such as limit positions; a new one has to be looked at.
 
 Not seen: a kind that is told by what it has (`hasattr`, `"o4" in ground`, the `kinds` of a quantity, the
-`slides` of a row, the kind of its dyads) or by a function that tells it (`is_of`), or that is held in a
-variable of another name, and kinds in JavaScript but for marks.
+`slides` of a row, the kind of its dyads) or by a function that tells it (`is_of`, `closing_dyad`), or that is
+held in a variable of another name, and kinds in JavaScript but for marks.
 """
 
 import argparse

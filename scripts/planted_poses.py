@@ -22,12 +22,11 @@ import numpy as np
 from grashof import synthesize
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, Linkage, MotionTask, Problem, ProblemError, Requirements, SliderCrank
+from grashof.problems import Box, Linkage, MotionTask, Problem, ProblemError, Requirements
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.synth.designs.candidate import Candidate
 
-KINDS = ("four-bar", "slider-crank", "inverted-slider-crank")
-DIRECTION = {"four-bar": "ground_angle_deg", "slider-crank": "slide_angle_deg",
-             "inverted-slider-crank": "ground_angle_deg"}  # fmt: skip
+KINDS = tuple(ONE_LOOP)
 STATED = ("nothing", "direction", "o2", "other pivot", "both pivots", "brackets", "direction and brackets")
 ROUGH = 1e-6  # sizes and rad
 
@@ -38,14 +37,14 @@ class Cell:
 
     Parameters
     ----------
-    mechanism : str
+    kind : str
     poses : int
     parts : {"whole", "free"}
         Free: the angle of one pose, and of four or more also the position of another one.
     stated : str
     """
 
-    mechanism: str
+    kind: str
     poses: int
     parts: str
     stated: str
@@ -53,8 +52,7 @@ class Cell:
     @property
     def has_meaning(self) -> bool:
         """Whether that kind has what is stated."""
-        slides = self.mechanism == "slider-crank"
-        return not (slides and self.stated in ("other pivot", "both pivots"))
+        return "o4" in ONE_LOOP[self.kind].ground or self.stated not in ("other pivot", "both pivots")
 
 
 CELLS = [cell for cell in (Cell(*each) for each in product(KINDS, (2, 3, 4, 5), ("whole", "free"), STATED))
@@ -64,12 +62,12 @@ CELLS = [cell for cell in (Cell(*each) for each in product(KINDS, (2, 3, 4, 5), 
 def planted(cell: Cell, rng: np.random.Generator) -> tuple[Problem, Linkage]:
     """A problem, and a linkage that meets it."""
     while True:
-        task, linkage = planted_motion(rng, cell.poses, mechanism=cell.mechanism)
+        task, linkage = planted_motion(rng, cell.poses, mechanism=cell.kind)
         if cell.parts == "free":
             task = with_free_parts(task, rng)
         wanted = Requirements(**limits(cell, linkage, rng))
         if verify(linkage, task, wanted).ok:
-            return Problem(task=task, mechanism=(cell.mechanism,), requirements=wanted), linkage
+            return Problem(task=task, mechanism=(cell.kind,), requirements=wanted), linkage
 
 
 def with_free_parts(task: MotionTask, rng: np.random.Generator) -> MotionTask:
@@ -86,11 +84,11 @@ def limits(cell: Cell, linkage: Linkage, rng: np.random.Generator) -> dict[str, 
     """What the cell states of the planted linkage, as `Requirements` takes it."""
     found: dict[str, Any] = {}
     if "direction" in cell.stated:
-        if isinstance(linkage, SliderCrank):  # 180 deg more is the same line
+        if linkage.mechanism.loops[0].slide_angle:  # 180 deg more is the same line
             angle = float(np.degrees(linkage.slide_angle)) + 180 * int(rng.integers(2))
+            found["slide_angle_deg"] = angle
         else:
-            angle = float(np.degrees(linkage.theta1))
-        found[DIRECTION[cell.mechanism]] = angle
+            found["ground_angle_deg"] = float(np.degrees(linkage.theta1))
     if cell.stated in ("o2", "both pivots"):
         found["o2"] = point(linkage.o2)
     if cell.stated in ("other pivot", "both pivots"):
@@ -147,7 +145,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     given = parser.parse_args(argv)
     short = 0
     for cell in CELLS:
-        name = f"{cell.mechanism}, {cell.poses} {cell.parts} poses, {cell.stated}"
+        name = f"{cell.kind}, {cell.poses} {cell.parts} poses, {cell.stated}"
         if given.only not in name:
             continue
         solved, seconds = zip(*run(cell, given.count, given.seed, given.limit), strict=True)

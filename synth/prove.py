@@ -10,9 +10,10 @@ import numpy as np
 
 from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
-from grashof.problems import Problem, ProblemError, StrokeTask
+from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import number_within
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.linkages.mechanisms import closing_dyad
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
 from grashof.synth.proof.curve.asked import POSES, refusal
@@ -98,13 +99,13 @@ def prove(
         number_within(at_least, 0.0, 90.0, "at_least")
     proving = Proving.patient(gap)
     beyond = Proof(claim=Claim.REFUSED, quantity=quantity_of(problem).column, why=_BEYOND)
-    stroke = isinstance(problem.task, StrokeTask)
-    kind = problem.mechanism[0] if stroke or FOUR_BAR not in problem.mechanism else FOUR_BAR
+    stroke, bars = problem.task.at_limits, _of_bars(problem)
+    kind = problem.mechanism[0] if stroke or bars is None else bars
     if certificate is not None:
         _certifiable(problem, constraints, Path(certificate))
     alone = problem.for_kind(kind)
     function, count = bool(problem.task.has_output.any()), len(problem.task)
-    if kind != FOUR_BAR and (function or (count != POSES and not stroke)):
+    if kind != bars and (function or (count != POSES and not stroke)):
         return beyond
     whole = problem.task.is_whole
     three = whole and count == THREE and at_least is None
@@ -132,6 +133,11 @@ def prove(
     return proof
 
 
+def _of_bars(problem: Problem) -> str | None:
+    """The kind among those asked for that is all bars, of which there are most proofs; None without it."""
+    return next((kind for kind in problem.mechanism if closing_dyad(kind) is DyadKind.RRR), None)
+
+
 def _takes_minutes(scaled: ScaledProblem, proving: Proving) -> bool:
     """Whether three poses stay open at first: a good design of a list is then worth more than many pairs."""
     return not refusal(scaled, THREE) and bounds_before(scaled, proving) is None
@@ -144,8 +150,8 @@ def has_certificate(proof: Proof) -> bool:
 
 def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path) -> None:
     """Refuse a certificate, before the proof, where there can be none."""
-    four_bar = FOUR_BAR in problem.mechanism
-    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR) if four_bar else problem, constraints)
+    bars = _of_bars(problem)
+    scaled = ScaledProblem.of(problem if bars is None else problem.for_kind(bars), constraints)
     if refusal(scaled) is None:
         raise ProblemError(
             f"certificate {path}: there are certificates of four whole poses only, met by a four-bar"

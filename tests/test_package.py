@@ -44,6 +44,16 @@ def test_layers_import_only_from_below(name: str) -> None:
             assert not other.startswith("casadi"), f"{name} imports casadi"
 
 
+def test_below_problems_nobody_asks_which_kind_a_task_is() -> None:
+    kinds = r"(Function|Motion|Path|Stroke)Task"
+    asking = re.compile(
+        rf"isinstance\([^()]*,[^()]*\b{kinds}|\btask\)? (is|==) {kinds}|\btask\.kind (==|!=|in)\b"
+    )
+    for name, path in SOURCES.items():
+        if layer_of(name) != LAYERS[0]:
+            assert not asking.search(path.read_text(encoding="utf-8")), name
+
+
 @pytest.mark.slow
 def test_no_module_imports_itself_by_way_of_others() -> None:
     assert circle_of_modules() == []

@@ -12,7 +12,7 @@ from grashof.analysis.forces.joints import slide_direction, slide_normal
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.problems import AssemblyError, Linkage, SliderCrank
+from grashof.problems import AssemblyError, Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import wrong_value
@@ -68,6 +68,7 @@ def balance_reciprocating(
 
     Examples
     --------
+    >>> from grashof.problems import SliderCrank
     >>> engine = SliderCrank(o2=(0, 0), r2=0.05, r3=0.2)
     >>> masses = Masses(Body(0), Body(0.6, 0.003, (0.05, 0.0)), Body(0.35))
     >>> found = balance_reciprocating(engine, masses, share=0.5)
@@ -120,6 +121,7 @@ def shaking_harmonics(linkage: Linkage, masses: Masses, omega2: float, orders: i
 
     Examples
     --------
+    >>> from grashof.problems import SliderCrank
     >>> engine = SliderCrank(o2=(0, 0), r2=0.05, r3=0.2)
     >>> found = shaking_harmonics(engine, Masses(Body(0), Body(0), Body(2.0)), 100.0)
     >>> np.abs(found[:, 0]).round(3).tolist()  # m r omega^2, and nearly r2 / r3 of it
@@ -149,5 +151,5 @@ def _harmonics(linkage: Linkage, masses: Masses, omega2: float, orders: int, cou
 
 
 def _check_kind(linkage: Linkage) -> None:
-    if not isinstance(linkage, SliderCrank):
+    if not (isinstance(linkage, Linkage) and linkage.mechanism.loops[0].slide_angle):
         raise wrong_value("linkage", linkage, "a SliderCrank")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import FunctionTask, Linkage, Requirements, TransmissionOver
+from grashof.problems import Linkage, Requirements, Task, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _DENSE = 721
@@ -34,9 +35,20 @@ class StructuralError:
     zero: float
     sense: int
 
+    @property
+    def figures(self) -> dict[str, Any]:
+        """What a verdict has of it."""
+        return {
+            "structural_error_max": self.max,
+            "structural_error_rms": self.rms,
+            "structural_error_at": self.at,
+            "output_zero": self.zero,
+            "output_sense": self.sense,
+        }
+
 
 def output_error(
-    linkage: Linkage, task: FunctionTask, begun: Beginning, turned: FloatArray, sense: int
+    linkage: Linkage, task: Task, begun: Beginning, turned: FloatArray, sense: int
 ) -> FloatArray:
     """Output less what is wanted but for a constant, at growing driver rotations (K,), rad or length.
 
@@ -47,9 +59,7 @@ def output_error(
     return found
 
 
-def structural_error(
-    linkage: Linkage, task: FunctionTask, begun: Beginning, exact: bool
-) -> StructuralError | None:
+def structural_error(linkage: Linkage, task: Task, begun: Beginning, exact: bool) -> StructuralError | None:
     """The structural error over the whole range; None where the linkage cannot be assembled all over it.
 
     Extremes are refined, the mean square is a Gauss-Legendre sum between samples and pairs. The output's zero
@@ -58,13 +68,13 @@ def structural_error(
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
-    dense = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, _DENSE)]))
+    dense = np.unique(np.concatenate([task.driver_turns, np.linspace(*task.span, _DENSE)]))
     found = []
     for sense in senses:
         off = output_error(linkage, task, begun, dense, sense)
         if np.isnan(off).any():
             return None
-        at_pairs = off[np.searchsorted(dense, task.inputs)]
+        at_pairs = off[np.searchsorted(dense, task.driver_turns)]
         found.append((float(np.ptp(off)), sense, off, at_pairs))
     _, sense, off, at_pairs = min(found, key=lambda each: each[:2])
     zero = float(share @ at_pairs)
@@ -80,7 +90,7 @@ def structural_error(
     if task.norm == "max" and not exact:
         zero = (high - low) / 2
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    coarse = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, 25)]))
+    coarse = np.unique(np.concatenate([task.driver_turns, np.linspace(*task.span, 25)]))
     middle, half = (coarse[1:] + coarse[:-1]) / 2, np.diff(coarse) / 2
     inner = (middle[:, None] + half[:, None] * nodes).ravel()
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
@@ -98,7 +108,7 @@ def _near(errors: FloatArray, turned: FloatArray, dense: FloatArray, off: FloatA
 
 
 def met_as_function(
-    linkage: Linkage, task: FunctionTask, wanted: Requirements
+    linkage: Linkage, task: Task, wanted: Requirements
 ) -> tuple[Targets, TaskMotion, StructuralError | None]:
     """Driver angle and error at each pair, the motion, and the structural error, or None without one."""
     exact = wanted.is_exact(task)
@@ -112,7 +122,7 @@ def met_as_function(
     met = begun or Beginning(start or 0.0, 1)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
     met = Beginning(float(first), met.direction)
-    theta2 = met.theta2 + met.direction * task.inputs
+    theta2 = met.theta2 + met.direction * task.driver_turns
     error = structural_error(linkage, task, met, exact) if begun else None
     free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
     at_pairs = np.full(len(task), np.inf) if error is None else np.abs(error.at_pairs)
@@ -141,7 +151,7 @@ class FunctionCurves:
 
 
 def function_curves(
-    linkage: Linkage, task: FunctionTask, verdict: Verdict, count: int = 361, at: FloatArray | None = None
+    linkage: Linkage, task: Task, verdict: Verdict, count: int = 361, at: FloatArray | None = None
 ) -> FunctionCurves | None:
     """What a judged linkage puts out over the range of its function, or at given driver rotations.
 
@@ -149,7 +159,7 @@ def function_curves(
 
     Examples
     --------
-    >>> from grashof.problems import FourBar
+    >>> from grashof.problems import FourBar, FunctionTask
     >>> from grashof.analysis.judge.verify import verify
     >>> linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> task = FunctionTask([0, 0.5, 1.0], [0, 0.1, 0.3])

@@ -9,14 +9,13 @@ import numpy as np
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.stroke import output_stroke
-from grashof.problems import Linkage, Requirements
+from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.arrays import TURN
-from grashof.problems.values.tasks.stroke_task import StrokeTask
 
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
-def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+def at_limits(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     """The limit positions of a linkage on its own assembly, and the slow stroke between them.
 
     A whole turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
@@ -32,7 +31,7 @@ def at_limits(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> tuple
     return Targets.of(linkage, task, theta2, assembly), TaskMotion.ordered(theta2, sense)
 
 
-def stroke_defects(linkage: Linkage, task: StrokeTask, wanted: Requirements) -> Iterator[Defect]:
+def stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
     """What swing (by `tolerance` in rad), stroke and time ratio (by that share of them) miss."""
     found = output_stroke(linkage)
     ratio = float(found.time_ratio)

@@ -1,16 +1,15 @@
-"""How a linkage does a task: where it meets each target, and the motion between them."""
+"""How a linkage does a task in the plane: where it meets each target, and the motion between them."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.judge.limit_positions import at_limits
 from grashof.analysis.judge.meeting.points import met_in_order, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.meeting.timed_targets import met_in_time
 from grashof.analysis.mechanism.mobility import branch_index
-from grashof.problems import Linkage, Requirements, StrokeTask, Task
+from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.arrays import TURN
 
 
@@ -21,9 +20,7 @@ def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, T
     points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
     begin at `theta2_start_deg`, where it is given.
     """
-    if isinstance(task, StrokeTask):
-        targets, motion = at_limits(linkage, task, wanted)
-    elif task.is_timed or task.only_points:
+    if task.is_timed or task.only_points:
         targets, motion = _points_or_timed(linkage, task, wanted)
     else:
         targets, motion = _poses(linkage, task, wanted)

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from grashof.analysis.forces.stated import TRAVEL_ROUNDING
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.driven import cylinder_defects, driven_travel
-from grashof.analysis.judge.function_output import StructuralError, met_as_function
-from grashof.analysis.judge.limit_positions import stroke_defects
+from grashof.analysis.judge.how_met import HOW_MET
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
-from grashof.analysis.judge.meet import meet
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
@@ -33,16 +30,15 @@ from grashof.analysis.mechanism.transmission import worst_transmission, worst_tr
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import (
     Cylinder,
-    FunctionTask,
     Linkage,
     Problem,
     Requirements,
     Rotatability,
-    StrokeTask,
     Task,
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.function_ground import grounded
+from grashof.problems.values.tasks.task import row_of
 
 
 def verify(
@@ -91,18 +87,13 @@ def verify(
     """
     task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
-    error: StructuralError | None = None
-    if isinstance(task, FunctionTask):
-        targets, motion, error = met_as_function(linkage, task, wanted)
-        places = np.array([motion.start, *targets.theta2, motion.end])
-        sides = np.full(len(places), int(linkage.assembly))
-    else:
-        targets, motion = meet(linkage, task, wanted)
-        places, sides = targets.theta2, targets.assembly
-    circuits = circuit_index(linkage, places, sides)
-    branches = branch_index(linkage, places, sides)
+    how = row_of(HOW_MET, task)
+    met = how.met(linkage, task, wanted)
+    targets, motion = met.targets, met.motion
+    circuits = circuit_index(linkage, met.theta2, met.assembly)
+    branches = branch_index(linkage, met.theta2, met.assembly)
     circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
-    circuit_ok = circuit_ok and (error is not None or not isinstance(task, FunctionTask))
+    circuit_ok = circuit_ok and met.covered
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
     branch_ok = branch_ok and not passes_change_point(linkage, motion.start, motion.end)
     # Without a motion that joins the targets nothing is transmitted.
@@ -125,12 +116,13 @@ def verify(
         size=diagonal(reach_box(linkage, motion.start, motion.end)),
         defects=(),
         cylinder=cylinder,
-        **_of_function(targets, error),
+        output_error=targets.output_error,
+        **met.figures,
     )
     drive = _drive(linkage, task, wanted, verdict, targets, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
-        *(stroke_defects(linkage, task, wanted) if isinstance(task, StrokeTask) else []),
+        *how.defects(linkage, task, wanted),
         *_zones(targets, task),
         *_whole_error(targets, task, most_square),
         *drive,
@@ -144,20 +136,6 @@ def verify(
         *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     )
     return replace(verdict, defects=defects)
-
-
-def _of_function(targets: Targets, error: StructuralError | None) -> dict[str, Any]:
-    """What a verdict has of a function."""
-    if error is None:
-        return {"output_error": targets.output_error}
-    return {
-        "output_error": targets.output_error,
-        "structural_error_max": error.max,
-        "structural_error_rms": error.rms,
-        "structural_error_at": error.at,
-        "output_zero": error.zero,
-        "output_sense": error.sense,
-    }
 
 
 def _square(targets: Targets, task: Task) -> float:
@@ -187,7 +165,7 @@ def _of_output(
     task: Task, error: FloatArray, tolerance: float
 ) -> tuple[str, FloatArray, float, float, float]:
     """The same of the output of a function: rad, or as a share of its whole travel."""
-    if isinstance(task, FunctionTask) and task.travels:
+    if task.travels:
         return "output error at the pairs", error, tolerance * task.size, task.size, 1.0
     return "output error in deg at the pairs", error, tolerance, 1.0, float(np.degrees(1.0))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
@@ -84,7 +84,7 @@ def _by_key(row: Parameter) -> tuple[str, Parameter]:
 
 # What the second dyad of six-bars is given by, by the keys of its table; the first loop is a four-bar.
 _OF_DYAD = dict(
-    _by_key(each) for row in _SIX_BARS for each in row.parameters if each not in ONE_LOOP[FOUR_BAR].parameters
+    _by_key(each) for row in _SIX_BARS for each in row.parameters if each not in row.one_loop.parameters
 )
 _PARAMETERS = {row.key: row for row in PARAMETERS} | {
     key: replace(row, name=row.name.removesuffix("_2")) for key, row in _OF_DYAD.items()
@@ -223,6 +223,8 @@ class LinkageTable(_Checked, MachineTables, _Heading):
         With `r1`: direction of O4 from O2; 0 without it.
     """
 
+    one_loop: ClassVar[Mechanism]  # what its file states but for a second dyad
+
     def value(self) -> Linkage:
         """The linkage itself, checked with what belongs to it."""
         kind = self._kind()
@@ -244,7 +246,7 @@ class LinkageTable(_Checked, MachineTables, _Heading):
 
     def _kind(self) -> Mechanism:
         dyad: _DyadTable | None = self._given("dyad")
-        return ONE_LOOP[self.mechanism] if dyad is None else dyad.row(self.mechanism)
+        return self.one_loop if dyad is None else dyad.row(self.mechanism)
 
     def _o4(self) -> list[float]:
         given: list[float] | None = self._given("o4")
@@ -291,12 +293,13 @@ def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
     """The file of a kind: the parameters that it has, and what else goes with them."""
     keys = {key: made for row in kind.parameters for key, made in _keys(row)} | more
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys and not more else {}
-    if word == FOUR_BAR:
+    if "r4" in keys and not more:  # the walking beam
         also["pumping_unit"] = (PumpingUnitTable | None, None)
     name = word.title().replace("-", "")
     begin = create_model(f"_{name}", __base__=_Heading, **keys)
     bases: tuple[Any, ...] = (LinkageTable, MachineTables, begin)
     file: type[LinkageTable] = create_model(f"{name}Table", __base__=bases, **also)
+    file.one_loop = kind
     return file
 
 
@@ -313,7 +316,7 @@ def _dyad_file() -> type[_DyadTable]:
 
 
 DyadTable = _dyad_file()
-_SIX_BAR = _file("six-bar", ONE_LOOP[FOUR_BAR], point_link=(int, 5), dyad=(DyadTable, ...))
+_SIX_BAR = _file("six-bar", _SIX_BARS[0].one_loop, point_link=(int, 5), dyad=(DyadTable, ...))
 FILES: dict[str, type[LinkageTable]] = {
     **{word: _file(word, kind) for word, kind in ONE_LOOP.items()},
     **{row.word: _SIX_BAR for row in _SIX_BARS},

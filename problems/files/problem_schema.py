@@ -38,15 +38,7 @@ from grashof.problems.files.tables import (
     stated,
     tag,
 )
-from grashof.problems.files.task_schema import (
-    Corners,
-    FunctionTable,
-    MotionTable,
-    Pair,
-    PathTable,
-    SceneTable,
-    StrokeTable,
-)
+from grashof.problems.files.task_schema import TASKS, Corners, Pair, SceneTable
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, refused
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -75,13 +67,10 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     raise refused([*wrong, *_ill_matched(document)])
 
 
-_KINDS = ("motion", "path", "stroke", "function")  # each with a table of its name
-
-
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
-    for other in _KINDS if kind in _KINDS else ():
+    for other in TASKS if kind in [*TASKS] else ():  # a file may state a table as its kind
         if other != kind and other in document:
             yield f'{other} does not belong to kind = "{kind}"'
     wrong: list[str] = []
@@ -247,7 +236,7 @@ Mechanism = Annotated[
 ]
 
 
-class _Task(Table):
+class _Heading(Table):
     """What is asked; the keys of a file come in this order.
 
     Parameters
@@ -262,15 +251,18 @@ class _Task(Table):
         Unit of all lengths: mm, cm, m, in or ft where forces are asked for, otherwise any word.
     """
 
-    kind: Annotated[str, one_of(*_KINDS)]
+    kind: Annotated[str, one_of(*TASKS)]
     mechanism: Mechanism = FOUR_BAR
     title: Text = ""
     source: Text = ""
     length_unit: Text = ""
-    motion: MotionTable | None = None
-    path: PathTable | None = None
-    stroke: StrokeTable | None = None
-    function: FunctionTable | None = None
+
+
+_tables: dict[str, Any] = {kind: (table | None, None) for kind, table in TASKS.items()}
+_Stated = create_model("_Stated", __base__=_Heading, **_tables)
+
+
+class _Task(_Stated):  # type: ignore[misc, valid-type]
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None
@@ -282,7 +274,7 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in _KINDS}
+        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
         mine = tables.pop(self.kind)
         for other, table in tables.items():
             if table is not None:

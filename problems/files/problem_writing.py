@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -15,7 +15,7 @@ from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.specs.problem import Problem
 from grashof.problems.values.tasks.function_task import FunctionTask
-from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.tasks.task import Task, row_of
 
 
 def problem_toml(problem: Problem) -> str:
@@ -38,7 +38,7 @@ _WORDS = ("title", "source", "length_unit")
 
 
 def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Mapping[str, Any]]]]:
-    yield problem.task.kind, _given(_task(problem.task))
+    yield problem.task.kind, _given(row_of(_TASKS, problem.task)(problem.task))
     if problem.outlines:
         yield "scene", {"outlines": problem.outlines}
     wanted = problem.requirements
@@ -60,13 +60,11 @@ def _given(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _task(task: Task) -> dict[str, Any]:
     """A task's table: its fields, angles in degrees, and poses in rows."""
-    if isinstance(task, FunctionTask):
-        return _function(task)
     given = {field.name: getattr(task, field.name) for field in fields(task) if field.init}  # type: ignore[arg-type]
     if given.pop("angles", None) is not None:
         given = {"poses": _poses(task), **given}
         del given["positions"]
-    for name in ("angle_within", "timing", "swing"):
+    for name in task.in_degrees:
         if given.get(name) is not None:
             given[f"{name}_deg"] = _degrees(given.pop(name))
     return given
@@ -90,6 +88,10 @@ def _function(task: FunctionTask) -> dict[str, Any]:
         "sampled": law.samples,
         **words,
     }
+
+
+# Tables by the kind of task; most are written by their fields.
+_TASKS: Mapping[type, Callable[[Any], dict[str, Any]]] = {Task: _task, FunctionTask: _function}
 
 
 def _poses(task: Task) -> list[Any]:

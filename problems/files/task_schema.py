@@ -97,6 +97,10 @@ class FunctionTable(SpecTable):
     beside = MappingProxyType({"sense": _PAIRS, "norm": _PAIRS})
 
 
+# The kinds of tasks in the order of files, each with a table of its name.
+TASKS: Mapping[str, type[SpecTable]] = MappingProxyType(
+    {"motion": MotionTable, "path": PathTable, "stroke": StrokeTable, "function": FunctionTable}
+)
 Outlines = Annotated[
     list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")
 ]

@@ -34,7 +34,7 @@ from peers import PEERS, LeftOutError  # noqa: E402
 from grashof import load, synthesize  # noqa: E402
 from grashof.analysis import verify  # noqa: E402
 from grashof.analysis.judge.planted import planted_motion, planted_path  # noqa: E402
-from grashof.problems import FunctionTask, Linkage, Problem, Requirements, Rotatability  # noqa: E402
+from grashof.problems import Linkage, Problem, Requirements, Rotatability  # noqa: E402
 from grashof.synth.theory.distinct import pick_apart, signature  # noqa: E402
 
 NEAR, EXACT, APART = 1.01, 1e-6, 0.05
@@ -70,7 +70,7 @@ def judged(problem: Problem, linkage: Linkage) -> float:
     verdict = verify(linkage, task, wanted)
     if not verdict.ok:
         return np.inf
-    if isinstance(task, FunctionTask) and task.norm == "max" and not is_exact(problem):
+    if task.norm == "max" and not is_exact(problem):
         return verdict.structural_error_max
     return float(np.sqrt(verdict.square / len(task)))
 

@@ -68,8 +68,6 @@ def interpolated(seeds: int) -> None:
         triplets: list[ComplexArray] = []
         for candidate in result.candidates:
             linkage = candidate.linkage
-            if not isinstance(linkage, FourBar):
-                continue
             o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
             o6 = o2 + (o4 - o2) * complex(*linkage.coupler_point) / linkage.r3
             pivots = np.array([o2 + o4 + o6, o2 * o4 + o4 * o6 + o6 * o2])

@@ -8,11 +8,11 @@ choice, such as the assembly, is drawn at random for every start. A limit holds 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
-from grashof.problems import FourBar, FunctionTask, MotionTask, PathTask, Problem, Requirements
+from grashof.problems import FourBar, Problem, Requirements, Task
 from grashof.problems.values.arrays import FloatArray
 
 TURN = 2 * np.pi
@@ -36,16 +36,16 @@ class Choice(NamedTuple):
 
 def formulated(problem: Problem) -> Formulation:
     """The formulation of a four-bar's task."""
-    if isinstance(problem.task, FunctionTask):
+    if problem.task.has_output.any():
         return FunctionFormulation.of(problem.task, problem.requirements)
-    return CouplerFormulation.of(cast(MotionTask | PathTask, problem.task), problem.requirements)
+    return CouplerFormulation.of(problem.task, problem.requirements)
 
 
 @dataclass(frozen=True, slots=True)
 class CouplerFormulation:
     """Points or poses: o2, o4, r2, r3, r4, u, v, body angle, and driver angles or, if timed, the first."""
 
-    task: MotionTask | PathTask
+    task: Task
     wanted: Requirements
     low: FloatArray
     high: FloatArray
@@ -55,7 +55,7 @@ class CouplerFormulation:
     "Whether the greatest residual is made least instead of the sum of squares."
 
     @classmethod
-    def of(cls, task: MotionTask | PathTask, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
+    def of(cls, task: Task, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
         """Pivots within so many sizes of the task, links as the requirements have them."""
         size, middle = task.size, task.positions.mean(axis=0)
         least, most = wanted.link_length or (0.01 * size, 20 * size)
@@ -102,7 +102,7 @@ class CouplerFormulation:
         cosine, sine = np.cos(theta3), np.sin(theta3)
         p = a + np.stack([u * cosine - v * sine, u * sine + v * cosine], axis=-1)
         errors = [p - self.task.positions]
-        if isinstance(self.task, MotionTask):
+        if self.task.has_angle.any():
             turn = theta3 + body - self.task.angles
             errors.append(2 * self.task.angle_length * np.sin(turn / 2)[:, None])
         return np.concatenate([each.ravel() for each in errors])
@@ -142,7 +142,7 @@ class CouplerFormulation:
 class FunctionFormulation:
     """A function: r2, r3, r4 over a ground of 1, the first angles of driver and output."""
 
-    task: FunctionTask
+    task: Task
     wanted: Requirements
     low: FloatArray
     high: FloatArray
@@ -150,7 +150,7 @@ class FunctionFormulation:
     scale: float = 1.0
 
     @classmethod
-    def of(cls, task: FunctionTask, wanted: Requirements) -> FunctionFormulation:
+    def of(cls, task: Task, wanted: Requirements) -> FunctionFormulation:
         """Links up to the ratio that is allowed."""
         ratio = min(wanted.link_ratio_max, 20.0)
         low, high = [1 / ratio] * 3 + [-np.pi] * 2, [ratio] * 3 + [np.pi] * 2
@@ -167,7 +167,7 @@ class FunctionFormulation:
     def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:  # closure: RRR
         """Of the output angle at every pair, rad."""
         r2, r3, r4 = x[:3]
-        theta2 = x[3] + choice.way * self.task.inputs
+        theta2 = x[3] + choice.way * self.task.driver_turns
         a = r2 * np.exp(1j * theta2)
         d = np.abs(a - 1) + 1e-12
         along = (r4**2 - r3**2 + d**2) / (2 * d)
@@ -180,7 +180,7 @@ class FunctionFormulation:
     def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
         """Assembly and transmission at the pairs, the ratio of the links."""
         r2, r3, r4 = x[:3]
-        square = np.abs(r2 * np.exp(1j * (x[3] + choice.way * self.task.inputs)) - 1) ** 2
+        square = np.abs(r2 * np.exp(1j * (x[3] + choice.way * self.task.driver_turns)) - 1) ** 2
         links = np.array([1.0, r2, r3, r4])
         ratio = links.max() / links.min() / self.wanted.link_ratio_max - 1
         return np.append(_transmission(square, r3, r4, self.wanted), ratio)

@@ -23,8 +23,9 @@ from grashof import synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, InvertedSliderCrank, Linkage, MotionTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 
-KINDS = ("slider-crank", "inverted-slider-crank")
+SLIDING = tuple(word for word, row in ONE_LOOP.items() if row.slides)
 FAR = 4.0  # sizes: how far joints may be
 EXACT = 1e-10  # of the residuals
 
@@ -40,6 +41,8 @@ class Asked:
         Of A on the body, O2, two more numbers of the other dyad, an angle, then what the poses leave free.
     free_angles, free_places : ndarray of int
         Poses with a free angle, or place.
+    slides : bool
+        Whether B slides on the ground, not the rod through a block at O4.
     """
 
     problem: Problem
@@ -47,11 +50,12 @@ class Asked:
     high: FloatArray
     free_angles: np.ndarray[Any, np.dtype[np.int64]]
     free_places: np.ndarray[Any, np.dtype[np.int64]]
+    slides: bool
 
 
 def asked(rng: np.random.Generator) -> Asked:
     """A task: two to four poses of a size near 1, some of their parts free, and limits."""
-    kind, count = KINDS[rng.integers(2)], int(rng.integers(2, 5))
+    kind, count = SLIDING[rng.integers(2)], int(rng.integers(2, 5))
     places, angles = rng.normal(0, 0.6, (count, 2)), rng.normal(0, 0.7, count)
     free_angles = free_places = np.zeros(0, dtype=np.int64)
     if count > 2 and rng.random() < 0.6:
@@ -60,7 +64,7 @@ def asked(rng: np.random.Generator) -> Asked:
         free_places = np.array([2])
     shown_places, shown_angles = places.copy(), angles.copy()
     shown_places[free_places], shown_angles[free_angles] = np.nan, np.nan
-    slides = kind == "slider-crank"
+    slides = bool(ONE_LOOP[kind].loops[0].slide_angle)
     low, high = np.full(7, -FAR), np.full(7, FAR)
     stated: dict[str, Any] = {}
     where = {"a_on_body": (0, 0.6), "o2": (2, 0.5)}
@@ -90,6 +94,7 @@ def asked(rng: np.random.Generator) -> Asked:
         np.concatenate([high, np.full(free, FAR)]),
         free_angles,
         free_places,
+        slides,
     )
 
 
@@ -105,14 +110,13 @@ def poses(task: Asked, unknowns: FloatArray) -> tuple[ComplexArray, FloatArray]:
 
 def residuals(task: Asked) -> Callable[[FloatArray], FloatArray]:
     """What the two dyads miss: A's distance from O2, and B's from its line, or O4's from the rod."""
-    slides = task.problem.mechanism[0] == "slider-crank"
 
     def missed(unknowns: FloatArray) -> FloatArray:
         places, angles = poses(task, unknowns)
         turned = np.exp(1j * angles)
         a = places + complex(*unknowns[:2]) * turned
         crank = np.abs(a - complex(*unknowns[2:4]))
-        if slides:
+        if task.slides:
             b = places + complex(*unknowns[4:6]) * turned
             across = ((b - b[0]) * np.exp(-1j * unknowns[6])).imag[1:]
         else:
@@ -131,7 +135,7 @@ def linkages(task: Asked, unknowns: FloatArray) -> list[Linkage]:
     a, o2 = places[0] + complex(*unknowns[:2]) * turned, complex(*unknowns[2:4])
     common: dict[str, Any] = {"o2": (o2.real, o2.imag), "r2": abs(a - o2)}
     found: list[Linkage] = []
-    if task.problem.mechanism[0] == "slider-crank":
+    if task.slides:
         b = places[0] + complex(*unknowns[4:6]) * turned
         along, coupler = np.exp(1j * unknowns[6]), b - a
         for sense in (1, -1):  # the line taken either way round

@@ -24,7 +24,7 @@ from scipy.optimize import (
 )
 
 from grashof import synthesize
-from grashof.problems import FourBar, FunctionTask, Linkage, MotionTask, PathTask, Problem
+from grashof.problems import FourBar, Linkage, Problem, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.search.run import Progress
 
@@ -177,12 +177,12 @@ def fourbarhinge(problem: Problem, seed: int, budget: float, found: Found) -> No
     least, most = wanted.link_length or (0.01 * task.size, 20 * task.size)
     transmission = max(np.radians(wanted.transmission_min_deg), 1e-3)
     bounds = package.LinkBounds(min_length=least, max_length=most, min_transmission_angle=transmission)
-    if isinstance(task, MotionTask):
+    if task.has_angle.any():
         arm = task.size * np.stack([np.cos(task.angles), np.sin(task.angles)], axis=-1)
         solved = package.CouplerMotionSynthesis(task.positions, task.positions + arm, bounds).solve()
         found(_of_fourbarhinge(solved.params, solved.branch))
         return
-    if not isinstance(task, PathTask) or task.timing is not None:
+    if not task.only_points or task.is_timed:
         raise LeftOutError("paths without timing alone")
     while not over():
         solved = package.CouplerPathSynthesis(task.positions, bounds).solve(n_starts=20, seed=seed)
@@ -208,11 +208,11 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
     package = import_module("pylinkage.synthesis")
     task = problem.task
     full = problem.requirements.rotatability != "any"
-    if isinstance(task, FunctionTask):
+    if task.has_output.any():
         least = np.inf
         for _, choice, x in starts(formulation := formulated(problem), seed, budget):
             first, zero = x[3:]
-            pairs = np.stack([first + choice.way * task.inputs, zero + choice.way * task.outputs], -1)
+            pairs = np.stack([first + choice.way * task.driver_turns, zero + choice.way * task.outputs], -1)
             solved = package.function_generation([*map(tuple, pairs.tolist())], require_grashof=full)
             for made in map(_of_pylinkage, solved.raw_solutions):
                 lengths = np.array([made.r2, made.r3, made.r4]) / np.hypot(*(made.o4 - made.o2))
@@ -225,20 +225,20 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
                     least = error
                     found(made)
         return
-    if isinstance(task, MotionTask):
+    if task.has_angle.any():
         poses = [package.Pose(*pose) for pose in np.c_[task.positions, task.angles].tolist()]
         solved = package.motion_generation(poses, max_solutions=None, require_grashof=full)
         for each in solved.raw_solutions:
             found(_of_pylinkage(each, task))
         return
-    if task.timing is not None or not isinstance(task, PathTask):
+    if task.is_timed or not task.only_points:
         raise LeftOutError("paths without timing alone")
     points = [*map(tuple, task.positions.tolist())]
     for each in package.path_generation(points, require_grashof=full).raw_solutions:
         found(_of_pylinkage(each))
 
 
-def _of_pylinkage(solved: Any, task: MotionTask | None = None) -> FourBar:
+def _of_pylinkage(solved: Any, task: Task | None = None) -> FourBar:
     o2, o4, a, b = map(
         np.array,
         (solved.ground_pivot_a, solved.ground_pivot_d, solved.crank_pivot_b, solved.coupler_pivot_c),

@@ -16,8 +16,8 @@ from grashof.figures.linkage import plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage
 from grashof.output.terminal import best_rows, heading, units
-from grashof.problems import FunctionTask, LinkageSpec, Problem, ProblemError
 from grashof.problems import Linkage as AnyKind
+from grashof.problems import LinkageSpec, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth import Candidate, Result
@@ -93,7 +93,7 @@ def _judged(candidate: Candidate) -> dict[str, str]:
 def _error(candidate: Candidate) -> dict[str, str]:
     verdict = candidate.verdict
     problem = candidate.problem
-    if isinstance(problem.task, FunctionTask):
+    if problem.task.has_output.any():
         worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
         return {"greatest structural error": worst}
     return {"largest position error": f"{verdict.error_max:.2g}"}

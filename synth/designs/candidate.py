@@ -107,10 +107,10 @@ class Candidate(Displayed):
 
     def _output_error(self, problem: Problem) -> float:
         """Of a function: the greatest at the pairs that are to be met, or what its norm counts."""
-        unit = getattr(problem.task, "output_unit", 1.0)
+        unit = problem.task.output_unit
         if problem.requirements.is_exact(problem.task):
             return float(self.verdict.output_error.max()) / unit
-        if getattr(problem.task, "norm", "rms") == "max":
+        if problem.task.norm == "max":
             return self.verdict.structural_error_max / unit
         return float(np.sqrt(self.verdict.square / len(problem.task))) / unit
 

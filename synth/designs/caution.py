@@ -21,7 +21,7 @@ def caution(problem: Problem, candidate: Candidate) -> str:
         return ""
     wanted, verdict, found = problem.requirements, candidate.verdict, list[str]()
     # functions and strokes have no size to compare with, lists by least squares offer small designs anyway
-    sized = problem.task.kind in ("motion", "path") and problem.by_objective and wanted.size is None
+    sized = problem.task.in_plane and problem.by_objective and wanted.size is None
     if sized and verdict.size > MOST_SIZE * problem.task.size:
         found.append(f"{verdict.size / problem.task.size:.1f} times the size of the task")
     turned = float(np.ptp(verdict.theta2))

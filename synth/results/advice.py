@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.problems import Problem, StrokeTask
-from grashof.synth.quantities.kinds import kind_of
+from grashof.problems import Problem, Task
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.strokes.limit_positions import places_of
 from grashof.synth.theory.limit_positions import best_transmission
 
@@ -17,16 +17,18 @@ _HALVINGS = 12
 def advice(problem: Problem) -> str:
     """For a stroke that no linkage transmits well: how well the best does and what does better; else empty.
 
+    >>> from grashof.problems import StrokeTask
     >>> advice(Problem(task=StrokeTask.from_degrees(swing_deg=80, time_ratio=1.05)))
     ''
     >>> print(advice(Problem(task=StrokeTask.from_degrees(swing_deg=40, time_ratio=1.5))))
     crank-rockers with this swing and time ratio transmit at 31.8 deg at best, less than the usual 40 deg; \
 time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     """
-    task, places = problem.task, places_of(kind_of(problem))
-    if not isinstance(task, StrokeTask) or not places.advised:
+    task = problem.task
+    if not task.at_limits:
         return ""
-    if (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+    places = places_of(ScaledProblem.of(problem).kind)
+    if not places.advised or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
         return ""
     kinds, what = places.what, places.advised
     usual = f"{np.degrees(GOOD):.0f} deg"
@@ -41,7 +43,7 @@ time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     )
 
 
-def _ratio_that_allows(task: StrokeTask) -> float:
+def _ratio_that_allows(task: Task) -> float:
     """The greatest time ratio, in hundredths, that allows a good transmission angle; 1 where none does."""
     low, high = 1.0, task.time_ratio
     for _ in range(_HALVINGS):

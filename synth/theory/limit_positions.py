@@ -14,7 +14,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from grashof.problems import FourBar, SliderCrank, StrokeTask
+from grashof.problems import FourBar, SliderCrank, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
 # Shares r2 / r3 at which a family is looked at, close where one of the two vanishes beside the other.
@@ -178,9 +178,10 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
     )
 
 
-def linkages_of(task: StrokeTask, members: Members) -> FourBar | SliderCrank:
+def linkages_of(task: Task, members: Members) -> FourBar | SliderCrank:
     """Members as a batch of linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
 
+    >>> from grashof.problems import StrokeTask
     >>> task = StrokeTask(stroke=100.0, time_ratio=1.2)
     >>> slides = linkages_of(task, slider_cranks(lag_of(1.2), np.array([0.36781])))
     >>> slides.offset.round(2).tolist()

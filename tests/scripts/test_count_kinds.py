@@ -11,7 +11,7 @@ from grashof.problems import Linkage
 
 # As counted when they were last lowered: they may only fall.
 LIMITS = {
-    "asks": {"problems": 6, "analysis": 2, "synth": 14, "src/grashof": 0, "scripts": 5},
+    "asks": {"problems": 1, "analysis": 1, "synth": 3, "src/grashof": 0, "scripts": 2},
     "closures": {"problems": 0, "analysis": 7, "synth": 6, "src/grashof": 6, "scripts": 7},
     "suspects": {"problems": 0, "analysis": 4, "synth": 11, "src/grashof": 0, "scripts": 1},
     "circles": {"files": 0, "rooms": 0},

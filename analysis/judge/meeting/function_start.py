@@ -11,7 +11,7 @@ from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
-from grashof.problems import FunctionTask, Linkage, ProblemError
+from grashof.problems import Linkage, ProblemError, Task
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
 _STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
@@ -32,9 +32,7 @@ class Beginning:
     direction: int
 
 
-def moved_output(
-    task: FunctionTask, state: Position, direction: int, *, unwrapped: bool = True
-) -> FloatArray:
+def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool = True) -> FloatArray:
     """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
     if task.travels:
         return state.travel
@@ -42,14 +40,14 @@ def moved_output(
     return moved
 
 
-def way_of(task: FunctionTask, direction: int) -> int:
+def way_of(task: Task, direction: int) -> int:
     """Sense in which an output counts: a rotation in that of the driver, a travel along the slide."""
     return 1 if task.travels else direction
 
 
 def begins(
     linkage: Linkage,
-    task: FunctionTask,
+    task: Task,
     exact: bool,
     theta2_start: float | None,
     directions: tuple[int, ...] = (1, -1),
@@ -61,7 +59,7 @@ def begins(
     (rad), unless the start is given. ProblemError for a linkage whose output does not move as the task's
     does.
     """
-    if task.travels == hasattr(linkage, "o4"):
+    if task.travels == linkage.mechanism.loops[0].pinned:
         way = "slides" if task.travels else "turns"
         raise ProblemError(
             f"mechanism {linkage.mechanism.word} has no output that {way}; the function asks for one"
@@ -89,7 +87,7 @@ class _Search:
     """Least error over the driver angle at the first pair."""
 
     linkage: Linkage
-    task: FunctionTask
+    task: Task
     squares: bool
     transmission: float
 
@@ -100,7 +98,7 @@ class _Search:
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
         task = self.task
-        turned = task.inputs if self.squares else np.linspace(*task.span, samples)
+        turned = task.driver_turns if self.squares else np.linspace(*task.span, samples)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
         moved = moved_output(task, state, direction, unwrapped=not self.squares)
         wanted = task.outputs if self.squares else task.output(turned)
@@ -173,7 +171,7 @@ class _Search:
         share = self.task.weights / self.task.weights.sum()
         way = way_of(self.task, direction)
         for _ in range(6):
-            state = solve_position(self.linkage, at + direction * self.task.inputs)
+            state = solve_position(self.linkage, at + direction * self.task.driver_turns)
             rate = _output_rate(self.linkage, self.task, state.theta2)
             if not np.isfinite(rate).all():  # a dead position
                 break
@@ -193,7 +191,7 @@ class _Search:
         return at
 
 
-def _output_rate(linkage: Linkage, task: FunctionTask, theta2: FloatArray) -> FloatArray:
+def _output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
     """Derivative of the output by the driver angle; not finite in dead positions."""
     loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
     first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
@@ -210,7 +208,7 @@ def _crest(samples: FloatArray) -> FloatArray:
     return found
 
 
-def _from_first(task: FunctionTask, outputs: FloatArray) -> FloatArray:
+def _from_first(task: Task, outputs: FloatArray) -> FloatArray:
     """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
     off: FloatArray = outputs - outputs[..., :1]
     return off if task.travels else turned_from(off, 0.0)

@@ -94,6 +94,11 @@ class Mechanism:
     carries: int = 3
 
     @cached_property
+    def one_loop(self) -> Mechanism:
+        """The kind that its first dyad makes with the driver."""
+        return next(row for row in MECHANISMS if row.dyads == self.dyads[:1])
+
+    @cached_property
     def loops(self) -> tuple[LoopNames, ...]:
         """Names of what each dyad adds."""
         found = []

@@ -12,7 +12,7 @@ from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind
 from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.linkages.slider_crank import SliderCrank
 
@@ -75,6 +75,11 @@ def having(column: str) -> tuple[str, ...]:
         if column in (*kind.lengths, *kind.dimensions)
         or any(column in (row.name, row.key, *row.columns) for row in kind.parameters)
     )
+
+
+def closing_dyad(kind: str) -> DyadKind:
+    """The dyad of links 3 and 4."""
+    return ONE_LOOP[kind].dyads[0].kind
 
 
 def freedoms(kind: str) -> int:

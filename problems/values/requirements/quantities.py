@@ -138,6 +138,9 @@ _LEVER = (
 _MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
 TURNING = having("o4")  # kinds whose link 4 turns
+ROCKERS = having("r4")  # those where it is a bar
+TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
+BLOCKS = tuple(kind for kind in TURNING if kind not in ROCKERS)  # kinds whose link 4 is a block on a rod
 _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 
 # In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.

@@ -8,12 +8,12 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements.quantities import ROCKERS
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
-from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.task import Task
 
 
-def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
+def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
     """What a stroke, the kinds of linkages and the requirements do not agree on, a line each."""
     wrong = [line for kind in kinds if (line := task.impossible(kind))]
     if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
@@ -23,7 +23,7 @@ def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: Sequence[str]) 
     wrong += _too_small(task, wanted)
     if wanted.exact is False:
         wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
-    if wanted.rotatability is Rotatability.DOUBLE_CRANK and FOUR_BAR in kinds:
+    if wanted.rotatability is Rotatability.DOUBLE_CRANK and not {*kinds}.isdisjoint(ROCKERS):
         wrong.append(
             'requirements.rotatability is "double-crank", whose output does not swing; '
             "with stroke it must be full-crank or crank-rocker"
@@ -31,7 +31,7 @@ def strokes_wrong(task: StrokeTask, wanted: Requirements, kinds: Sequence[str]) 
     return wrong
 
 
-def _too_small(task: StrokeTask, wanted: Requirements) -> list[str]:
+def _too_small(task: Task, wanted: Requirements) -> list[str]:
     """That B has no room for its stroke, where a slide is asked for."""
     if task.stroke is None or wanted.b is None:
         return []

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK
-from grashof.problems.values.requirements.quantities import TURNING, Needs, Quantity
+from grashof.problems.values.requirements.quantities import TRAVELLING, TURNING, Needs, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
-from grashof.problems.values.tasks.function_task import FunctionTask
-from grashof.problems.values.tasks.stroke_task import StrokeTask
 from grashof.problems.values.tasks.task import Task
 
 
@@ -37,7 +34,7 @@ def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quanti
 
 def no_output(task: Task) -> dict[Needs, str]:
     """What is missing where a structural error is asked for, in words."""
-    if not isinstance(task, FunctionTask):
+    if not task.has_output.any():
         none = f'{task.kind} asks for no output; kind = "function" does'
         return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
     return {
@@ -48,9 +45,9 @@ def no_output(task: Task) -> dict[Needs, str]:
 
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     """Kinds of linkages whose output does not move as a function asks for."""
-    if not isinstance(task, FunctionTask):
+    if not task.has_output.any():
         return []
-    suited, what, unit = ((SLIDER_CRANK,), "travel", "") if task.travels else (TURNING, "rotation", "_deg")
+    suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
     others = [word for word in kinds if word not in suited]
     if not others:
         return []
@@ -64,10 +61,8 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
 def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
     """What a cylinder cannot do, where one is the driver."""
     wrong = []
-    if isinstance(task, FunctionTask):
-        wrong.append("driver.cylinder does not go with function, whose driver is link 2")
-    elif isinstance(task, StrokeTask):
-        wrong.append("driver.cylinder does not go with stroke, whose driver turns all round")
+    if task.no_cylinder:
+        wrong.append(f"driver.cylinder does not go with {task.kind}, {task.no_cylinder}")
     elif task.closed:
         wrong.append(f"{task.kind}.closed is true; it must be false with driver.cylinder, which reverses")
     if wanted.rotatability is not Rotatability.ANY:

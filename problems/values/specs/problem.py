@@ -28,7 +28,6 @@ from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
-    INVERTED,
     freedoms,
     mechanisms,
     not_had,
@@ -37,7 +36,7 @@ from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import Needs, Quantity
+from grashof.problems.values.requirements.quantities import BLOCKS, ROCKERS, Needs, Quantity
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -47,10 +46,6 @@ from grashof.problems.values.requirements.requirements import (
 )
 from grashof.problems.values.requirements.stroke_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
-from grashof.problems.values.tasks.function_task import FunctionTask
-from grashof.problems.values.tasks.motion_task import MotionTask
-from grashof.problems.values.tasks.path_task import PathTask
-from grashof.problems.values.tasks.stroke_task import StrokeTask
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 
@@ -95,7 +90,7 @@ class Search:
 
 
 _KINDS: dict[str, Any] = {
-    "task": MotionTask | PathTask | StrokeTask | FunctionTask,
+    "task": Task,
     "requirements": Requirements,
     "objective": Objective,
     "search": Search,
@@ -109,6 +104,8 @@ _KINDS: dict[str, Any] = {
 
 
 def _named(kind: Any) -> str:
+    if kind is Task:
+        return "MotionTask or PathTask or StrokeTask or FunctionTask"
     return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
 
 
@@ -184,7 +181,7 @@ class Problem(ReadOnly):
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
-        if isinstance(self.task, StrokeTask):
+        if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
             object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
         refuse(wrong)
@@ -239,14 +236,13 @@ class Problem(ReadOnly):
     def meant(self, quantity: Quantity) -> Quantity:
         """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
         meant = self.requirements.meant(quantity)
-        travels = isinstance(self.task, FunctionTask) and self.task.travels
-        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if travels else meant
+        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if self.task.travels else meant
 
     def _not_of_these_kinds(self) -> list[str]:
         """What is weighed or limited though no kind of linkage that is asked for has it."""
         having = {where: quantity.kinds for where, quantity in self._asked.items()}
         if self.requirements.rotatability in ROCKING:
-            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = (FOUR_BAR,)
+            having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
             not_had(where, self.mechanism, kinds)
             for where, kinds in having.items()
@@ -269,11 +265,11 @@ class Problem(ReadOnly):
         usual = Requirements()
         lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
         wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
-        if kind != FOUR_BAR and wanted.rotatability in ROCKING:
+        if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
         objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
-        if kind == INVERTED and objective == Objective() and self.by_objective:
+        if kind in BLOCKS and objective == Objective() and self.by_objective:
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
 
@@ -321,9 +317,9 @@ class Problem(ReadOnly):
         to be met.
         """
         task, wanted = self.task, self.requirements
-        if task.zones is not None or task.has_output.any():
+        if task.zones is not None or not task.in_plane:
             return task.zones
-        if isinstance(task, StrokeTask) or wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
+        if wanted.tolerance < LEAST_TOLERANCE or not wanted.is_exact(task):
             return None
         radii = np.full((2, len(task)), wanted.tolerance * task.size)
         radii[1] /= task.angle_length
@@ -391,7 +387,7 @@ _STATED: dict[Needs, Callable[[Problem], bool]] = {
     Needs.ANGLES: lambda problem: bool(problem.task.has_angle.any()),
     Needs.CYLINDER: lambda problem: problem.driver is not None,
     Needs.LOADED_CYLINDER: lambda problem: problem.driver is not None and problem.dynamics is not None,
-    Needs.OUTPUTS: lambda problem: isinstance(problem.task, FunctionTask),
-    Needs.ROTATION: lambda problem: isinstance(problem.task, FunctionTask) and not problem.task.travels,
-    Needs.TRAVEL: lambda problem: isinstance(problem.task, FunctionTask) and problem.task.travels,
+    Needs.OUTPUTS: lambda problem: bool(problem.task.has_output.any()),
+    Needs.ROTATION: lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
+    Needs.TRAVEL: lambda problem: problem.task.travels,
 }

@@ -32,7 +32,6 @@ from grashof.problems.values.tasks.function_pairs import (
     finite_numbers,
 )
 from grashof.problems.values.tasks.task import Task
-from grashof.problems.values.units import Unit
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
@@ -84,6 +83,7 @@ class FunctionTask(Task):
     kind: ClassVar[Literal["function"]] = "function"
     target: ClassVar[Literal["pair"]] = "pair"
     usual_rotatability: ClassVar[str] = "any"
+    no_cylinder: ClassVar[str] = "whose driver is link 2"
     without: ClassVar[tuple[str, ...]] = (
         "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
     )  # fmt: skip
@@ -257,11 +257,6 @@ class FunctionTask(Task):
         return lobatto_with_weights(len(self))[1]
 
     @property
-    def fits_range(self) -> bool:
-        """Whether the pairs stand for the whole range of a law, from its first x to its last."""
-        return self.law is not None and abs(self.inputs[-1] - self.law.input_range) < 1e-9
-
-    @property
     def angle_length(self) -> float:
         """Angles count as they are."""
         return 1.0
@@ -286,32 +281,6 @@ class FunctionTask(Task):
         """Errors are angles, or shares of the travel."""
         return 1.0
 
-    @property
-    def counted_in(self) -> Unit:
-        """The unit of outputs and their errors in files and tables."""
-        return Unit.LENGTH if self.travels else Unit.ANGLE
-
-    @property
-    def output_words(self) -> str:
-        """What the output is called."""
-        return "travel of the slide" if self.travels else "output rotation"
-
-    def shown(self, output: float, length_unit: str) -> str:
-        """An output or its error, with its unit, as people read it.
-
-        Examples
-        --------
-        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
-        '0.25 mm'
-        """
-        unit = length_unit if self.travels else self.counted_in
-        return f"{self.counted_in.shown * output:.3g} {unit}".strip()
-
-    @property
-    def error_field(self) -> str:
-        """The field of `Requirements` that limits the structural error."""
-        return "structural_error_max" if self.travels else "structural_error_max_deg"
-
     def with_ground(self, length: float) -> FunctionTask:
         """The task with a usual length of the ground; a travel has a size of its own."""
         return self if self.travels or length == self.length else replace(self, length=length)
@@ -320,45 +289,6 @@ class FunctionTask(Task):
     def returns(self) -> bool:
         """A range is not a cycle."""
         return False
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """First and last driver rotation of the range, from the first pair, rad."""
-        if self.law is None:
-            return 0.0, float(self.inputs[-1])
-        before = float(self._before)
-        return 0.0 - before, self.law.input_range - before
-
-    @property
-    def beyond(self) -> tuple[float, float]:
-        """Driver rotation of the range before the first pair and after the last, rad."""
-        low, high = self.span
-        return 0.0 - low, max(0.0, high - float(self.inputs[-1]))
-
-    @property
-    def _before(self) -> float:
-        """Driver rotation from the beginning of a law to the first pair."""
-        if self.law is None or self.fits_range:
-            return 0.0
-        return (self.law.input_range - float(self.inputs[-1])) / 2  # Chebyshev's spacing is symmetric
-
-    def output(self, turned: npt.ArrayLike) -> FloatArray:
-        """Wanted output at driver rotations from the first pair: of the law, or the cubic spline.
-
-        Examples
-        --------
-        >>> task = FunctionTask([0, 1, 2, 3], [0, 0.1, 0.8, 2.7])
-        >>> round(float(task.output(1.5)), 9)
-        0.3375
-        """
-        at = np.asarray(turned, dtype=np.float64)
-        if self.law is None:
-            from scipy.interpolate import CubicSpline  # here: few problems need it
-
-            found: FloatArray = CubicSpline(self.inputs, self.outputs)(at)
-            return found
-        before = self._before
-        return self.law.output(at + before) - self.law.output(np.array(before))
 
     def exact_for(self, freedoms: int) -> bool:
         """Whether every pair is met: up to five, since the starts and three lengths are free.

@@ -11,7 +11,8 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.checks import finite_number, noted, refuse, size_number
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, closing_dyad
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 
 LEAST_SWING = 1e-3  # rad
@@ -51,6 +52,8 @@ class StrokeTask(Task):
 
     kind: ClassVar[Literal["stroke"]] = "stroke"
     target: ClassVar[Literal["limit position"]] = "limit position"
+    no_cylinder: ClassVar[str] = "whose driver turns all round"
+    in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
 
     swing: float | None
     stroke: float | None
@@ -147,7 +150,7 @@ class StrokeTask(Task):
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
-        return _IMPOSSIBLE[mechanism](self)
+        return _IMPOSSIBLE[closing_dyad(mechanism)](self)
 
 
 def _for_rocker(task: StrokeTask) -> str:
@@ -178,9 +181,9 @@ def _for_block(task: StrokeTask) -> str:
     )
 
 
-def _no_slide(mechanism: str) -> str:
-    article = "an" if mechanism[0] in "aeiou" else "a"
-    return f"stroke.stroke is of a slide; {article} {mechanism} has a swing, stroke.swing_deg"
+def _no_slide(word: str) -> str:
+    article = "an" if word[0] in "aeiou" else "a"
+    return f"stroke.stroke is of a slide; {article} {word} has a swing, stroke.swing_deg"
 
 
 def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
@@ -190,10 +193,10 @@ def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
 
 
 # Why a kind of linkage cannot do a stroke, or nothing where it may.
-_IMPOSSIBLE: Mapping[str, Callable[[StrokeTask], str]] = {
-    FOUR_BAR: _for_rocker,
-    SLIDER_CRANK: _for_slide,
-    INVERTED: _for_block,
+_IMPOSSIBLE: Mapping[DyadKind, Callable[[StrokeTask], str]] = {
+    DyadKind.RRR: _for_rocker,
+    DyadKind.RRP: _for_slide,
+    DyadKind.RPR: _for_block,
 }
 
 

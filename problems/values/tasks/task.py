@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.extent import span
-from grashof.problems.values.read_only import ReadOnly
-from grashof.problems.values.units import Unit
+from grashof.problems.values.tasks.outputs import Outputs
 
 _SAME = 1e-12  # sizes, rad
 USUAL_MARGIN = 1e-3  # of full rotation
+_Row = TypeVar("_Row")
 
 
-class Task(ReadOnly, ABC):
+class Task(Outputs):
     """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
@@ -31,6 +32,8 @@ class Task(ReadOnly, ABC):
     target: ClassVar[str]  # what a target is called in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
     without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that mean nothing for it
+    no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty where one can
+    in_degrees: ClassVar[tuple[str, ...]] = ("angle_within", "timing")  # fields that files have in degrees
 
     timing: FloatArray | None
     closed: bool
@@ -50,11 +53,6 @@ class Task(ReadOnly, ABC):
     def outputs(self) -> FloatArray:
         """Rotation of the output from the first target, positive as the driver turns, shape (N,), rad."""
         return np.full(len(self), np.nan)
-
-    @property
-    def beyond(self) -> tuple[float, float]:
-        """Driver rotation of what is asked before the first target and after the last, rad."""
-        return 0.0, 0.0
 
     @property
     def driver_turns(self) -> FloatArray:
@@ -118,17 +116,16 @@ class Task(ReadOnly, ABC):
         return ~np.isnan(self.outputs)
 
     @property
-    def counted_in(self) -> Unit:
-        """The unit of outputs and their errors in files and tables."""
-        return Unit.ANGLE
-
-    @property
     def in_plane(self) -> bool:
         """Whether a target has a place or an angle in the plane."""
         return bool((self.has_position | self.has_angle).any())
 
     def with_ground(self, length: float) -> Self:  # noqa: ARG002
         """The task with a usual length of the ground, where it has no size of its own."""
+        return self
+
+    def sized(self, reference: float) -> Self:  # noqa: ARG002
+        """The same with a length that counts as the size, where the scale is free."""
         return self
 
     @property
@@ -220,3 +217,8 @@ def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
     """What some of the targets have in columns, by name; None where a task has no such column."""
     columns = {name: getattr(task, name) for name in names}
     return {name: None if column is None else column[index] for name, column in columns.items()}
+
+
+def row_of(table: Mapping[type, _Row], task: Task) -> _Row:
+    """The row of a table that is for the kind of a task, or for the nearest class that it is made from."""
+    return next(table[kind] for kind in type(task).__mro__ if kind in table)

@@ -19,7 +19,7 @@ from grashof.figures.function import plot_function
 from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import FunctionTask, Problem
+from grashof.problems import Problem
 from grashof.synth import Candidate
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
@@ -60,13 +60,13 @@ def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
         Equal axes, in the problem's unit; the linkage darkens from the first target to the last.
     """
     task = problem.task
-    generates = isinstance(task, FunctionTask)
+    generates = bool(task.has_output.any())
     with rc_context(STYLE):
         figure = Figure(figsize=(11.0, 8.5) if generates else (8.5, 7.0))
         room = (0.07, 0.4, 0.9, 0.5) if generates else (0.08, 0.08, 0.89, 0.83)
         axes = plot_linkage(candidate, problem, ax=figure.add_axes(room))
         fit_title(axes, _heading(problem, candidate, rank))
-        if isinstance(task, FunctionTask):  # below it wanted and generated output, and the structural error
+        if generates:  # below it wanted and generated output, and the structural error
             below = figure.add_axes((0.07, 0.07, 0.41, 0.25)), figure.add_axes((0.56, 0.07, 0.41, 0.25))
             plot_function(task, candidate, ax=below)
     return figure
@@ -142,7 +142,7 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     over += [f"{cycle:.1f} deg over the turn"] if verdict.full_rotation else []
     exact = problem.requirements.is_exact(problem.task)
     fit = "" if exact else f", error rms {candidate.values['error']:.3g}"  # as the list has it
-    if isinstance(problem.task, FunctionTask):
+    if problem.task.has_output.any():
         worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
         fit = f", structural error {worst}"
     return (

@@ -28,7 +28,7 @@ from grashof.figures.parts import (
 )
 from grashof.figures.shapes import Drawn, shapes_of, stands
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import AssemblyError, FunctionTask, Problem, ProblemError
+from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import near_miss
 from grashof.problems.values.requirements.requirements import QUANTITIES
@@ -124,7 +124,7 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     'x (m)'
     """
     ax, task = new_axes(ax), problem.task
-    if isinstance(task, FunctionTask):
+    if task.has_output.any():
         plot_wanted(ax, task, problem.length_unit)
         return ax
     draw_scene(ax, problem)

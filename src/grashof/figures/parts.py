@@ -15,7 +15,7 @@ from matplotlib.text import Annotation
 from grashof.analysis import solve_position
 from grashof.drawing.scene import ROLES, Scene
 from grashof.figures.subject import Subject
-from grashof.problems import FunctionTask, Problem, Task
+from grashof.problems import Problem, Task
 from grashof.problems.values.arrays import FloatArray
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
@@ -172,7 +172,7 @@ def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray)
     if task.only_points:
         _draw_points(axes, task)
         return
-    if isinstance(task, FunctionTask) and task.fits_range:
+    if task.fits_range:
         return
     for pose in _dozen(len(task)):
         _draw_pose(axes, task, pose, places[pose], float(angles[pose]))

@@ -16,7 +16,7 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from grashof.output.streams import say
-from grashof.problems import FunctionTask, Problem
+from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
@@ -218,7 +218,7 @@ def heading(result: Result, verified: int) -> str:
         least = min(each.error(result.problem) for each in result.candidates)
         error = f", smallest error rms {least * result.problem.task.size:.2g}"
     task = result.problem.task
-    if isinstance(task, FunctionTask):
+    if task.has_output.any():
         least = min(each.structural_error_max for each in verdicts)
         error = f", structural error from {task.shown(least, result.problem.length_unit)}"
     classes = _classes(result)

@@ -22,7 +22,7 @@ from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import bodies_of
 from grashof.page.render import compact, plain
-from grashof.problems import Cylinder, DynamicsSpec, FunctionTask, Linkage, Problem
+from grashof.problems import Cylinder, DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.linkages.linkage import by_kind
@@ -141,7 +141,7 @@ def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
 
 def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:
     """Wanted and generated output of a function over the range, as files have it; nothing for other tasks."""
-    if not isinstance(problem.task, FunctionTask):
+    if not problem.task.has_output.any():
         return {}
     curves = function_curves(linkage, problem.task, design.verdict, count=181)
     if curves is None:

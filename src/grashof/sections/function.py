@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import FunctionCurves, Verdict, function_curves, verify
-from grashof.problems import FunctionTask
+from grashof.problems import Task
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 
@@ -18,14 +18,14 @@ OVER = "driver rotation from the first pair (deg)"
 def function_section(study: LinkageStudy) -> Section | None:
     """Output and structural error of a design that generates a function; None for all others."""
     problem = study.spec.problem
-    if problem is None or not isinstance(problem.task, FunctionTask):
+    if problem is None or not problem.task.has_output.any():
         return None
     task = problem.task
     verdict = verify(study.linkage, task, problem.requirements, problem=problem)
     curves = function_curves(study.linkage, task, verdict)
     if curves is None:
         return None
-    at_pairs = function_curves(study.linkage, task, verdict, at=task.inputs)
+    at_pairs = function_curves(study.linkage, task, verdict, at=task.driver_turns)
     places, shown, unit = (
         np.degrees(curves.turned),
         task.counted_in.shown,
@@ -49,7 +49,7 @@ def function_section(study: LinkageStudy) -> Section | None:
     return Section("function", "Function", tuple(_facts(task, verdict, unit)), tables, plots, notes)
 
 
-def _facts(task: FunctionTask, verdict: Verdict, unit: str) -> Iterator[Fact]:
+def _facts(task: Task, verdict: Verdict, unit: str) -> Iterator[Fact]:
     zero = "travel of the slide" if task.travels else "theta4"
     names = {
         "structural_error_max": "structural error, greatest",
@@ -68,7 +68,7 @@ def _facts(task: FunctionTask, verdict: Verdict, unit: str) -> Iterator[Fact]:
     yield Fact("driver_sense", "sense of the driver (1: counter-clockwise)", verdict.direction)
 
 
-def _pairs(task: FunctionTask, verdict: Verdict, at_pairs: FunctionCurves) -> pd.DataFrame:
+def _pairs(task: Task, verdict: Verdict, at_pairs: FunctionCurves) -> pd.DataFrame:
     """A row for each pair."""
     angles = {"input_deg": at_pairs.turned, "theta2_deg": verdict.theta2}
     outputs = {"wanted": at_pairs.wanted, "generated": at_pairs.generated, "error": at_pairs.error}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from grashof.problems import (
     CylinderSpec,
     DynamicsSpec,
     FunctionTask,
+    MotionTask,
     Problem,
     Requirements,
     StrokeTask,
@@ -18,6 +20,7 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import kinds_text
+from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.quantities.merit import same_error
@@ -54,7 +57,7 @@ def summary(problem: Problem) -> list[str]:
     unit = f" {problem.length_unit}" if problem.length_unit else ""
     lines = [
         f"{problem.name}: {problem.title}" if problem.title else problem.name,
-        f"  {_task(task, unit)}; {_exactness(problem)}",
+        f"  {row_of(_TASKS, task)(task, unit)}; {_exactness(problem)}",
         *([f"  mechanism {kinds}"] if (kinds := kinds_text(problem.mechanism)) else []),
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
         f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
@@ -189,22 +192,25 @@ def _motor(spec: DynamicsSpec) -> str:
     return f"{profile}at {spec.speed_rpm:g} rpm"
 
 
-def _task(task: Task, unit: str) -> str:
-    if isinstance(task, StrokeTask):
-        if task.swing is None:
-            way, free = f"stroke {task.stroke:g}{unit}", "place"
-        else:
-            way, free = f"swing {np.degrees(task.swing):g} deg", "place and scale"
-        return f"{way}, time ratio {task.time_ratio:g}, {free} free"
-    if isinstance(task, FunctionTask):
-        return _function(task, unit)
+def _targets(task: Task, unit: str) -> str:
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
-    length = f", angle_length {task.angle_length:g}{unit}" if task.kind == "motion" else ""
-    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{length}"
+    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}"
 
 
-def _function(task: FunctionTask, unit: str) -> str:
+def _motion(task: Task, unit: str) -> str:
+    return f"{_targets(task, unit)}, angle_length {task.angle_length:g}{unit}"
+
+
+def _stroke(task: Task, unit: str) -> str:
+    if task.swing is None:
+        way, free = f"stroke {task.stroke:g}{unit}", "place"
+    else:
+        way, free = f"swing {np.degrees(task.swing):g} deg", "place and scale"
+    return f"{way}, time ratio {task.time_ratio:g}, {free} free"
+
+
+def _function(task: Task, unit: str) -> str:
     """A function by its pairs or its law, with its ranges and senses."""
     first, last = np.degrees(task.span)
     swept = f"driver over {last - first:g} deg"
@@ -222,11 +228,20 @@ def _function(task: FunctionTask, unit: str) -> str:
     return f"{said}; output {sense}"
 
 
+# How each kind of task is told, with the unit of lengths.
+_TASKS: Mapping[type, Callable[[Any, str], str]] = {
+    Task: _targets,
+    MotionTask: _motion,
+    StrokeTask: _stroke,
+    FunctionTask: _function,
+}
+
+
 def _exactness(problem: Problem) -> str:
     if problem.task.zones is not None:
         return "zones about the targets"
     exact = problem.requirements.is_exact(problem.task)
-    if isinstance(problem.task, FunctionTask) and (exact or problem.task.norm == "max"):
+    if problem.task.has_output.any() and (exact or problem.task.norm == "max"):
         if not exact:
             return "least greatest structural error"
         unit = "of the travel" if problem.task.travels else "rad"
@@ -234,7 +249,7 @@ def _exactness(problem: Problem) -> str:
     if not exact:
         return "least squares"
     within = f"met within {problem.requirements.tolerance:g}"
-    if isinstance(problem.task, StrokeTask):
+    if problem.task.at_limits:
         return f"{within} (rad, and as a share)"
     return f"every target {within} sizes"
 

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems import Box, MotionTask, Problem, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.poles import poles
@@ -227,8 +226,7 @@ def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
     ('', None)
     """
-    problem = scaled.problem
-    if scaled.motion is None or len(scaled.targets) != poses or problem.mechanism[0] != FOUR_BAR:
+    if scaled.motion is None or len(scaled.targets) != poses or scaled.kind.dyad.bars < 2:
         return None
     return not_bounded(scaled) or unusable(scaled)
 
@@ -279,9 +277,9 @@ def enclosed(problem: Problem) -> str:
     >>> print(enclosed(load("luggage")))
     all four-bars through four poses are enclosed: seed and effort change nothing where that finds enough
     """
-    if not isinstance(problem.task, MotionTask) or problem.mechanism[0] != FOUR_BAR:
+    if not problem.task.is_whole:
         return ""
-    scaled = ScaledProblem.of(problem.for_kind(FOUR_BAR))
+    scaled = ScaledProblem.of(problem.for_kind(problem.mechanism[0]))
     if refusal(scaled, THREE) == "":
         return "--prove encloses all four-bars through three poses, and bounds what they transmit"
     if refusal(scaled) != "":

@@ -26,7 +26,6 @@ from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmis
 from grashof.synth.proof.forms.square import nothing_left
 from grashof.synth.proof.functions.couplers import CurveOfCouplers, PlaneOfCouplers
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEVELS
-from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements, Dyads
@@ -52,13 +51,13 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
     is better. None of other tasks and objectives, or where the driver angle is given.
     """
     problem = scaled.problem
-    if scaled.kind is not FOUR_BAR or not scaled.exact or not problem.task.has_output.all():
+    if scaled.kind.dyad.bars < 2 or not scaled.exact or not problem.task.has_output.all():
         return None
     if len(problem.task) not in (THREE, FOUR) or problem.requirements.theta2_start_deg is not None:
         return None
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return None
-    aims = FunctionAims.of(problem)
+    aims = FunctionAims.of(scaled)
     ways = list(aims.ways())
     since, stated = perf_counter(), problem.requirements.limited
     share = SHARE_OF_PLANE if len(aims.task) == THREE else SHARE_OF_CURVE

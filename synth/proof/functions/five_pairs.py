@@ -9,7 +9,6 @@ import numpy as np
 
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
-from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements
@@ -25,11 +24,11 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
     no length is greater than the ratio of lengths allows.
     """
     problem = scaled.problem
-    if scaled.kind is not FOUR_BAR or not scaled.exact or not problem.task.has_output.all():
+    if scaled.kind.dyad.bars < 2 or not scaled.exact or not problem.task.has_output.all():
         return None
     if len(problem.task) != FIVE or problem.requirements.theta2_start_deg is not None:
         return None
-    aims, since, found = FunctionAims.of(problem), perf_counter(), []
+    aims, since, found = FunctionAims.of(scaled), perf_counter(), []
     for sense in dict.fromkeys(sense for sense, _, _ in aims.ways()):
         wanted = aims.pairs(sense)
         turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.linkages.mechanisms import closing_dyad
 
 _ROUNDING = 32 * np.finfo(float).eps  # of what is added up; no value takes more than ten operations
 # The same of values, in extended precision where the machine has it; pairs of doubles are not relied on.
@@ -63,7 +64,7 @@ class Passing:
         inverted one O4 and the rod's direction; then the coupler's turn from the first to each other point.
         E = K = 16 through nine points (four-bars), 14 through eight.
         """
-        second, own = _SECOND[self.kind]
+        second, own = _SECOND[closing_dyad(self.kind)]
         points = self.points[1:]
         exact: FloatArray = np.asarray(unknowns, np.longdouble)
         half = exact[:, 4 + own :] / 2
@@ -162,11 +163,16 @@ def _line(
     return Dyad(way.imag, size, np.stack(slopes, axis=-1), np.stack(spread, axis=-1))
 
 
-_SECOND: dict[str, tuple[Callable[[FloatArray, FloatArray, Turned], Dyad], int]] = {
-    FOUR_BAR: (_link, 4),
-    SLIDER_CRANK: (_slide, 3),
-    INVERTED: (_block, 3),
+_SECOND: dict[DyadKind, tuple[Callable[[FloatArray, FloatArray, Turned], Dyad], int]] = {
+    DyadKind.RRR: (_link, 4),
+    DyadKind.RRP: (_slide, 3),
+    DyadKind.RPR: (_block, 3),
 }
+
+
+def enough_points(kind: str) -> int:
+    """So many points leave linkages of a kind no freedom: equations are as many as unknowns."""
+    return 5 + _SECOND[closing_dyad(kind)][1]
 
 
 def _complex(pairs: FloatArray) -> ComplexArray:

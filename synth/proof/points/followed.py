@@ -9,14 +9,12 @@ from time import perf_counter
 import numpy as np
 
 from grashof.analysis import solve_position
-from grashof.problems import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.points.boxes import boxes
-from grashof.synth.proof.points.equations import Passing
+from grashof.synth.proof.points.equations import Passing, enough_points
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
@@ -24,7 +22,6 @@ from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS
 
 NEAR = 1e-6  # sizes: a linkage farther from the exact one does not count as enclosed
 ROUNDING = "doubles, enclosures widened for rounding; points as stored"
-_POINTS = {FOUR_BAR: 9, SLIDER_CRANK: 8, INVERTED: 8}
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,14 +108,12 @@ def unknowns_of(design: Candidate, points: ComplexArray, size: float) -> FloatAr
     at = solve_position(linkage, design.verdict.theta2[:count], design.verdict.assembly[:count])
     a, b = (_z(joint[0] - at.p[0]) / size for joint in (at.a, at.b))
     turns = (at.theta3 - at.theta3[0])[1:].tolist()
+    loop = linkage.mechanism.loops[0]
     joints = [(_z(linkage.o2) - points[0]) / size, a]
-    angle: list[float] = []
-    if isinstance(linkage, FourBar):
-        joints += [(_z(linkage.o4) - points[0]) / size, b]
-    elif isinstance(linkage, SliderCrank):
-        joints, angle = [*joints, b], [float(linkage.slide_angle)]
-    elif isinstance(linkage, InvertedSliderCrank):
-        joints, angle = [*joints, (_z(linkage.o4) - points[0]) / size], [float(at.theta3[0])]
+    joints += [(_z(linkage.o4) - points[0]) / size] if loop.pinned else []
+    joints += [b] if loop.bars else []
+    angle = [float(linkage.slide_angle)] if loop.slide_angle else []
+    angle += [] if loop.bars else [float(at.theta3[0])]
     return np.array([part for z in joints for part in (z.real, z.imag)] + angle + turns)
 
 
@@ -128,7 +123,7 @@ def _leaves_no_freedom(scaled: ScaledProblem) -> bool:
     if not scaled.exact or scaled.bounded or scaled.timed or problem.driver is not None:
         return False
     points = _points(scaled)
-    if not problem.task.only_points or len(points) != _POINTS[scaled.kind.mechanism]:
+    if not problem.task.only_points or len(points) != enough_points(scaled.kind.mechanism):
         return False
     apart = np.abs(points[:, None] - points) / problem.task.size + np.eye(len(points))
     return bool(apart.min() > 1e-9)

@@ -12,7 +12,6 @@ from time import perf_counter
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
-from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
@@ -88,10 +87,10 @@ def bounds_of_slider_cranks(
 
 def _suits(scaled: ScaledProblem) -> bool:
     """Whether these are slider-cranks through four whole poses, met exactly, at any time."""
-    problem, task = scaled.problem, scaled.problem.task
+    task = scaled.problem.task
     whole = scaled.exact and task.is_whole and len(task) == POSES
     free = not task.is_timed and not (task.closed and task.returns)
-    return problem.mechanism[0] == SLIDER_CRANK and whole and free
+    return scaled.kind.dyad.bars == 1 and whole and free
 
 
 def _with_motion(scaled: ScaledProblem) -> ScaledProblem:

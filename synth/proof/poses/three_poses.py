@@ -7,7 +7,6 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR
 from grashof.synth.proof.claims.bounds import STOPPED, Bounds, Proving, logged
 from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
@@ -85,7 +84,7 @@ def bounds_of_three(
     With `at_least`, deg, it only decides whether a design has that much, and ends with the first one;
     `lower`, rad, is the transmission angle of a design that is known, as judged.
     """
-    if scaled.motion is None or len(scaled.targets) != THREE or scaled.problem.mechanism[0] != FOUR_BAR:
+    if scaled.motion is None or len(scaled.targets) != THREE or scaled.kind.dyad.bars < 2:
         return None
     if scaled.problem.driver is None and not unusable(scaled) and (none := sides_of(scaled)) is not None:
         return none

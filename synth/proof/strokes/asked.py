@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import Requirements, Rotatability, StrokeTask
+from grashof.problems import Requirements, Rotatability, Task
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, SLIDER_CRANK
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
+from grashof.problems.values.linkages.mechanisms import closing_dyad
 from grashof.synth.proof.curve.asked import SLACK
 from grashof.synth.proof.strokes.members import (
     Family,
@@ -62,10 +62,11 @@ def sizes_left_out(scaled: ScaledProblem) -> tuple[str, ...]:
 def families_of_stroke(scaled: ScaledProblem) -> list[Family]:
     """All linkages with the swing or stroke and time ratio of a problem, under its limits of sizes."""
     task = scaled.problem.task
-    if not isinstance(task, StrokeTask):
+    if not task.at_limits:
         raise TypeError("only a swing or a stroke has limit positions")
     wanted = scaled.problem.requirements.resolved(task.size, scale_free=task.scale_free)
-    return _FAMILIES[scaled.problem.mechanism[0]](task, _Sizes.of(task, wanted, scaled.problem.mechanism[0]))
+    kind = scaled.kind.mechanism
+    return _FAMILIES[closing_dyad(kind)](task, _Sizes.of(task, wanted, kind))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +79,7 @@ class _Sizes:
     offset: Limits
 
     @classmethod
-    def of(cls, task: StrokeTask, wanted: Requirements, kind: str) -> _Sizes:
+    def of(cls, task: Task, wanted: Requirements, kind: str) -> _Sizes:
         slack = SLACK * task.size
         each = dict(zip(("r1", "r2", "r3", "r4"), wanted.link_lengths, strict=True))
         margin = 0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin
@@ -102,25 +103,25 @@ def _widened(limits: Limits, slack: float) -> Limits:
     return max(limits[0] - slack, 0.0), limits[1] + slack
 
 
-def _of_rockers(task: StrokeTask, sizes: _Sizes) -> list[Family]:
+def _of_rockers(task: Task, sizes: _Sizes) -> list[Family]:
     if task.swing is None:
         return []
     limits = StrokeLimits(sizes.lengths, sizes.ratio, sizes.margin)
     return [crank_rockers(task.swing, task.time_ratio, side, limits) for side in (1, -1)]
 
 
-def _of_slides(task: StrokeTask, sizes: _Sizes) -> list[Family]:
+def _of_slides(task: Task, sizes: _Sizes) -> list[Family]:
     if task.stroke is None:
         return []
     return [slider_cranks(task.stroke, task.time_ratio, limits) for limits in sizes.sides]
 
 
-def _of_blocks(task: StrokeTask, sizes: _Sizes) -> list[Family]:
+def _of_blocks(task: Task, sizes: _Sizes) -> list[Family]:
     return [] if task.swing is None else [crank_shapers(task.swing, limits) for limits in sizes.sides]
 
 
-_FAMILIES: Mapping[str, Callable[[StrokeTask, _Sizes], list[Family]]] = {
-    FOUR_BAR: _of_rockers,
-    SLIDER_CRANK: _of_slides,
-    INVERTED: _of_blocks,
+_FAMILIES: Mapping[DyadKind, Callable[[Task, _Sizes], list[Family]]] = {
+    DyadKind.RRR: _of_rockers,
+    DyadKind.RRP: _of_slides,
+    DyadKind.RPR: _of_blocks,
 }

@@ -6,7 +6,6 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.problems import StrokeTask
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.strokes.asked import families_of_stroke, floor_of, refusal_of_stroke, sizes_left_out
 from grashof.synth.proof.strokes.cover import covered
@@ -15,7 +14,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 def bounds_of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
     """Bounds of the best design; None of other tasks. `at_least` is in deg."""
-    if not isinstance(scaled.problem.task, StrokeTask):
+    if not scaled.problem.task.at_limits:
         return None
     since = perf_counter()
     cover = covered(families_of_stroke(scaled), float(np.radians(proving.gap)), floor_of(scaled, at_least))

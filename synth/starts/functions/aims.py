@@ -8,17 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import (
-    FunctionTask,
     Linkage,
     Problem,
     ProblemError,
     Requirements,
     Rotatability,
+    Task,
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
-from grashof.synth.quantities.kinds import kind_of
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.functions.fit import Wanted
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
@@ -36,7 +36,7 @@ class FunctionAims:
     mirror images.
     """
 
-    task: FunctionTask
+    task: Task
     problem: Problem  # of one kind of linkage
     kind: type[Generators]
     wanted: Requirements  # resolved
@@ -46,13 +46,13 @@ class FunctionAims:
     exact: bool
 
     @classmethod
-    def of(cls, problem: Problem) -> FunctionAims:
+    def of(cls, scaled: ScaledProblem) -> FunctionAims:
         """The aims of a problem of one kind whose task is a function."""
-        task = problem.task
-        if not isinstance(task, FunctionTask):
+        problem, task = scaled.problem, scaled.problem.task
+        if not task.has_output.any():
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
-        kind, unit = kind_of(problem).generators, task.output_unit
+        kind, unit = scaled.kind.generators, task.output_unit
         names, sizes = kind.sizes(wanted, unit)
         rotatability = wanted.rotatability or Rotatability.ANY
         limits = ShapeLimits(
@@ -121,7 +121,9 @@ class FunctionAims:
     def pairs(self, sense: int) -> Wanted:
         """The pairs, from the beginning of the range."""
         return Wanted(
-            self.task.inputs - self.task.span[0], sense * self.task.outputs / self.unit, self.task.weights
+            self.task.driver_turns - self.task.span[0],
+            sense * self.task.outputs / self.unit,
+            self.task.weights,
         )
 
     def samples(self, sense: int, count: int = SAMPLES) -> Wanted:

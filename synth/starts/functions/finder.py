@@ -48,7 +48,7 @@ class Functions(WholeDesigns):
     @cached_property
     def aims(self) -> FunctionAims:
         """What is searched for."""
-        return FunctionAims.of(self.scaled.problem)
+        return FunctionAims.of(self.scaled)
 
     @property
     def exhausted(self) -> str:

@@ -9,7 +9,7 @@ from typing import ClassVar, TypeAlias
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, StrokeTask
+from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
@@ -56,7 +56,7 @@ class LimitPositions(WholeDesigns):
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """Swing and time ratio are asked for."""
-        return isinstance(scaled.problem.task, StrokeTask)
+        return scaled.problem.task.at_limits
 
     @property
     def beginning(self) -> str:
@@ -74,12 +74,9 @@ class LimitPositions(WholeDesigns):
         return 1 + (_ROUNDS if self.elsewhere else 0)
 
     @property
-    def task(self) -> StrokeTask:
+    def task(self) -> Task:
         """What is asked."""
-        task = self.scaled.problem.task
-        if not isinstance(task, StrokeTask):
-            raise TypeError("only a swing has limit positions")
-        return task
+        return self.scaled.problem.task
 
     @property
     def wanted(self) -> Requirements:

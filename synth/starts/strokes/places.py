@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, StrokeTask
+from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
@@ -29,7 +29,7 @@ class Places(ABC):
     the ground line or the slide.
     """
 
-    task: StrokeTask
+    task: Task
     wanted: Requirements  # resolved, in the problem's unit
 
     what: ClassVar[str]  # the linkages, in words

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grashof.problems import MotionTask, PathTask, ProblemError, Requirements, Task
+from grashof.problems import FunctionTask, MotionTask, PathTask, ProblemError, Requirements, StrokeTask, Task
+from grashof.problems.values.tasks.task import row_of
 
 LINE: list[list[float]] = [[0, 0], [3, 0], [3, 4], [0, 4]]
 
@@ -118,6 +119,25 @@ def test_a_path_has_the_columns_of_a_motion() -> None:
         assert np.isnan(task.angles).all()
         assert np.isnan(task.driver_turns).all()
         assert task.exact_by_default
+
+
+def test_what_a_task_does_not_ask_of_the_output_is_free() -> None:
+    path, stroke = PathTask(LINE), StrokeTask.from_degrees(swing_deg=60)
+    assert not path.has_output.any()
+    assert (path.at_limits, path.travels, path.fits_range, path.norm) == (False, False, False, "rms")
+    assert (path.swing, path.stroke, path.law, path.beyond) == (None, None, None, (0.0, 0.0))
+    assert (stroke.at_limits, stroke.time_ratio, stroke.has_output.any()) == (True, 1.0, False)
+    assert path.impossible("slider-crank") == ""
+    assert path.sized(2.0) is path
+
+
+def test_the_row_of_a_task_is_that_of_its_nearest_class() -> None:
+    class Drawn(PathTask):
+        pass
+
+    rows = {Task: "any", PathTask: "path", FunctionTask: "function"}
+    assert row_of(rows, Drawn(LINE)) == row_of(rows, PathTask(LINE)) == "path"
+    assert row_of(rows, MotionTask.from_degrees(POSES)) == "any"
 
 
 def test_targets_may_mix() -> None:

@@ -29,7 +29,7 @@ def random_function(seed: int, count: int, **requirements: object) -> Problem:
 
 
 def motion_of(problem: Problem) -> Displacements:
-    wanted = FunctionAims.of(problem).pairs(1)
+    wanted = FunctionAims.of(ScaledProblem.of(problem)).pairs(1)
     turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
     return Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))
 
@@ -87,7 +87,7 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
         return
     for seed in (0,) if count == 3 else (0, 6):
         problem = random_function(seed, count, rotatability=rotatability, transmission_over=over)
-        aims = FunctionAims.of(problem)
+        aims = FunctionAims.of(ScaledProblem.of(problem))
         judged = []
         for made, driver in exact_functions(aims, np.random.default_rng(seed), 30, 0.5):
             linkage = aims.linkage(made, driver)
@@ -203,7 +203,7 @@ def couplers_of(made: FourBars, turned: float) -> tuple[ComplexArray, ComplexArr
 @pytest.mark.parametrize("seed", [0, 1, 6, 12])
 def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
     problem = random_function(seed, 3)
-    aims = FunctionAims.of(problem)
+    aims = FunctionAims.of(ScaledProblem.of(problem))
     found = exact_functions(aims, np.random.default_rng(seed), 12, 0.5)
     made = FourBars.joined([one for one, _ in found])
     sense = Sense.of(aims, 1, 1)
