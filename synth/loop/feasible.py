@@ -25,7 +25,7 @@ INSIDE = 1e-6  # share of what is possible that is left at both ends: there are 
 class Demand:
     """What loops have to do, by numbers for all of a batch or for each; see `turning` and `covering`."""
 
-    transmission: Numbers  # least mu, rad, from 0 and below pi / 2
+    transmission: Numbers  # least min(mu, pi - mu), rad, from 0 and below pi / 2
     margin: Numbers = 0.0  # of a driver that turns fully, as `ClosingDyad.margins` has it, below 1
     least: Numbers = -1.0  # cosine of phi
     most: Numbers = 1.0
@@ -37,7 +37,7 @@ class Demand:
 
     @classmethod
     def covering(cls, low: Numbers, high: Numbers, transmission: Numbers = 0.0) -> Demand:
-        """The driver covers a range of phi, rad."""
+        """The driver covers a range of phi from `low` to `high`, rad."""
         ends = np.cos(low), np.cos(high)
         folded, stretched = (_passes(low, high, at) for at in (0.0, np.pi))
         least, most = np.minimum(*ends), np.maximum(*ends)
@@ -79,13 +79,14 @@ def feasible(dyad: ClosingDyad, shares: FloatArray, longer_driver: BoolArray, de
 def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
     """Two bars over a diagonal from `near` to `far`, by their sum T and difference D.
 
-    With h = mu / 2 the law of cosines, |cos(mu)| being least at the ends, asks for
+    With h = mu / 2 the law of cosines, mu being least at the ends, asks for
 
         T^2 cos^2(h) + D^2 sin^2(h) >= far^2 and T^2 sin^2(h) + D^2 cos^2(h) <= near^2,
 
     which can be had where near / far >= tan(h). A margin asks for T >= (1 + margin) / (1 - margin) far and
     |D| <= near - margin (T + far) (Grashof's criterion, McCarthy & Soh 2011, section 2.2, with a margin).
-    T has a greatest value by the right sides at D = 0, a least one where the limits of |D| meet.
+    T is greatest by the right sides at D = 0, and least where the limits of |D| meet; that there are such T
+    limits near / far, and so r2. Derived here; tests show that no loops are left out.
     """
     margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
     sine, cosine = np.sin(half), np.cos(half)
