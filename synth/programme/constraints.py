@@ -113,14 +113,16 @@ def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
         )
 
     fixed, dyad = Fixed(form, x), form.kind.dyad
+    a, b, p = ([displaced(point, k) for k in range(n)] for point in (x.a, x.b, body))
+    at_a, at_b = ([vector(point) for point in each] for each in (a, b))
+    along = [(end - begin) / fixed.r3 for begin, end in zip(at_a, at_b, strict=True)]
 
     def across(k: int) -> Vector:
-        return dyad.across(fixed, vector(b[k]), vector(b[k] - a[k]) / fixed.r3)
+        return dyad.across(fixed, at_b[k], along[k])
 
-    a, b, p = ([displaced(point, k) for k in range(n)] for point in (x.a, x.b, body))
     for k in range(n):
         build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
-        build.zero(dyad.gap(fixed, vector(a[k]), vector(b[k]), across(k)))
+        build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
     build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
     return Places(a, b, p, body - x.a, body - x.b, across, fixed)
 
@@ -130,15 +132,16 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     n, fixed, dyad = form.targets, Fixed(form, x), form.kind.dyad
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
     p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
-    along = [vector(unit(x.theta3[k])) for k in range(n)]
-    b = [column(dyad.b(fixed, vector(at), turned)) for at, turned in zip(a, along, strict=True)]
+    at_a, along = [vector(point) for point in a], [vector(unit(x.theta3[k])) for k in range(n)]
+    at_b = [dyad.b(fixed, at, turned) for at, turned in zip(at_a, along, strict=True)]
+    b = [column(point) for point in at_b]
 
     def across(k: int) -> Vector:
-        return dyad.across(fixed, vector(b[k]), along[k])
+        return dyad.across(fixed, at_b[k], along[k])
 
     timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
     for k in range(n):
-        build.zero(dyad.gap(fixed, vector(a[k]), vector(b[k]), across(k)))
+        build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
