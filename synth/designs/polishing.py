@@ -54,7 +54,7 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
     at_p = at_a + (p - a) * turned / turned[0]
     if not scaled.exact and scaled.missed(at_p, theta3 + linkage.body_angle) > CLOSE:
         return None
-    if scaled.kind.one_assembly:
+    if scaled.kind.dyad.one_assembly:
         assembly = np.ones(len(theta2))
     else:
         assembly = np.where((turned.conj() * (at_a + abs(b - a) * turned - o4)).imag >= 0, 1.0, -1.0)

@@ -47,6 +47,14 @@ class Sizes(Sized):
         self.double_crank = (r1 > 0) & (r2 > r1) if double_crank is None else double_crank
 
 
+class Standing(Sized):
+    """Lengths of a loop, and where it stands."""
+
+    o2: Vector
+    o4: Vector  # where it is a pivot
+    normal: Vector  # unit vector along the ground line, or across the slide of link 4, to its left
+
+
 class Rates(NamedTuple):
     """First and second derivatives of theta3 and theta4 by theta2."""
 
@@ -61,6 +69,11 @@ class ClosingDyad(ABC):
 
     bars: ClassVar[int]  # of links 3 and 4
 
+    @property
+    def one_assembly(self) -> bool:
+        """Whether the other is the same linkage with its slide, or its rod, taken the other way round."""
+        return self.bars < 2
+
     @abstractmethod
     def closed(
         self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
@@ -69,6 +82,34 @@ class ClosingDyad(ABC):
 
         The ground is O2O4, or the unit vector across a slide, to its left; the assembly is +1 or -1.
         """
+
+    def ground(self, at: Standing) -> Vector:
+        """As `closed` takes it."""
+        return at.o4 - at.o2
+
+    def b(self, at: Standing, a: Vector, along: Vector) -> Vector:
+        """B where link 3 has a direction, a unit vector, whether the loop closes or not."""
+        placed: Vector = a + at.r3 * along
+        return placed
+
+    @abstractmethod
+    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+        """From O4 to B, or the unit vector across what slides, where link 3 has a direction."""
+
+    @abstractmethod
+    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:
+        """What is zero where the loop closes, with B and `across` where link 3 has a direction.
+
+        Of the two equations theta4, or the travel of the slide, is eliminated.
+        """
+
+    @abstractmethod
+    def reach_at(self, at: Standing, a: Vector) -> Any:
+        """What `reach` gives, from the place of A."""
+
+    @abstractmethod
+    def most_lever(self, sizes: Sized) -> Any:
+        """What AB x `across`, whose sign is the assembly, comes to at its greatest, or of its order."""
 
     @abstractmethod
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
@@ -120,6 +161,9 @@ class _Pivoted(ClosingDyad):
     def reach(self, sizes: Sized, angle: Any) -> Any:
         return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
+    def reach_at(self, at: Standing, a: Vector) -> Any:
+        return (a - at.o4).square
+
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
         return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
 
@@ -139,6 +183,15 @@ class Bars(_Pivoted):
         coupler = foot * diagonal + (assembly * root(height2)) * diagonal.left
         output = coupler - diagonal
         return Closed(coupler, output, r3, height2)
+
+    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+        return b - at.o4
+
+    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRR
+        return (across.square - at.r4**2) / 2
+
+    def most_lever(self, sizes: Sized) -> Any:
+        return sizes.r3 * sizes.r4
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
         coupler, output, sine = loop.along, loop.across, self.lever(loop)
@@ -176,6 +229,21 @@ class Slider(ClosingDyad):
         ahead2 = (r3 - apart) * (r3 + apart)
         coupler = apart * ground + (assembly * root(ahead2)) * -ground.left
         return Closed(coupler, ground, r3, ahead2)
+
+    def ground(self, at: Standing) -> Vector:
+        return at.normal
+
+    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+        return at.normal
+
+    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRP
+        return (b - at.o2).dot(across) - at.offset
+
+    def reach_at(self, at: Standing, a: Vector) -> Any:
+        return at.offset - (a - at.o2).dot(at.normal)
+
+    def most_lever(self, sizes: Sized) -> Any:
+        return sizes.r3
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
         lever = self.lever(loop)
@@ -217,6 +285,20 @@ class Block(_Pivoted):
         rod = assembly * root(rod2)
         along = (rod * diagonal + r4 * diagonal.left) / square
         return Closed(along, along.left, rod, rod2)
+
+    def b(self, at: Standing, a: Vector, along: Vector) -> Vector:
+        """The foot of O4 on the rod."""
+        foot: Vector = at.o4 + at.offset * along.left
+        return foot
+
+    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+        return along.left
+
+    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RPR
+        return (a - at.o4).dot(across) - at.offset
+
+    def most_lever(self, sizes: Sized) -> Any:
+        return sizes.r1
 
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
         along, across, rod, _ = loop

@@ -37,29 +37,37 @@ class Places:
     p: list[ca.SX]
     ap: ca.SX
     bp: ca.SX
-    # Along e4 at a target: from O4 to B, or across what slides. Made anew each time: what rows share changes
-    # the last digits of their derivatives.
-    across: Callable[[int], ca.SX]
+    # `ClosingDyad.across` at a target. Made anew each time: what rows share changes the last digits of their
+    # derivatives.
+    across: Callable[[int], Vector]
+    fixed: Fixed
 
 
-class Symbols(View):
+class Fixed(View):
+    """What of the design is the same at all targets."""
+
+    def __init__(self, form: Form, x: Unknowns) -> None:
+        for name in form.kind.linkage.mechanism.ground:
+            setattr(self, name, vector(getattr(x, name)))
+        self.normal = vector(unit(x.theta1))
+        self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
+        self.offset = self.r4
+
+
+class Symbols(Fixed):
     """The design as formulas see it."""
 
     def __init__(self, form: Form, x: Unknowns, places: Places) -> None:
-        self.o2 = vector(x.o2)
-        if "o4" in form.kind.linkage.mechanism.ground:
-            self.o4 = vector(x.o4)
-        self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
-        self.offset = self.r4
+        super().__init__(form, x)
         self.theta1, self.theta2_start = x.theta1, x.theta2_start
         self.ap, self.bp = vector(places.ap), vector(places.bp)
         self.a, self.b = (_track(points) for points in (places.a, places.b))
         self.body_turn, self.direction = x.body_turn, x.direction
         self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
         self.turns, self.double_crank = x.turns, x.double_crank
-        first, last = (vector(places.across(k)) for k in (0, form.targets - 1))
+        first, last = (places.across(k) for k in (0, form.targets - 1))
         self.output_turn = first.angle_to(last)
-        self.output_travel = ca.dot(places.b[-1] - places.b[0], -quarter_turn(unit(x.theta1)))
+        self.output_travel = vector(places.b[-1] - places.b[0]).dot(-self.normal.left)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,23 +112,36 @@ def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
             + moved[2 * k : 2 * k + 2]
         )
 
+    fixed, dyad = Fixed(form, x), form.kind.dyad
     a, b, p = ([displaced(point, k) for k in range(n)] for point in (x.a, x.b, body))
+    at_a, at_b = ([vector(point) for point in each] for each in (a, b))
+    along = [(end - begin) / fixed.r3 for begin, end in zip(at_a, at_b, strict=True)]
+
+    def across(k: int) -> Vector:
+        return dyad.across(fixed, at_b[k], along[k])
+
     for k in range(n):
         build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
-        build.zero((ca.sumsqr(b[k] - x.o4) - x.r[3] ** 2) / 2)
+        build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
     build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
-    return Places(a, b, p, body - x.a, body - x.b, lambda k: b[k] - x.o4)
+    return Places(a, b, p, body - x.a, body - x.b, across, fixed)
 
 
 def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Places:
     """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
-    n = form.targets
+    n, fixed, dyad = form.targets, Fixed(form, x), form.kind.dyad
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
     p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
-    b, across, closing = _closed(form, x, a)
+    at_a, along = [vector(point) for point in a], [vector(unit(x.theta3[k])) for k in range(n)]
+    at_b = [dyad.b(fixed, at, turned) for at, turned in zip(at_a, along, strict=True)]
+    b = [column(point) for point in at_b]
+
+    def across(k: int) -> Vector:
+        return dyad.across(fixed, at_b[k], along[k])
+
     timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
     for k in range(n):
-        build.zero(closing[k])
+        build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
@@ -130,24 +151,7 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     for point, at in ((x.a, a), (x.b, b)):
         if not point.is_empty():
             build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
-    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across)
-
-
-def _closed(
-    form: Form, x: Unknowns, a: list[ca.SX]
-) -> tuple[list[ca.SX], Callable[[int], ca.SX], list[ca.SX]]:  # closure: RRR, RRP, RPR
-    """B at every target, `Places.across`, and what is zero where the loop closes."""
-    turned = [unit(x.theta3[k]) for k in range(form.targets)]
-    if form.kind.turns_with_coupler:
-        across = [quarter_turn(along) for along in turned]
-        b = [x.o4 + x.r[3] * side for side in across]
-        closing = [ca.dot(at - x.o4, side) - x.r[3] for at, side in zip(a, across, strict=True)]
-        return b, across.__getitem__, closing
-    b = [at + x.r[2] * along for at, along in zip(a, turned, strict=True)]
-    if "o4" in form.kind.linkage.mechanism.ground:
-        return b, lambda k: b[k] - x.o4, [(ca.sumsqr(point - x.o4) - x.r[3] ** 2) / 2 for point in b]
-    normal = unit(x.theta1)
-    return b, lambda _: normal, [ca.dot(point - x.o2, normal) - x.r[3] for point in b]
+    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across, fixed)
 
 
 def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
@@ -163,27 +167,21 @@ def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
 
 def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
     """The ground line, the order of the targets, one branch, and a driver that turns fully."""
-    if "o4" in form.kind.linkage.mechanism.ground:
-        build.zero(x.o4 - x.o2 - x.r[0] * unit(x.theta1))
+    for name in form.kind.linkage.mechanism.ground[1:]:  # O4, where it is a pivot
+        build.zero(getattr(x, name) - x.o2 - x.r[0] * unit(x.theta1))
     for k in range(form.targets - 1):
         least = LEAST_STEP if form.exact else 0.0
         build.row(x.direction * (x.theta2[k + 1] - x.theta2[k]), limits=always(least, np.inf))
     build.row(x.direction * (x.theta2[form.targets - 1] - x.theta2[0]), limits=always(0.0, TURN))
     if form.same_branch:
         for k, (a, b) in enumerate(zip(places.a, places.b, strict=True)):
-            sine = cross(b - a, places.across(k)) / _area(form, x)
+            lever = vector(b - a).cross(places.across(k))
+            sine = lever / form.kind.dyad.most_lever(places.fixed)
             build.require(("same_branch",), x.assembly * sine - 1e-6)
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
         margins = form.kind.dyad.margins(Symbols(form, x, places))
         build.require(("rotatability",), *(share - margin for share in margins))
-
-
-def _area(form: Form, x: Unknowns) -> ca.SX:
-    """What the product of coupler and `across` comes to at its greatest, or of its order."""
-    if form.kind.turns_with_coupler:
-        return x.r[0]
-    return x.r[2] * x.r[3] if "o4" in form.kind.linkage.mechanism.ground else x.r[2]
 
 
 def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
@@ -192,8 +190,8 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
         # d theta3 / d theta2 = n / d from the loop projected on e4; rows are multiplied by d
-        d = ca.dot(places.across(k), quarter_turn(b - a))
-        n = -ca.dot(places.across(k), quarter_turn(a - x.o2))
+        d = places.across(k).dot(vector(b - a).left)
+        n = -places.across(k).dot(vector(a - x.o2).left)
         row = ca.SX(0)
         if form.positions[k]:
             missed = targets.weights[k] * (p - targets.points[k])
@@ -235,17 +233,10 @@ def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) 
         build.row(*bound(reach), limits=_passing(form, number))
     if form.over_task:
         for k in (0, form.targets - 1):
-            build.row(*bound(_reach(form, x, places, k)))
+            build.row(*bound(dyad.reach_at(places.fixed, vector(places.a[k]))))
         for end in (0, 1):
             at = x.theta2[(0, form.targets - 1)[end]]
             build.row(at - x.theta1, limits=_half_turn(form, end))
-
-
-def _reach(form: Form, x: Unknowns, places: Places, k: int) -> ca.SX:
-    """What decides the transmission angle (`ClosingDyad.reach`), at a target."""
-    if "o4" in form.kind.linkage.mechanism.ground:
-        return ca.sumsqr(places.a[k] - x.o4)
-    return x.r[3] - ca.dot(places.a[k] - x.o2, places.across(k))
 
 
 def _passing(form: Form, number: int) -> Fill:
@@ -368,6 +359,12 @@ def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:
 def vector(point: ca.SX) -> Vector:
     """A point, shape (2,), as a plane vector."""
     return Vector(point[0], point[1])
+
+
+def column(point: Vector) -> ca.SX:
+    """A plane vector as a point, shape (2,)."""
+    placed: ca.SX = ca.vertcat(point.x, point.y)
+    return placed
 
 
 def _track(points: list[ca.SX]) -> Vector:

@@ -12,7 +12,7 @@ from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Places, Symbols, arm_of, unit, vector
+from grashof.synth.programme.constraints import Fixed, Places, Symbols, arm_of, vector
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
@@ -101,7 +101,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
     """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
     weights = {key: build.parameter(_share(form, key)) for key in form.goals}
     cost, design = ca.SX(0), Symbols(form, x, places)
-    size = diagonal(build, x, places) if "size" in (*form.goals, *form.limited) else ca.SX(0)
+    size = diagonal(build, form, x, places) if "size" in (*form.goals, *form.limited) else ca.SX(0)
     for key, weight in weights.items():
         if key == "transmission":
             cost -= weight * x.tau / (np.pi / 2)
@@ -121,7 +121,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
     return cost
 
 
-def diagonal(build: Builder, x: Unknowns, places: Places) -> ca.SX:
+def diagonal(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
     """Diagonal of a box around the pivots at all targets."""
 
     def corner(pick: Callable[[FloatArray], FloatArray]) -> Fill:
@@ -132,7 +132,7 @@ def diagonal(build: Builder, x: Unknowns, places: Places) -> ca.SX:
         return guess
 
     low, high = (build.unknown(name, 2, corner(pick), always(-FAR, FAR)) for name, pick in _CORNERS.items())
-    ground = [x.o2, x.o4] if not x.o4.is_empty() else [x.o2]
+    ground = (getattr(x, name) for name in form.kind.linkage.mechanism.ground)
     for point in (*ground, *places.a, *places.b, *places.p):
         build.row(point - low, high - point)
     return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
@@ -144,7 +144,7 @@ _CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high"
 def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> ca.SX:
     """What a magnitude does not exceed at any driver angle of an even grid, nor at those added to it."""
     arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
-    ground = vector(unit(x.theta1) if x.o4.is_empty() else x.o4 - x.o2)
+    ground = form.kind.dyad.ground(Fixed(form, x))
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.terms.peaks_at.get(key, ())), ADDED))

@@ -19,19 +19,17 @@ import numpy as np
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.loop.dyad import Sized
+from grashof.synth.loop.dyad import Standing
 from grashof.synth.loop.vector import Vector
 
 
-class View(Sized):
+class View(Standing):
     """A design, or many, at their targets; lengths in sizes, angles in rad.
 
     Scalars are arrays (n, 1), `Dual`, or symbols; what belongs to targets has N columns, or is a symbol of N
     rows. `offset` and `output_travel` are of slider kinds.
     """
 
-    o2: Vector
-    o4: Vector
     theta1: Any
     theta2_start: Any  # driver angle at the first target
     ap: Vector  # from A to P, in a frame that the body is turned against by `body_turn`

@@ -24,7 +24,6 @@ class FourBarKind(Kind):
     linkage = FourBar
     proportions = 3
     formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
-    one_assembly = False
     closure = FourBarClosure()
     instant = FourBarInstant
     generators = FourBars

@@ -25,7 +25,6 @@ class InvertedKind(Kind):
     linkage = InvertedSliderCrank
     proportions = 2
     formulas, smooth = slider_formulas.INVERTED, slider_formulas.SMOOTH_INVERTED
-    one_assembly, turns_with_coupler = True, True
     closure = InvertedSliderCrankClosure()
     instant = InvertedInstant
     generators = InvertedSliderCranks
@@ -79,12 +78,8 @@ class InvertedKind(Kind):
         lengths = [np.abs(ground), np.abs(a - o2), np.zeros_like(a.real), (rod.conj() * (b - o4)).imag]
         return ground, lengths, (p - a) / rod
 
-    def b_of(
-        self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
-    ) -> ComplexArray:
-        return o4 + 1j * lengths[3] * turned
-
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
-        return {"b": pivots["o4"] + 1j * found["offset"] * turned}
+        lengths = 0.0, 0.0, 0.0, found["offset"]
+        return {"b": complex(self.b_of(lengths, pivots["o4"], np.array(pivots["a"]), np.array(turned)))}

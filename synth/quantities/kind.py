@@ -18,7 +18,7 @@ import numpy as np
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import Closure
-from grashof.synth.loop.dyad import ClosingDyad, as_complex, as_vector
+from grashof.synth.loop.dyad import ClosingDyad, Standing, as_complex, as_vector
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part
@@ -59,12 +59,9 @@ class Kind(ABC):
     proportions: ClassVar[int]  # numbers that are neither place nor size
     formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
     smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
-    # slider kinds: the other is the same linkage with its slide, or its rod, taken the other way round
-    one_assembly: ClassVar[bool]
     closure: ClassVar[Closure]
     instant: ClassVar[type[Instant]]
     generators: ClassVar[type[Generators]]  # those that generate functions
-    turns_with_coupler: ClassVar[bool] = False  # the output link
 
     def __new__(cls) -> Self:
         """The only one, so that kinds are compared by identity, in every process."""
@@ -171,7 +168,9 @@ class Kind(ABC):
         self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
     ) -> ComplexArray:
         """B where A and the direction of the coupler are known, shape (...)."""
-        return a + lengths[2] * turned
+        at = Standing()
+        at.o4, at.r3, at.offset = as_vector(np.asarray(o4)), *lengths[2:]
+        return as_complex(self.dyad.b(at, as_vector(a), as_vector(turned)))
 
     def drawn(self, rng: np.random.Generator, count: int, *, anything: bool) -> FloatArray:
         """Random free numbers of `lengths`, shape (count, 3)."""

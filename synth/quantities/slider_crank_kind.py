@@ -26,7 +26,6 @@ class SliderCrankKind(Kind):
     linkage = SliderCrank
     proportions = 2
     formulas, smooth = slider_formulas.SLIDER_CRANK, slider_formulas.SMOOTH_SLIDER_CRANK
-    one_assembly = True
     closure = SliderCrankClosure()
     instant = SliderCrankInstant
     generators = SliderCranks

@@ -90,10 +90,8 @@ class Placement(View):
     @cached_property
     def output_turn(self) -> Dual:
         """Rotation of the output link from the first target to the last."""
-        if self._target.kind.turns_with_coupler:
-            first, last = (self.column("_coupler", k) for k in (0, -1))
-        else:
-            first, last = (self.column("b", k) - self.o4 for k in (0, -1))
+        dyad = self._target.kind.dyad
+        first, last = (dyad.across(self, self.column("b", k), self.column("_coupler", k)) for k in (0, -1))
         turned: Dual = first.angle_to(last)
         return turned
 

@@ -81,7 +81,7 @@ def draw(target: SearchTargets, count: int, rng: np.random.Generator, astray: fl
         columns.append(rng.uniform(-np.pi, np.pi, (count, n - 1)))
     longer = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}.get(rotatability, 0.4)
     signs = rng.choice([-1.0, 1.0], (count, 1 if target.wanted.same_branch else n))
-    if target.kind.one_assembly:
+    if target.kind.dyad.one_assembly:
         signs = np.ones_like(signs)
     return Batch(
         unknowns=np.concatenate(columns, axis=1),

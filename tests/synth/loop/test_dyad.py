@@ -10,7 +10,7 @@ from grashof.analysis import solve_kinematics, transmission_angle
 from grashof.problems import FourBar, Linkage
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.loop.dimensions import Closure
-from grashof.synth.loop.dyad import Bars, as_complex, as_vector, coupler_of, root_or_zero
+from grashof.synth.loop.dyad import Bars, Standing, as_complex, as_vector, coupler_of, root_or_zero
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.kinds import KINDS
 
@@ -69,6 +69,37 @@ def test_what_moves_b_turns_link_3_and_moves_the_output(word: str, seed: int) ->
         moved = dyad.driven_by(loop, crank.left) / lever
     whole = np.abs(output) < 1e5  # not where an angle is counted anew
     np.testing.assert_allclose(moved[sound & whole], output[sound & whole], rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize(("word", "seed"), SINGLE)
+def test_the_gap_is_zero_where_the_loop_closes_and_there_alone(word: str, seed: int) -> None:
+    """With the direction of link 3 from the closure, and turned from there by 0.1 rad."""
+    linkage, own = drawn(word, seed)
+    dyad, at = KINDS[word].dyad, Standing()
+    at.o2, at.normal = Vector(*linkage.o2), as_vector(np.asarray(own.ground))
+    at.o4 = at.o2 + at.normal
+    at.r1, at.r2, at.r3 = abs(own.ground), linkage.r2, own.r3
+    at.r4 = at.offset = own.r4
+    crank = as_vector(own.crank)
+    with np.errstate(invalid="ignore"):
+        loop = dyad.closed(dyad.ground(at), crank, own.r3, own.r4, own.assembly)
+        sound = np.sin(transmission_angle(linkage, TURN)) > 0.1
+        along, across = dyad.directions(loop, own.r3, own.r4)
+        a = at.o2 + crank
+        b = dyad.b(at, a, along)
+        carried = dyad.across(at, b, along)
+        lever = (b - a).cross(carried) / dyad.most_lever(at)
+        aside = along.turned(0.1)
+        at_b = dyad.b(at, a, aside)
+        missed = dyad.gap(at, a, at_b, dyad.across(at, at_b, aside))
+    assert sound.any()
+    np.testing.assert_allclose(np.broadcast_to(dyad.gap(at, a, b, carried), TURN.shape)[sound], 0, atol=1e-9)
+    assert (np.abs(missed)[sound] > 1e-4).all()
+    assert (np.sign(lever)[sound] == own.assembly).all()
+    unit = carried / (own.r4 if dyad.bars > 1 else 1.0)
+    for mine, theirs in ((unit.x, across.x), (unit.y, across.y)):
+        np.testing.assert_allclose(*(np.broadcast_to(each, TURN.shape)[sound] for each in (mine, theirs)))
+    np.testing.assert_allclose(dyad.reach_at(at, a), dyad.reach(at, TURN - np.angle(own.ground)), atol=1e-9)
 
 
 @pytest.mark.parametrize(("word", "seed"), SINGLE)

@@ -1,0 +1,139 @@
+"""Lengths that are feasible by construction: the driver goes where it has to, as well as is demanded.
+
+O2A is seen under an angle phi from the ground line, as `ClosingDyad.reach` has it. Whatever share of what is
+possible random numbers choose, the loop closes at every phi that is demanded, and its transmission angle mu
+is at least the one demanded there, without trial and error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+from grashof.synth.loop.dyad import Bars, Block, ClosingDyad, Sizes, Slider
+
+Numbers: TypeAlias = FloatArray | float
+
+INSIDE = 1e-6  # share of what is possible that is left at both ends: there are dead positions and no links
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What loops have to do, by numbers for all of a batch or for each; see `turning` and `covering`."""
+
+    transmission: Numbers  # least min(mu, pi - mu), rad, from 0 and below pi / 2
+    margin: Numbers = 0.0  # of a driver that turns fully, as `ClosingDyad.margins` has it, below 1
+    least: Numbers = -1.0  # cosine of phi
+    most: Numbers = 1.0
+
+    @classmethod
+    def turning(cls, transmission: Numbers = 0.0, margin: Numbers = 0.0) -> Demand:
+        """The driver turns fully, with a margin."""
+        return cls(transmission, margin)
+
+    @classmethod
+    def covering(cls, low: Numbers, high: Numbers, transmission: Numbers = 0.0) -> Demand:
+        """The driver covers a range of phi from `low` to `high`, rad."""
+        ends = np.cos(low), np.cos(high)
+        folded, stretched = (_passes(low, high, at) for at in (0.0, np.pi))
+        least, most = np.minimum(*ends), np.maximum(*ends)
+        return cls(transmission, 0.0, np.where(stretched, -1.0, least), np.where(folded, 1.0, most))
+
+    def diagonals(self, r2: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest distance A-O4 with r1 = 1, by the law of cosines."""
+        # (1 - r2)^2 + 2 r2 (1 - cos phi), which loses no digits where r2 is near 1
+        near, far = (np.sqrt((1 - r2) ** 2 + 2 * r2 * (1 - cosine)) for cosine in (self.most, self.least))
+        return near, far
+
+    def crank(self, share: FloatArray, longer_driver: BoolArray, narrowest: Numbers) -> FloatArray:
+        """r2 with r1 = 1, so that the least of the `diagonals` is at least that share of the greatest.
+
+        With g = (r2 + 1 / r2) / 2 the square of the share is (g - most) / (g - least): g has a lower limit,
+        and r2 an upper one, or a lower one where the driver is to be longer. NaN where all is asked, or more.
+        """
+        square = np.square(np.where(np.asarray(narrowest) < 1, narrowest, np.nan))
+        bound = np.maximum(self.most + (self.most - self.least) * square / (1 - square), 1.0)
+        shorter = share / (bound + np.sqrt(bound**2 - 1))
+        r2: FloatArray = np.where(longer_driver, 1 / shorter, shorter)
+        return r2
+
+
+def _passes(low: Numbers, high: Numbers, at: float) -> BoolArray:
+    passed: BoolArray = np.floor((high - at) / TURN) >= np.ceil((low - at) / TURN)
+    return passed
+
+
+def feasible(dyad: ClosingDyad, shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
+    """Lengths of loops, from random numbers in [0, 1), shape (..., 3), by which they are told apart.
+
+    r1 = 1, of a slider-crank r3 = 1; `longer_driver`, shape (...), asks for r2 > r1 where O4 is a pivot. Of
+    dyads with a slide the last number decides nothing. NaN where no loop does what is demanded.
+    """
+    return _LENGTHS[type(dyad)](INSIDE + (1 - 2 * INSIDE) * shares, longer_driver, demand)
+
+
+def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
+    """Two bars over a diagonal from `near` to `far`, by their sum T and difference D.
+
+    With h = mu / 2 the law of cosines, mu being least at the ends, asks for
+
+        T^2 cos^2(h) + D^2 sin^2(h) >= far^2 and T^2 sin^2(h) + D^2 cos^2(h) <= near^2,
+
+    which can be had where near / far >= tan(h). A margin asks for T >= (1 + margin) / (1 - margin) far and
+    |D| <= near - margin (T + far) (Grashof's criterion, McCarthy & Soh 2011, section 2.2, with a margin).
+    T is greatest by the right sides at D = 0, and least where the limits of |D| meet; that there are such T
+    limits near / far, and so r2. Derived here; tests show that no loops are left out.
+    """
+    margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
+    sine, cosine = np.sin(half), np.cos(half)
+    more = (1 + margin) / (1 - margin)
+    of_angle = np.maximum(sine / cosine, more * sine)
+    of_margin = np.maximum(2 * margin / (1 - margin), margin * (1 + 1 / cosine))
+    r2 = demand.crank(shares[..., 0], longer_driver, np.maximum(of_angle, of_margin))
+    near, far = demand.diagonals(r2)
+    room = near - margin * far
+    # where the lower limit of |D| meets the upper one by the angle, and by the margin
+    by_angle = np.sqrt(((far * cosine) ** 2 - (near * sine) ** 2) / (cosine**2 - sine**2))
+    square, middle = (margin * sine) ** 2 + cosine**2, margin * room * sine**2
+    by_margin = (middle + np.sqrt(middle**2 + square * (far**2 - (room * sine) ** 2))) / square
+    least = np.maximum(more * far, np.maximum(by_angle, by_margin))
+    greatest_inverse = np.maximum(sine / near, margin / room)
+    total = 1 / (1 / least + shares[..., 1] * (greatest_inverse - 1 / least))
+    low = np.sqrt(np.maximum(far**2 - (total * cosine) ** 2, 0.0)) / np.maximum(sine, 1e-300)
+    high = np.minimum(np.sqrt(np.maximum(near**2 - (total * sine) ** 2, 0.0)) / cosine, room - margin * total)
+    side = 2 * shares[..., 2] - 1
+    difference = np.copysign(low + np.abs(side) * (high - low), side)
+    return Sizes(np.ones_like(r2), r2, (total + difference) / 2, (total - difference) / 2)
+
+
+def _of_slider(shares: FloatArray, _longer: BoolArray, demand: Demand) -> Sizes:
+    """|offset - r2 cos(phi)| <= cos(mu) r3; with a margin r2 + |offset| <= (1 - margin) / (1 + margin) r3.
+
+    Of r2 / (r2 + r3) a share is taken, of the offset's range that is left then another.
+    """
+    widest = np.minimum(np.cos(demand.transmission), (1 - demand.margin) / (1 + demand.margin))
+    apart = np.subtract(demand.most, demand.least)
+    share = shares[..., 0] * 2 * widest / (2 * widest + apart)
+    r2 = share / (1 - share)
+    offset = r2 * demand.most - widest + shares[..., 1] * (2 * widest - r2 * apart)
+    return Sizes(np.zeros_like(r2), r2, np.ones_like(r2), offset)
+
+
+def _of_block(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
+    """|offset| <= cos(mu) near, and with a margin |offset| <= (near - margin far) / (1 + margin)."""
+    margin = np.asarray(demand.margin)
+    r2 = demand.crank(shares[..., 0], longer_driver, margin)
+    near, far = demand.diagonals(r2)
+    most = np.minimum(np.cos(demand.transmission) * near, (near - margin * far) / (1 + margin))
+    return Sizes(np.ones_like(r2), r2, np.zeros_like(r2), most * (2 * shares[..., 1] - 1))
+
+
+_LENGTHS: dict[type[ClosingDyad], Callable[[FloatArray, BoolArray, Demand], Sizes]] = {
+    Bars: _of_bars,
+    Slider: _of_slider,
+    Block: _of_block,
+}
