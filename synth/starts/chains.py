@@ -3,7 +3,8 @@
 With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a linkage is a shape and its driver angles at the
 targets. Where it stands, its size and its coupler point are linear in three complex numbers, P = z0 + z1 Q +
 z2 e with the origin Q and direction e of the link that carries P, and are solved for exactly (variable
-projection, see `loop_search`). Shapes are drawn until they close all round the turn.
+projection, see `loop_search`). The first loop of a shape that is drawn closes by construction; those of which
+another one does not are left out.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatA
 from grashof.problems.values.linkages.linkage_parts import Parameter
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.linkages.mechanisms import linkage_of
-from grashof.synth.loop.chain import Chain, chained
+from grashof.synth.loop.chain import DYADS, Chain, chained
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import as_complex
+from grashof.synth.loop.feasible import Demand, feasible
 from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import (
     Batch,
@@ -33,7 +35,8 @@ from grashof.synth.starts.closed_loop import (
 )
 from grashof.synth.starts.loop_search import drawn_gaps, improve, project
 
-ROUND = 24  # positions of the driver at which a drawn shape has to close
+FEW, ROUND = 3, 24  # positions of the driver at which a drawn shape has to close
+LONGER = 0.4  # share of drivers longer than the ground link
 SPREAD = 1.0  # of logarithms of lengths, over r1
 NO_ERROR = 1e-20  # sizes squared
 STAGES = ((400, 8), (100, 15), (30, 150))  # how many of the best go on, for how many steps
@@ -73,22 +76,27 @@ class Shapes:
                 made[row.name] = np.exp(value) if row.kind == "length" else value
         return made
 
-    def drawn(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Random shapes, (count, width)."""
+    def drawn(self, rng: np.random.Generator, count: int, transmission: float) -> FloatArray:
+        """Random shapes, (count, width); in the first loop the driver turns fully, and mu is so much, rad."""
+        loop = self.mechanism.loops[0]
+        longer, shares = rng.random(count) < LONGER, rng.random((count, 3))
+        sizes = feasible(DYADS[loop.dyad.kind], shares, longer, Demand.turning(transmission))
+        first = {"r2": sizes.r2, "r3": sizes.r3, "r4": sizes.r4, loop.offset: sizes.offset}
         columns = []
         for row in self.rows:
             draw = rng.uniform(-np.pi, np.pi, count) if row.kind == "angle" else rng.normal(0, SPREAD, count)
+            if row.name in first:
+                draw = np.log(first[row.name]) if row.kind == "length" else first[row.name]
             columns += [draw, rng.normal(0, SPREAD, count)] if row.paired else [draw]
         return np.stack(columns, axis=1)
 
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
     """Random linkages whose loops close all round the turn, of `count` that are tried."""
-    drawn, sides = shapes.drawn(rng, count), rng.choice([-1.0, 1.0], (count, len(shapes.mechanism.loops)))
-    angle = np.arange(ROUND) * TURN / ROUND
-    few = np.array([0.0, np.pi])  # most that close there close all round
-    for theta2 in (few, angle):
-        closes = _closes(shapes, drawn, sides, theta2)
+    drawn = shapes.drawn(rng, count, float(np.radians(target.wanted.transmission_min_deg)))
+    sides = rng.choice([-1.0, 1.0], (count, len(shapes.mechanism.loops)))
+    for positions in (FEW, ROUND):  # most that close in a few close in all
+        closes = _closes(shapes, drawn, sides, np.arange(positions) * TURN / positions)
         drawn, sides = drawn[closes], sides[closes]
     number = len(drawn)
     first = rng.uniform(-np.pi, np.pi, (number, 1))
