@@ -53,6 +53,8 @@ class Functions(WholeDesigns):
     @property
     def exhausted(self) -> str:
         """Why there are no others."""
+        if self.aims.obstacle:
+            return self.aims.obstacle
         if not self.aims.exact:
             return "least errors were looked for at every transmission angle"
         count, kind = len(self.aims.task), self.aims.kind
