@@ -112,4 +112,4 @@ def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
     part = synthesize(load("function-log10"), stop=lambda: bool(told), progress=told.append)
     assert not part.complete
     assert len(part) >= 1
-    assert part.ended == "the search ended before it was done: it was stopped"
+    assert part.ended == "the search ended after 1 of 200 solves: it was stopped"
