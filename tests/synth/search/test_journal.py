@@ -95,9 +95,9 @@ def test_a_search_that_was_stopped_goes_on_to_the_same_list(tmp_path: Path, stop
 
 
 def longer(value: Any, inside: bool = False) -> Any:
-    """The same record with every linkage a hundredth larger."""
+    """The same record with every coupler a hundredth longer."""
     if isinstance(value, dict):
-        return {key: longer(each, inside or key == "FourBar") for key, each in value.items()}
+        return {key: longer(each, inside or key == "r3") for key, each in value.items()}
     if isinstance(value, list):
         return [longer(each, inside) for each in value]
     return value * 1.01 if inside and isinstance(value, float) else value
