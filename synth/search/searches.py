@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -85,10 +86,20 @@ def finished(ledger: Ledger, run: Run) -> Ledger:
         _continue_best(ledger, run)
     elif ledger.complete and not run.ended():
         with run.timed("solving"):
-            if more := run.onward(ledger):
-                solve(more, ledger, run)
-                run.tell(ledger)
+            _look_onward(ledger, run)
     return ledger
+
+
+def _look_onward(ledger: Ledger, run: Run) -> None:
+    """Judge what the designs of a search lead to; what it has found stays where that is cut short."""
+    try:
+        more = run.onward(ledger)
+    except Stopped:
+        ledger.complete = False
+        return
+    if more:
+        solve(more, ledger, run)
+        run.tell(ledger)
 
 
 def _begin_more(finder: Finder, ledger: Ledger, run: Run) -> None:
@@ -128,7 +139,7 @@ def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """What is found at once, where a finder has that and starts are not few, and the rounds."""
     glance = None
     if ledger.starts >= MANY:
-        with run.timed("screening"):
+        with run.timed("screening"), suppress(Stopped):
             glance = run.glanced(ledger.scaled)
     if glance is not None:
         yield glance

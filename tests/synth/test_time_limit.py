@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Progress
+from grashof.synth.starts.functions.finder import Functions
 
 LIMIT, SOON = 1.0, 2.0  # s: after the limit, on a quiet machine
 NOISE = 0.005  # of the size
@@ -113,3 +116,21 @@ def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
     assert not part.complete
     assert len(part) >= 1
     assert part.ended == "the search ended after 1 of 200 solves: it was stopped"
+
+
+@pytest.mark.parametrize("method", ["glance", "round", "onward"])
+def test_a_search_for_functions_may_be_stopped_anywhere(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At once, without a second's grace: what was found until then is listed, and no more is lost."""
+    monkeypatch.setattr(import_module("grashof.synth.theory.stopping"), "GRACE", 0.0)
+    real, begun = getattr(Functions, method), list[str]()
+
+    def watched(self: Functions, *given: Any) -> Any:
+        begun.append(method)
+        return real(self, *given)
+
+    monkeypatch.setattr(Functions, method, watched)
+    task = FunctionTask.from_degrees([0, 15, 30, 45, 60, 75], [0, 12, 22, 30, 36, 40])
+    part = synthesize(Problem(task=task), stop=lambda: bool(begun))
+    assert not part.complete
+    assert part.ended.endswith("it was stopped") or not part.candidates
+    assert (len(part) > 0) is (method != "glance")
