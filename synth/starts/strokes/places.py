@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Box, Requirements, Task
+from grashof.problems import Box, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
@@ -35,6 +35,7 @@ class Places(ABC):
     what: ClassVar[str]  # the linkages, in words
     advised: ClassVar[str] = ""  # a stroke whose best transmission the time ratio tells, in a word
     dyad: ClassVar[type[ClosingDyad]]
+    line: ClassVar[str] = "ground_angle_deg"  # the field that turns the ground line, or the slide
     kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
     mirrored: ClassVar[tuple[bool, ...]] = (False, True)  # how members of a family are drawn at random
 
@@ -53,6 +54,32 @@ class Places(ABC):
     @abstractmethod
     def inside(self, members: Members) -> FloatArray:
         """How far members are inside the limits of lengths, places and transmission, (n,)."""
+
+    def least(
+        self,
+        members: Members,
+        ratio: FloatArray,
+        turns: FloatArray,
+        angle: FloatArray,
+        others: list[FloatArray],
+    ) -> FloatArray:
+        """The least of what members have to spare, (n,): of what all kinds are limited by, and of `others`.
+
+        That is the ratio of lengths, the margin of rotatability, and where both the start of the driver and
+        the line of the ground or slide are given its `angle`, rad.
+        """
+        wanted = self.wanted
+        spare = [
+            members.transmission - np.radians(wanted.transmission_min_deg),
+            np.log(min(max(wanted.link_ratio_max, 1.0), 1e9)) - np.log(ratio),
+            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
+            *others,
+        ]
+        if getattr(wanted, self.line) is not None and wanted.theta2_start_deg is not None:
+            apart = np.exp(1j * (angle - (wanted.angle_of(self.line) or 0.0)))
+            spare.append(-np.abs(np.angle(apart)))
+        margin: FloatArray = np.min(spare, axis=0)
+        return margin
 
     @abstractmethod
     def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:

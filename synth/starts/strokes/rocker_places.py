@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Box, Rotatability
+from grashof.problems import Box
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
@@ -32,22 +32,11 @@ class RockerPlaces(Places):
         return [(family, mirrored) for family in families for mirrored in either]
 
     def inside(self, members: Members) -> FloatArray:
-        wanted = self.wanted
         r1, r2, r3, r4 = lengths = members.lengths.T
-        most = min(max(wanted.link_ratio_max, 1.0), 1e9)
         turns = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4)) / lengths.sum(axis=0)
         low, high = self._scales(members)
-        inside = [
-            members.transmission - np.radians(wanted.transmission_min_deg),
-            np.log(most) - np.log(lengths.max(axis=0) / lengths.min(axis=0)),
-            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
-            np.log(high / low),
-        ]
-        if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("ground_angle_deg") or 0.0)))
-            inside.append(-np.abs(np.angle(apart)))
-        margin: FloatArray = np.min(inside, axis=0)
-        return margin
+        ratio = lengths.max(axis=0) / lengths.min(axis=0)
+        return self.least(members, ratio, turns, self._angle(members), [np.log(high / low)])
 
     def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
         low, high = self._scales(members)

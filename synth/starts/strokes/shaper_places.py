@@ -8,7 +8,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
@@ -40,22 +39,10 @@ class ShaperPlaces(RockerPlaces):
         return [(partial(crank_shapers, swing, side), False) for side in sides]
 
     def inside(self, members: Members) -> FloatArray:
-        wanted = self.wanted
         r1, r2, offset = members.lengths.T
-        most = min(max(wanted.link_ratio_max, 1.0), 1e9)
         turns = (r1 - r2 - np.abs(offset)) / (r1 + r2 + np.abs(offset))
         low, high = self._scales(members)
-        inside = [
-            members.transmission - np.radians(wanted.transmission_min_deg),
-            np.log(most) - np.log(r1 / r2),
-            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
-            np.log(high / low),
-        ]
-        if wanted.ground_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("ground_angle_deg") or 0.0)))
-            inside.append(-np.abs(np.angle(apart)))
-        margin: FloatArray = np.min(inside, axis=0)
-        return margin
+        return self.least(members, r1 / r2, turns, self._angle(members), [np.log(high / low)])
 
     def diagonals(self, members: Members) -> FloatArray:
         _, r2, offset = members.lengths.T[..., None]

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Box, Rotatability
+from grashof.problems import Box
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
@@ -30,6 +30,7 @@ class SlidePlaces(Places):
     what: ClassVar[str] = "slider-cranks"
     advised: ClassVar[str] = "stroke"
     dyad: ClassVar[type[ClosingDyad]] = Slider
+    line: ClassVar[str] = "slide_angle_deg"
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
     # the mirror image is a family of its own, the other assembly this one with its slide the other way round
     mirrored: ClassVar[tuple[bool, ...]] = (False,)
@@ -44,24 +45,17 @@ class SlidePlaces(Places):
     def inside(self, members: Members) -> FloatArray:
         wanted, stroke = self.wanted, self._stroke
         r2, r3, offset = members.lengths.T
-        most = min(max(wanted.link_ratio_max, 1.0), 1e9)
         beside = np.abs(offset)
         turns = (r3 - r2 - beside) / (r2 + r3 + beside)
-        inside = [
-            members.transmission - np.radians(wanted.transmission_min_deg),
-            np.log(most) - np.log(r3 / r2),
-            turns - (0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin),
+        angle = self._angle(members)
+        others = [
             (wanted.coupler_arms or (0.0, np.inf))[1] / stroke - r3,  # P is in A
-            self._room(members, self._angle(members)),
+            self._room(members, angle),
         ]
         limits = [*wanted.link_lengths[1:3], wanted.offset or (-np.inf, np.inf)]
         for (least, greatest), length in zip(limits, (r2, r3, offset), strict=True):
-            inside += [length - least / stroke, greatest / stroke - length]
-        if wanted.slide_angle_deg is not None and wanted.theta2_start_deg is not None:
-            apart = np.exp(1j * (self._angle(members) - (wanted.angle_of("slide_angle_deg") or 0.0)))
-            inside.append(-np.abs(np.angle(apart)))
-        margin: FloatArray = np.min(inside, axis=0)
-        return margin
+            others += [length - least / stroke, greatest / stroke - length]
+        return self.least(members, r3 / r2, turns, angle, others)
 
     def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
         return np.full(len(members), self._stroke)
