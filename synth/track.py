@@ -15,8 +15,8 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
-from grashof.synth.quantities.merit import same_error
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scores import same_error
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.whole_designs import WholeDesigns

@@ -14,7 +14,7 @@ from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems import DynamicsSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import refuse
-from grashof.problems.values.dynamics.acting import TURNING, LoadSpec, Place
+from grashof.problems.values.dynamics.load_specs import TURNING, LoadSpec, Place
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place

@@ -13,7 +13,8 @@ from grashof.problems.files.number_table import Names, number_table
 from grashof.problems.files.spec_table import SpecTable, keys_of, spec_table
 from grashof.problems.files.tables import Table, listed
 from grashof.problems.values.checks import located, refuse
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.load_specs import (
     OVER,
     TURNING,
     CounterweightSpec,
@@ -24,7 +25,6 @@ from grashof.problems.values.dynamics.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
 from grashof.problems.values.dynamics.section import SectionSpec

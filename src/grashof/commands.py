@@ -37,8 +37,8 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
     from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
     from grashof.synth.results.so_far import SoFar
+    from grashof.synth.search.history import Ending
     from grashof.synth.search.journal import remove_record
-    from grashof.synth.search.story import Ending
 
     given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
     search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
@@ -69,7 +69,7 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
             if (verified := so_far.result()).candidates:
                 deliver(verified)
             raise
-        whole = found.story is not None and found.story.ending is Ending.COMPLETE
+        whole = found.history is not None and found.history.ending is Ending.COMPLETE
         return deliver(found, listed=partial(remove_record, record) if whole else None)
 
 
@@ -143,8 +143,8 @@ def _deliver(
     from grashof.output.terminal import print_table
     from grashof.wording.proof import proof_line
 
-    if found.story is not None and found.story.record_lost:
-        say(f"{found.story.record_lost}; the search went on without its record", err=True)
+    if found.history is not None and found.history.record_lost:
+        say(f"{found.history.record_lost}; the search went on without its record", err=True)
     if found.ended:
         say(found.ended, err=True)
     result = found.top(settings["top"])

@@ -61,28 +61,28 @@ def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     scale, trust = _Scale.of(plane, room), _FIRST
     x = np.clip(scale.unknowns(pivots), *scale.bounds)
     levers, limits = scale.margins(x[None])
-    merit = _merit(levers, limits)
+    score = _score(levers, limits)
     for _ in range(_ROUNDS):
         step, promised = _step(scale, x, trust, levers[0], limits[0])
-        if promised - merit < _GAIN or trust < _LEAST:
+        if promised - score < _GAIN or trust < _LEAST:
             break
         next_levers, next_limits = scale.margins((x + step)[None])
-        reached = _merit(next_levers, next_limits)
-        share = (reached - merit) / (promised - merit)
+        reached = _score(next_levers, next_limits)
+        share = (reached - score) / (promised - score)
         if share > 0:
-            x, levers, limits, merit = x + step, next_levers, next_limits, reached
+            x, levers, limits, score = x + step, next_levers, next_limits, reached
         trust = trust / 3 if share < 0.25 else min(2 * trust, _WIDEST) if share > 0.75 else trust
     return scale.pivots_at(x)
 
 
-def _merit(levers: FloatArray, limits: FloatArray) -> float:
+def _score(levers: FloatArray, limits: FloatArray) -> float:
     return float(levers.min() + _WEIGHT * np.minimum(limits - _INSIDE, 0.0).sum())
 
 
 def _step(
     scale: _Scale, x: FloatArray, trust: float, levers: FloatArray, limits: FloatArray
 ) -> tuple[FloatArray, float]:
-    """The step that is best where all is linear, and the merit that it promises."""
+    """The step that is best where all is linear, and the score that it promises."""
     from scipy import optimize
 
     count = len(limits)

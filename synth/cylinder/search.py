@@ -17,7 +17,7 @@ _FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by ho
 _PENALTY = 10.0
 _BLOCK = 500
 _BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
-_HOPELESS = -0.5  # merit so far below zero is not mended
+_HOPELESS = -0.5  # score so far below zero is not mended
 _POLISHED, _AGAIN = 8, 3
 # Cylinders polished to the end, and how often linear programmes follow quadratic ones.
 _FINISHED, _TURNS = 2, 2
@@ -49,15 +49,15 @@ def _searched(
     """The best cylinder found, and where there is none, whether one came near."""
     points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
     coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
-    merit = np.concatenate([
-        _merit(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
+    score = np.concatenate([
+        _score(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
         for k in range(0, len(points), _BLOCK)
     ])  # fmt: skip
-    best = np.argsort(-merit)[: round(_BEST * effort)]
+    best = np.argsort(-score)[: round(_BEST * effort)]
     apart = _distinct(room, points[best], bases[best], round(_PARENTS * effort), _APART)
     best = best[apart]
-    points, bases, merit = _closed_in(coarse, room, points[best], bases[best], merit[best], rng)
-    if merit[0] < _HOPELESS:
+    points, bases, score = _closed_in(coarse, room, points[best], bases[best], score[best], rng)
+    if score[0] < _HOPELESS:
         return None, False
     tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
     tried += [by_quadratic(coarse, room, pair) for pair in tried if not overdue()]
@@ -106,7 +106,7 @@ def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[
     return [tried[k] for k in np.argsort(-least, kind="stable")[:count]]
 
 
-def _merit(room: Room, found: Driven) -> FloatArray:
+def _score(room: Room, found: Driven) -> FloatArray:
     return found.least - _PENALTY * room.beyond(found)
 
 
@@ -147,7 +147,7 @@ def _closed_in(
     room: Room,
     points: ComplexArray,
     bases: ComplexArray,
-    merit: FloatArray,
+    score: FloatArray,
     rng: np.random.Generator,
 ) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Ever smaller random steps from each of some cylinders; the best of each family, best first."""
@@ -162,15 +162,15 @@ def _closed_in(
         tried_points = np.where(alone < 0.25, points[:, None], tried_points)
         tried_bases = np.where(alone > 0.75, bases[:, None], tried_bases)
         kept = room.kept(tried_points.ravel(), tried_bases.ravel())
-        found = _merit(room, driven(plane, *kept)).reshape(shape)
+        found = _score(room, driven(plane, *kept)).reshape(shape)
         child = found.argmax(axis=1)
-        better = found[parents, child] > merit
+        better = found[parents, child] > score
         one, other = (each.reshape(shape)[parents, child] for each in kept)
         points, bases = np.where(better, one, points), np.where(better, other, bases)
-        merit = np.where(better, found[parents, child], merit)
+        score = np.where(better, found[parents, child], score)
         step *= _NARROWER
-    order = np.argsort(-merit)
-    return points[order], bases[order], merit[order]
+    order = np.argsort(-score)
+    return points[order], bases[order], score[order]
 
 
 def _distinct(

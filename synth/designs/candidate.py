@@ -15,7 +15,7 @@ from grashof.analysis.judge.measures import Values
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.display import Displayed
 from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
-from grashof.synth.quantities.merit import same_error
+from grashof.synth.quantities.scores import same_error
 from grashof.synth.theory.distinct import signature
 
 

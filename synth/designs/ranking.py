@@ -15,7 +15,7 @@ from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.quantities.merit import same_error
+from grashof.synth.quantities.scores import same_error
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
 
 BLOCK = 256  # designs compared with all others at once

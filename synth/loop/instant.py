@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.problems.values.dynamics.acting import JOINTS
+from grashof.problems.values.dynamics.load_specs import JOINTS
 from grashof.synth.loop.dyad import Bars, Block, Closed, ClosingDyad, Rates, Slider
 from grashof.synth.loop.vector import Vector
 

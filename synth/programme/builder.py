@@ -10,10 +10,10 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme.long_programme import Asking, jacobian_by_rows
+from grashof.synth.programme.long_programme import StopCondition, jacobian_by_rows
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import give_way
+from grashof.synth.theory.stopping import raise_if_stopped
 
 # Numbers that a problem and a start give: as many as the symbols that they fill.
 Fill: TypeAlias = Callable[[ScaledProblem, Start], Any]
@@ -103,11 +103,11 @@ class Builder:
     def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
         """The programme that makes a cost least; a `long` one ends when asked to stop, here by `Stopped`."""
         stated = self.stated(cost)
-        asking = Asking(stated) if long else None
+        asking = StopCondition(stated) if long else None
         if long:
-            give_way()
+            raise_if_stopped()
             options = {**options, "jac_g": jacobian_by_rows(stated), "iteration_callback": asking}
-            give_way()
+            raise_if_stopped()
         sizes = {name: each.symbol.numel() for name, each in self._unknowns.items()}
         ends = np.cumsum(list(sizes.values())).tolist()
         return Programme(
@@ -131,7 +131,7 @@ class Programme:
     parameters: tuple[Fill, ...]
     rows: tuple[tuple[int, Fill], ...]
     bounds: tuple[tuple[int, Fill], ...]
-    asking: Asking | None  # called by the solver of a long one, and kept for that
+    asking: StopCondition | None  # called by the solver of a long one, and kept for that
 
     def arguments(self, scaled: ScaledProblem, start: Start) -> dict[str, FloatArray]:
         """What the solver takes for a start."""

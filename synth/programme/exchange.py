@@ -11,7 +11,7 @@ from grashof.synth.programme.nonlinear_programme import Solve, solve
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import overlooked
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import stop_requested
 
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
 EXCHANGES = 4  # times at most that a solve is repeated
@@ -24,7 +24,7 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
     """
     solved = solve(scaled, start)
     for _ in range(EXCHANGES):
-        if solved.status not in SOLVED or asked_to_stop():
+        if solved.status not in SOLVED or stop_requested():
             break
         points, theta2 = np.array(solved.points), np.array(solved.theta2)
         ways = points, theta2, start.direction, start.assembly

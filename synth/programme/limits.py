@@ -153,7 +153,7 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> 
     for share in (*np.linspace(0, 1, form.grid), *added):
         driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
         at = form.kind.instant(vector(x.o2), ground, lengths, arm, x.assembly, driver)
-        for value in ALONG[key](at, form.burden):
+        for value in ALONG[key](at, form.loading):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / one).square)
             else:

@@ -28,7 +28,7 @@ def jacobian_by_rows(stated: Mapping[str, ca.SX]) -> ca.Function:
     return ca.Function("nlp_jac_g", [x, p], [g, slope[back, :]], ["x", "p"], ["g", "jac_g_x"])
 
 
-class Asking(ca.Callback):
+class StopCondition(ca.Callback):
     """Called after every iteration of Ipopt: whether to end it, since that is overdue."""
 
     def __init__(self, stated: Mapping[str, ca.SX]) -> None:

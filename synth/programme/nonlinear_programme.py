@@ -33,7 +33,7 @@ from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import Stopped, give_way
+from grashof.synth.theory.stopping import Stopped, raise_if_stopped
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
 MOST_ITERATIONS = 150
@@ -66,7 +66,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     most = patience if max_iter is None else max_iter
     try:
         if form.targets > LONG:
-            give_way()
+            raise_if_stopped()
         programme = _programme(form, most, scaled.constraints, scaled.own_objective)
     except Stopped:
         return _as_it_is(start, STOPPED)

@@ -76,7 +76,7 @@ class Start:
     assembly: int
     kind: Kind
     body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
-    promise: float = 0.0  # root mean square error of a least-squares search here, with what limits add
+    expected_error: float = 0.0  # root mean square error of a least-squares search here, with what limits add
     terms: Terms = field(default_factory=Terms)
 
     @classmethod

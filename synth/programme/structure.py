@@ -12,9 +12,9 @@ from grashof.problems.values.requirements.quantities import Needs, Over
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
-from grashof.synth.quantities.burden import Burden
 from grashof.synth.quantities.driver_way import drive_of
 from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PLANES = 4  # half-planes that bound a free region
@@ -39,7 +39,7 @@ class Form:
     goals: tuple[str, ...]  # keys of the quantities weighed; none where another objective comes first
     own_goal: bool  # the user's own objective decides
     grid: int  # at how many instants what varies along the motion is bounded
-    burden: Burden | None  # what takes the torque and forces that are bounded; None where none are
+    loading: Loading | None  # what takes the torque and forces that are bounded; None where none are
     motor: MotorSpec | None  # how the driver goes where anything is bounded along the motion
     closed: bool  # the task motion is a whole turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
@@ -82,7 +82,7 @@ class Form:
             goals=() if plain else tuple(start.terms.goals),
             own_goal=not plain and start.terms.objective is None,
             grid=_grid_size(start, closed),
-            burden=Burden.of(scaled.problem),
+            loading=Loading.of(scaled.problem),
             motor=drive_of(scaled.problem)[0],
             closed=closed,
             keep_out=points_held(scaled),
@@ -94,9 +94,9 @@ class Form:
         )
         # One programme for motions short and long, and whatever acts.
         if not made.along:
-            return replace(made, grid=0, burden=None, motor=None)
+            return replace(made, grid=0, loading=None, motor=None)
         heavy = any(QUANTITIES[key].needs is Needs.DYNAMICS for key in made.along)
-        return made if heavy else replace(made, burden=None)
+        return made if heavy else replace(made, loading=None)
 
     def places_of(self, name: str) -> int:
         """At how many places a point is held in free regions."""

@@ -88,10 +88,10 @@ def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return missed
 
 
-def own_merit(scaled: ScaledProblem, linkages: Screened, objective: OwnObjective) -> FloatArray:
+def own_score(scaled: ScaledProblem, linkages: Screened, objective: OwnObjective) -> FloatArray:
     """How good the user's own objective makes linkages, greater is better; shape (n,)."""
-    merit: FloatArray = np.nan_to_num(-_values(scaled, linkages, (objective,))[0], nan=-np.inf)
-    return merit
+    score: FloatArray = np.nan_to_num(-_values(scaled, linkages, (objective,))[0], nan=-np.inf)
+    return score
 
 
 @one_at_a_time

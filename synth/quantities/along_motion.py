@@ -13,9 +13,9 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.quantities.burden import NOTHING, Burden
-from grashof.synth.quantities.drive import drive_torque, joint_forces
+from grashof.synth.quantities.drive_torque import drive_torque, joint_forces
 from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.loading import NOTHING, Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 SCREENED = 25  # instants at which many linkages are compared
@@ -26,14 +26,14 @@ MOST_PEAKS = 4  # that are reported at once
 
 # What is bounded over the task motion, by the key of the quantity, in `Problem.scale`: of scalars and vectors
 # the magnitude, of several the greatest.
-Along: TypeAlias = Callable[[Instant, Burden | None], list[Any]]
+Along: TypeAlias = Callable[[Instant, Loading | None], list[Any]]
 ALONG: dict[str, Along] = {
     "mechanical_advantage": lambda at, _: [at.rates.speed4],
     "omega4_max": lambda at, _: [at.driver.pace * at.rates.speed4],
     "point_speed_max": lambda at, _: [at.velocity(3, at.point)],
     "point_acceleration_max": lambda at, _: [at.acceleration(3, at.point)],
-    "torque_peak": lambda at, burden: drive_torque(at, burden or NOTHING),
-    "joint_force_peak": lambda at, burden: joint_forces(at, burden or NOTHING),
+    "torque_peak": lambda at, loading: drive_torque(at, loading or NOTHING),
+    "joint_force_peak": lambda at, loading: joint_forces(at, loading or NOTHING),
 }
 
 
@@ -71,7 +71,7 @@ def magnitudes(
         driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
         base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
         at = kind.instant(base, along, lengths, point, assembly[:, None], driver)
-        values = ALONG[key](at, Burden.of(problem))
+        values = ALONG[key](at, Loading.of(problem))
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
     return greatest

@@ -12,8 +12,8 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_in_time
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.quantities.merit import same_error
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.larger_zones import nearest_zones
 from grashof.synth.results.mixed import within_factor
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
@@ -68,13 +68,13 @@ def _best_within_bounds(
 
 
 def _least_errors(scaled: ScaledProblem, ledger: Ledger) -> tuple[Candidate, ...]:
-    """Designs up to the error that is allowed, named by their merits."""
+    """Designs up to the error that is allowed, named by their scores."""
     problem = scaled.problem
     found = within_factor(problem, ledger.best, ledger.least)
-    return tuple(replace(one, best_at=merit(problem, one, ledger.least)) for one in found)
+    return tuple(replace(one, best_at=best_at(problem, one, ledger.least)) for one in found)
 
 
-def merit(problem: Problem, one: Candidate, least: float) -> str:
+def best_at(problem: Problem, one: Candidate, least: float) -> str:
     """What a design of some error is best at: the error, or as much of it as its transmission angle costs."""
     if one.error(problem) <= max(least * SAME_LEAST, NO_ERROR):
         return "least error"

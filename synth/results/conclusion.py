@@ -17,9 +17,9 @@ from grashof.synth.results.choice import choose, least_error, why_ended
 from grashof.synth.results.explain import explain
 from grashof.synth.results.result import Result
 from grashof.synth.search.finder import finder_for
+from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
-from grashof.synth.search.story import Asking, Story, now
 from grashof.synth.search.tally import CHOICE, DISTINCT
 
 _LOG = logging.getLogger(__name__)
@@ -29,7 +29,7 @@ def conclude(
     scaled: ScaledProblem,
     ledgers: list[Ledger],
     run: Run,
-    asked: Asking,
+    asked: StopCondition,
     bounds: Bounds | Certified | None = None,
     atlas: Atlas | None = None,
 ) -> Result:
@@ -46,7 +46,7 @@ def conclude(
         regions = atlas.regions_of(scaled, designs)
         designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))
     ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
-    story = Story(
+    history = RunHistory(
         begun=asked.begun,
         ended=now(),
         ending=asked.ending,
@@ -61,7 +61,7 @@ def conclude(
     if ended and designs and not chosen.designs:
         ended += "; those listed were found in looking for what stands in the way"
     why = f"; {ended}" if ended else ""
-    _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], story.ending, len(designs), why)
+    _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], history.ending, len(designs), why)
     proof = None
     if isinstance(bounds, Certified):
         proof = proof_of_all(problem, bounds, designs, whole=ledger.exhaustive)
@@ -88,14 +88,14 @@ def conclude(
         complete=ledger.complete,
         ended=ended,
         least_error=least_error(scaled, ledger),
-        story=story,
+        history=history,
         proof=proof,
         loci=None if atlas is None else atlas.loci,
     )
 
 
-def needless(scaled: ScaledProblem, asked: Asking) -> Result:
+def needless(scaled: ScaledProblem, asked: StopCondition) -> Result:
     """The empty list of targets that need no linkage."""
-    story = Story(begun=asked.begun, ended=now(), ending=asked.ending)
+    history = RunHistory(begun=asked.begun, ended=now(), ending=asked.ending)
     note = f"no design: {finder_for(scaled).degenerate()}"
-    return Result(scaled.problem, seconds={"total": 0.0}, note=note, story=story)
+    return Result(scaled.problem, seconds={"total": 0.0}, note=note, history=history)

@@ -10,9 +10,9 @@ import numpy as np
 from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
-from grashof.synth.quantities.merit import same_error
+from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.result import Result
-from grashof.synth.search.story import Ending, Story
+from grashof.synth.search.history import Ending, RunHistory
 from grashof.synth.search.tally import DISTINCT, Tally
 
 
@@ -41,7 +41,7 @@ def one_list(problem: Problem, found: Sequence[Result]) -> Result:
         complete=len(found) == len(problem.mechanism) and all(one.complete for one in found),
         ended=_by_kind(found, "ended"),
         least_error=least if np.isfinite(least) else np.nan,
-        story=_story([one.story for one in found if one.story is not None]),
+        history=_history([one.history for one in found if one.history is not None]),
         proof=next((one.proof for one in found if one.proof is not None), None),
     )
 
@@ -63,7 +63,7 @@ def _by_kind(found: Sequence[Result], name: str) -> str:
     return "; ".join(f"{kind}: {text}" for kind, text in said if text)
 
 
-def _story(parts: Sequence[Story]) -> Story | None:
+def _history(parts: Sequence[RunHistory]) -> RunHistory | None:
     if not parts:
         return None
     endings = [part.ending for part in parts if part.ending is not Ending.COMPLETE]

@@ -15,8 +15,8 @@ from grashof.problems.values.display import Displayed
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Proof
 from grashof.synth.proof.poses.atlas import Loci
-from grashof.synth.quantities.merit import same_error
-from grashof.synth.search.story import Story
+from grashof.synth.quantities.scores import same_error
+from grashof.synth.search.history import RunHistory
 from grashof.synth.search.tally import Tally
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Result(Displayed):
     least_error : float, length
         Least squares: the least error that was found, as `Candidate.error` has it (of functions rad); NaN
         otherwise.
-    story : Story, optional
+    history : RunHistory, optional
         What happened to the search that it is of.
     proof : Proof, optional
         What is proven of the list, where the question arises.
@@ -64,7 +64,7 @@ class Result(Displayed):
     complete: bool = True
     ended: str = ""
     least_error: float = np.nan
-    story: Story | None = field(default=None, compare=False)
+    history: RunHistory | None = field(default=None, compare=False)
     proof: Proof | None = field(default=None, compare=False)
     loci: Loci | None = field(default=None, compare=False)
 

@@ -11,8 +11,8 @@ from grashof.problems import Objective, Problem
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import distinct, pareto_optimal, ranked
 from grashof.synth.programme.start import Start
-from grashof.synth.quantities.merit import SAME_ERROR, same_error
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.scores import SAME_ERROR, same_error
 from grashof.synth.results.stand_in import StandIn, on_all_targets
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import EXACT_ERROR, Ledger

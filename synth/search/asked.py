@@ -9,7 +9,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import finite_number, whole_number
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.search.finder import refuse_unsearchable
-from grashof.synth.search.story import Asking
+from grashof.synth.search.history import StopCondition
 
 
 def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
@@ -23,8 +23,8 @@ def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
     return search
 
 
-def asking(time_limit: float | None, stop: Callable[[], bool] | None) -> Asking:
+def asking(time_limit: float | None, stop: Callable[[], bool] | None) -> StopCondition:
     """What asks to end: a time from now on, s (ProblemError if invalid), or somebody who wants it."""
     if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
         raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
-    return Asking(time_limit, stop)
+    return StopCondition(time_limit, stop)

@@ -22,7 +22,7 @@ from grashof.synth.programme.structure import Form
 from grashof.synth.quantities.formulas import FORMULAS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
-from grashof.synth.theory.stopping import asked_to_stop, overdue
+from grashof.synth.theory.stopping import overdue, stop_requested
 
 # Status of a start that was left alone because the search had long been asked to stop.
 LEFT_ALONE = "Stopped"
@@ -95,13 +95,13 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
     """Solve; again, asking for more, as long as one thing alone is missed by a little."""
     solve = solve_by_exchange(scaled, start)
-    if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not asked_to_stop():
+    if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not stop_requested():
         start = start.under(loose=True)
         solve = solve_by_exchange(scaled, start)
     done = polished_and_judged(scaled, start, solve, number)
     for _ in range(MORE if solve.status in SOLVED else 0):
         more = _more(scaled, start, done.candidate)
-        if not more or asked_to_stop():
+        if not more or stop_requested():
             break
         start = begun_from(start, solve).under(more={**start.terms.more, **more})
         again = solve_by_exchange(scaled, start)

@@ -14,7 +14,7 @@ from grashof.synth.search.recorded_designs import is_true_chunk
 from grashof.synth.search.rounds import solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import CrashError, Here, Work, screen
-from grashof.synth.theory.stopping import asked_to_stop, give_way
+from grashof.synth.theory.stopping import raise_if_stopped, stop_requested
 
 CHUNK = "chunk"  # kind of step
 CHUNKS = 4  # that a search of effort 1 has in shards: each has so great a share of its solves
@@ -33,8 +33,8 @@ def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: 
     effort, of_pass = divmod(number, finder_for(scaled).rounds_a_pass)
     found = work.made(screen, scaled, effort, of_pass, enough, seed)
     if found is not None:
-        solve_round(found, ledger, Run(search, work, asked_to_stop))
-    give_way()
+        solve_round(found, ledger, Run(search, work, stop_requested))
+    raise_if_stopped()
     return ledger.chunk
 
 

@@ -65,7 +65,7 @@ class Finder(Protocol):
     def rounds_a_pass(self) -> int:
         """After so many rounds they may begin again, with other random numbers."""
 
-    def glance(self, rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, rng: np.random.Generator) -> Round | None:
         """A few starts found at once, where the first round takes long; None elsewhere."""
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:

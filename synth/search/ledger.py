@@ -25,7 +25,7 @@ STALE = 20  # so many rounds on end without a new exact design, too
 # Least squares: the best has come up in so many rounds, or so many rounds are done.
 AGREEING, MOST_ROUNDS = 3, 8
 SAME = 1e-3  # share: errors closer to the best one are the best one
-COPY = 0.1  # of the promise: starts closer at all targets end alike
+COPY = 0.1  # of the expected_error: starts closer at all targets end alike
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
 EXACT_ERROR = 1e-7  # sizes: no error to speak of
 # Designs that a search remembers, or twice as many as are enough, and misses of each kind.
@@ -264,11 +264,11 @@ class Ledger:
         return not self.best and self.solved >= FRUITLESS * min(1.0, self.search.effort)
 
     def _too_far(self, made: Round, start: Proposal) -> bool:
-        promise = 0.0 if isinstance(start, Linkage) else start.promise
-        return promise > max(made.prune * max(self.least, EXACT_ERROR), self.scaled.of_use)
+        expected_error = 0.0 if isinstance(start, Linkage) else start.expected_error
+        return expected_error > max(made.prune * max(self.least, EXACT_ERROR), self.scaled.of_use)
 
     def _known(self, made: Round, start: Start, marks: ComplexArray) -> bool:
-        near = max(COPY * start.promise, 0.0 if made.free else COPY_FLOOR)
+        near = max(COPY * start.expected_error, 0.0 if made.free else COPY_FLOOR)
         return any(
             other.shape == marks.shape and float(np.abs(other - marks).max()) < near for other in self._begun
         )

@@ -20,7 +20,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Journal, Unrecorded
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.recorded_designs import Holds, are_attempts, is_round
-from grashof.synth.search.workers import CRASHED, Work, glance, screen
+from grashof.synth.search.workers import CRASHED, Work, quick_pass, screen
 from grashof.synth.starts.whole_designs import WholeDesigns
 
 _LOG = logging.getLogger(__name__)
@@ -63,7 +63,7 @@ class Run:
 
     search: Search
     work: Work  # where screenings and attempts are made
-    asked_to_stop: Callable[[], bool]  # asked between solves: to be content with what there is
+    stop_requested: Callable[[], bool]  # asked between solves: to be content with what there is
     journal: Journal = field(default_factory=Unrecorded)
     progress: Callable[[Progress], object] | None = None  # called after every batch
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})  # by stage
@@ -78,7 +78,7 @@ class Run:
 
     def ended(self) -> bool:
         """Whether to be content with what there is; nothing is recorded any more then."""
-        if not self.asked_to_stop():
+        if not self.stop_requested():
             return False
         self.journal.close()
         return True
@@ -106,10 +106,10 @@ class Run:
             elif _LOG.isEnabledFor(logging.DEBUG):
                 _LOG.debug("start %d: %s, %s", number, one.outcome, one.status)
 
-    def glanced(self, scaled: ScaledProblem) -> Round | None:
+    def quick_pass(self, scaled: ScaledProblem) -> Round | None:
         """What is found at once, before the first round."""
         seed = self.search.seed
-        return self.step("glance", (seed,), scaled, lambda: glance(scaled, seed), is_round)
+        return self.step("quick_pass", (seed,), scaled, lambda: quick_pass(scaled, seed), is_round)
 
     def onward(self, ledger: Ledger) -> Sequence[Proposal]:
         """Linkages that verified designs lead to, of a finder that proposes whole designs."""

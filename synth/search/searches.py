@@ -24,7 +24,7 @@ from grashof.synth.search.workers import LARGER
 from grashof.synth.theory.stopping import Stopped
 
 _LOG = logging.getLogger(__name__)
-MANY = 64  # starts; of fewer none is spent on a first glance
+MANY = 64  # starts; of fewer none is spent on a first quick pass
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error goes on
 
@@ -137,12 +137,12 @@ def _log(what: str, starts: int, ledger: Ledger) -> None:
 
 def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """What is found at once, where a finder has that and starts are not few, and the rounds."""
-    glance = None
+    quick_pass = None
     if ledger.starts >= MANY:
         with run.timed("screening"), suppress(Stopped):
-            glance = run.glanced(ledger.scaled)
-    if glance is not None:
-        yield glance
+            quick_pass = run.quick_pass(ledger.scaled)
+    if quick_pass is not None:
+        yield quick_pass
     yield from rounds(finder, partial(_timed_round, ledger, run))
 
 

@@ -23,7 +23,7 @@ from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.theory.stopping import Stopped, asked_to_stop, stop_when
+from grashof.synth.theory.stopping import Stopped, stop_requested, stop_when
 
 _LOG = logging.getLogger(__name__)
 # Solves begun for each process before it is known that they are wanted: of least squares, and exact ones, of
@@ -72,9 +72,9 @@ def screen(scaled: ScaledProblem, effort: int, number: int, enough: int, seed: i
     return finder_for(scaled).round(number, enough, rng, LARGER if effort else 1)
 
 
-def glance(scaled: ScaledProblem, seed: int) -> Round | None:
+def quick_pass(scaled: ScaledProblem, seed: int) -> Round | None:
     """Starts that are found at once, where the first round takes long."""
-    return finder_for(scaled).glance(np.random.default_rng(seed))
+    return finder_for(scaled).quick_pass(np.random.default_rng(seed))
 
 
 @lru_cache(maxsize=8)
@@ -221,7 +221,7 @@ class Elsewhere:
         return future.result()
 
     def _look(self) -> None:
-        if asked_to_stop():
+        if stop_requested():
             raise Stopped
 
     def _lost(self, error: BrokenExecutor) -> None:
@@ -265,7 +265,7 @@ class Processes(Elsewhere):
             super().begin_attempts(scaled, starts)
 
     def _look(self) -> None:
-        if asked_to_stop():
+        if stop_requested():
             self._state.value = STOP
 
     def _lost(self, error: BrokenExecutor) -> None:  # what was lost is done again

@@ -62,7 +62,7 @@ class CouplerSearch:
                 f"it must have {'three' if many else 'two'} or more{where}"
             )
 
-    def glance(self, _rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
         """None: a round takes little time."""
         return None
 

@@ -16,7 +16,7 @@ from grashof.synth.quantities.driver_angles import as_they_come
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
-from grashof.synth.theory.stopping import asked_to_stop, leave_off
+from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
 STEPS = 30
 DONE = 1e-8  # share of its error: a linkage that gains less is done
@@ -58,9 +58,9 @@ def fitted_to_all(
     now = _with_angles(target, batch, PLACES * placed)
     model = _linearised(target, now, weight)
     damping, idle = np.full(len(batch), 1e-3), np.zeros(len(batch), dtype=np.int64)
-    leave_off()
+    raise_if_overdue()
     for _ in range(steps):
-        if asked_to_stop():
+        if stop_requested():
             break
         tried = _stepped(target, now, model, damping)
         fresh = _linearised(target, tried, weight)

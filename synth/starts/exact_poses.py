@@ -37,8 +37,8 @@ from grashof.synth.starts.selection import (
     FEW,
     feasible_starts,
     mended_starts,
-    merits,
     relaxed_starts,
+    scores,
     starts_of,
 )
 from grashof.synth.theory.burmester import (
@@ -53,8 +53,8 @@ from grashof.synth.theory.five_poses import five_pose_dyads, five_pose_guides
 
 LINES, CELL = 800, 0.01  # of the traced curves, in sizes
 PAIRS, SAMPLED_PAIRS, NEAR_PAIRS = 1_000_000, 200_000, 150_000  # judged
-GLANCE_LINES, GLANCE_SAMPLES, GLANCE_PAIRS = 100, 400, 10_000  # of a first glance, a twentieth of the time
-GLANCE_STARTS = 2
+QUICK_LINES, QUICK_SAMPLES, QUICK_PAIRS = 100, 400, 10_000  # of a first quick pass, a twentieth of the time
+QUICK_STARTS = 2
 SEARCHES = 3  # rounds of the search for points after that of sampled dyads
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
@@ -101,7 +101,7 @@ class WholePoses:
                 "they must be distinct, or requirements.exact = false"
             )
 
-    def glance(self, _rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
         """None: there is one round, and it takes little time."""
         return None
 
@@ -190,13 +190,13 @@ class FewPoses(DyadPairs):
         """Two to four whole poses, all to be met."""
         return scaled.motion is not None and len(scaled.targets) < 5
 
-    def glance(self, rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, rng: np.random.Generator) -> Round | None:
         """The best of far fewer dyads."""
         if translate(self.motion):
             return None
-        pairs = self.pairs(self.dyads(rng, GLANCE_LINES, GLANCE_SAMPLES), GLANCE_PAIRS)
-        starts = feasible_starts(self.scaled, pairs[pairs.feasible], GLANCE_STARTS)
-        return Round(starts[:GLANCE_STARTS], {}, size=0)
+        pairs = self.pairs(self.dyads(rng, QUICK_LINES, QUICK_SAMPLES), QUICK_PAIRS)
+        starts = feasible_starts(self.scaled, pairs[pairs.feasible], QUICK_STARTS)
+        return Round(starts[:QUICK_STARTS], {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
         """A round of dyads; where these are samples, of two or three poses, the search for points goes on."""
@@ -257,7 +257,7 @@ class ManyPoses(DyadPairs):
             return None
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
-        starts = starts_of(self.scaled, pairs, best_first(merits(self.scaled, pairs)))
+        starts = starts_of(self.scaled, pairs, best_first(scores(self.scaled, pairs)))
         counts = {"feasible finds": int(pairs.feasible.sum()), "exact dyads": len(dyads)}
         return Round([start.under(settled=True) for start in starts], counts)
 

@@ -35,7 +35,7 @@ from grashof.synth.starts.loop_search import (
 )
 from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.thinning import refined, thinned
-from grashof.synth.theory.stopping import leave_off
+from grashof.synth.theory.stopping import raise_if_overdue
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
@@ -44,7 +44,7 @@ FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
 # Times the least error: what promises more is not solved; where the search may shift the ends of the
-# motion, its promise is a little off.
+# motion, its expected error is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible linkage so near to the best one shows that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
@@ -137,7 +137,7 @@ def _other_curves(starts: list[Start], most: int) -> list[Start]:
     for start in starts:
         order = np.argsort(start.visit)
         p = start.track[2][order]
-        near = SAME_CURVE * max(start.promise, FOUND)
+        near = SAME_CURVE * max(start.expected_error, FOUND)
         if len(chosen) < most and all(np.abs(p - other).max() > near for other in curves):
             chosen.append(start)
             curves.append(p)
@@ -159,7 +159,9 @@ def _limited_round(
     if _ends_bind(scaled):  # the search may shift the ends of the motion, the programme may not
         early, error = _ranked(scaled, before_limits)
         some = _some(rng, np.arange(len(error)), before)
-        chosen += [replace(_start(scaled, early, error, k), promise=0.0).under(settled=False) for k in some]
+        chosen += [
+            replace(_start(scaled, early, error, k), expected_error=0.0).under(settled=False) for k in some
+        ]
         prune = NEAR_BEST_SHIFTED
     return Round(chosen, {"feasible finds": int(linkages.feasible.sum())}, size, prune)
 
@@ -174,7 +176,7 @@ def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tupl
             model = within_limits(some, weight)
             if number == len(STAGES) - 2:
                 batch = joined(batch, with_places(some, best))
-            leave_off()
+            raise_if_overdue()
             error, _, _ = model(batch)
             batch = _best_distinct(some, batch, error, size * keep, drawn=number == 0)
             batch, error = improve(model, batch, steps, 0.0)
@@ -215,9 +217,9 @@ def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
     sound = np.flatnonzero(np.isfinite(error) & np.isfinite(placed.error))
     linkages = judged(scaled, target, placed[sound], batch.direction[sound])
     unlimited = [GROUPS.index(name) for name in UNLIMITED]
-    merit = np.sqrt(error[sound] / len(scaled.targets)) + linkages.violations[:, unlimited].sum(axis=1)
-    order = np.argsort(merit, kind="stable")
-    return linkages[order], merit[order]
+    score = np.sqrt(error[sound] / len(scaled.targets)) + linkages.violations[:, unlimited].sum(axis=1)
+    order = np.argsort(score, kind="stable")
+    return linkages[order], score[order]
 
 
 def _best_distinct(
@@ -250,7 +252,7 @@ def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: 
     start = Start.of_screened(linkages, index, scaled.objective)
     fitted = _all_fitted(search_targets(scaled)) and not scaled.constraints
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
-    return replace(start, promise=float(error[index])).under(settled=met or fitted)
+    return replace(start, expected_error=float(error[index])).under(settled=met or fitted)
 
 
 def _all_fitted(target: SearchTargets) -> bool:

@@ -28,7 +28,7 @@ from grashof.synth.starts.closed_loop import (
     by_theta3_of,
 )
 from grashof.synth.starts.limit_residuals import Placement, oversteps
-from grashof.synth.theory.stopping import asked_to_stop, leave_off
+from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
 # So many steps on end that take less than this share of its error away end the work on a linkage.
 LOOK, STALL = 5, 1e-3
@@ -133,7 +133,7 @@ def improve(
     At most `steps`; stops as soon as `until` linkages have no greater error than `tolerance`, in sizes
     squared. The model is what is made small: see `fitting` and `within_limits`.
     """
-    leave_off()
+    raise_if_overdue()
     result = replace(batch, unknowns=batch.unknowns.copy())
     error, residual, jacobian = model(batch)
     damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()
@@ -148,7 +148,7 @@ def improve(
         jacobian = np.where(better[:, None, None], new_jacobian, jacobian)
         damping = np.clip(np.where(better, damping * 0.3, damping * 5), 1e-14, 1e6)
         result.unknowns[rows], least[rows] = batch.unknowns, error
-        if np.count_nonzero(least <= tolerance) >= until or asked_to_stop():
+        if np.count_nonzero(least <= tolerance) >= until or stop_requested():
             break
         if number % LOOK == 0:
             untried = (error == marked) & (damping < HEAVY)  # all too far: shorter steps may do

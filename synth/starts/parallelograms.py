@@ -35,7 +35,7 @@ from grashof.synth.quantities.screening import (
     violations_apart,
 )
 from grashof.synth.starts.sampled_dyads import arms, ground_pivots
-from grashof.synth.starts.selection import feasible_starts, merits
+from grashof.synth.starts.selection import feasible_starts, scores
 from grashof.synth.theory.distinct import pick_apart
 
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from change points
@@ -46,7 +46,7 @@ NEARBY = 5.0  # sizes: no farther away than limits demand
 WIDTH, SHRINK = 0.3, 0.6  # of their variation, in sizes and shares, less and less
 MOST, SPACING = 3000, 0.25  # among which the best are chosen, and how much they differ
 FARTHEST = 100.0  # sizes
-FAULTY = 1e6  # taken off the merit of what violates a requirement
+FAULTY = 1e6  # taken off the score of what violates a requirement
 ROUNDING = 1e-10  # sizes, rad
 SHORTEST = 1e-6  # sizes, of a coupler
 
@@ -277,9 +277,9 @@ def _distinct_best(scaled: ScaledProblem, drawn: _Drawn, found: Screened) -> tup
 
 
 def _worth(scaled: ScaledProblem, found: Screened) -> FloatArray:
-    """Merits of linkages without violations; below all of them, those with some."""
+    """Scores of linkages without violations; below all of them, those with some."""
     lacking = found.violations.sum(axis=1)
-    worth: FloatArray = np.where(lacking > 0, -FAULTY - lacking, merits(scaled, found))
+    worth: FloatArray = np.where(lacking > 0, -FAULTY - lacking, scores(scaled, found))
     return np.where(_short(found), -np.inf, np.nan_to_num(worth, nan=-np.inf))
 
 

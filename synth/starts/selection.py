@@ -7,12 +7,12 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.programme.start import Start
-from grashof.synth.programme.user_functions import own_merit
+from grashof.synth.programme.user_functions import own_score
 from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Many, Screened
 from grashof.synth.theory.distinct import best_first, pick_apart, signature
-from grashof.synth.theory.stopping import leave_off
+from grashof.synth.theory.stopping import raise_if_overdue
 
 POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
@@ -33,25 +33,25 @@ def feasible_starts(
     """
     if not len(linkages):
         return []
-    every = merits(scaled, linkages)
+    every = scores(scaled, linkages)
     pool = _pool(every)
-    linkages, merit = linkages[pool], every[pool]
+    linkages, score = linkages[pool], every[pool]
     signatures = _signatures(scaled, linkages)
     spacing = PEAK_SPACING if scaled.exact else MISS_SPACING
-    free = starts_of(scaled, linkages, pick_apart(signatures, merit, spacing, peaks, leave_off))
+    free = starts_of(scaled, linkages, pick_apart(signatures, score, spacing, peaks, raise_if_overdue))
     if not scaled.exact:  # what counts is the error, and a neighbourhood would only keep it large
         return free
-    return free + _spread(scaled, linkages, merit, signatures, enough, closer)
+    return free + _spread(scaled, linkages, score, signatures, enough, closer)
 
 
 def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> list[Start]:
     """Starts from near misses: the nearest first, then spread ones to be mended in place."""
     short = linkages[~linkages.feasible]
     shortfall = short.violations.sum(axis=1)
-    merit = -shortfall - short.error
+    score = -shortfall - short.error
     if not scaled.exact:
-        return _distinct_starts(scaled, short, merit, PEAKS)
-    chosen = _distinct_starts(scaled, short, merit, MISSES)
+        return _distinct_starts(scaled, short, score, PEAKS)
+    chosen = _distinct_starts(scaled, short, score, MISSES)
     nearly = feasible_starts(scaled, short[shortfall < NEARLY], enough)
     return chosen + [start.under(radius=np.inf, stay=True) for start in nearly]
 
@@ -90,17 +90,17 @@ def starts_of(scaled: ScaledProblem, linkages: Screened, picked: IntArray) -> li
 
 
 def _spread(
-    scaled: ScaledProblem, linkages: Screened, merit: FloatArray, signatures: FloatArray, enough: int,
+    scaled: ScaledProblem, linkages: Screened, score: FloatArray, signatures: FloatArray, enough: int,
     closer: float,
 ) -> list[Start]:  # fmt: skip
     """Linkages as far apart as can be, or closer, with neighbourhoods that do not overlap."""
     wanted = enough + (2 * enough + 4) // 5
     picked = np.zeros(0, dtype=np.int64)
     for spacing in SPACINGS:
-        picked = pick_apart(signatures, merit, spacing, wanted, leave_off)
+        picked = pick_apart(signatures, score, spacing, wanted, raise_if_overdue)
         if len(picked) == wanted:
             if closer < 1:
-                picked = pick_apart(signatures, merit, closer * spacing, wanted, leave_off)
+                picked = pick_apart(signatures, score, closer * spacing, wanted, raise_if_overdue)
             break
     points = linkages.points[picked]
     coordinates = np.concatenate([points.real, points.imag], axis=1)
@@ -124,15 +124,15 @@ def to_nearest(coordinates: FloatArray) -> FloatArray:
     return nearest
 
 
-def _distinct_starts(scaled: ScaledProblem, linkages: Screened, merit: FloatArray, most: int) -> list[Start]:
-    best = _pool(merit)
-    apart = pick_apart(_signatures(scaled, linkages[best]), merit[best], MISS_SPACING, most, leave_off)
+def _distinct_starts(scaled: ScaledProblem, linkages: Screened, score: FloatArray, most: int) -> list[Start]:
+    best = _pool(score)
+    apart = pick_apart(_signatures(scaled, linkages[best]), score[best], MISS_SPACING, most, raise_if_overdue)
     return starts_of(scaled, linkages, best[apart])
 
 
-def _pool(merit: FloatArray) -> IntArray:
+def _pool(score: FloatArray) -> IntArray:
     """At most `POOL` indices: the best half of them, and evenly many of the rest, best first."""
-    order = best_first(merit)
+    order = best_first(score)
     if len(order) <= POOL:
         return order
     top, rest = order[: POOL // 2], order[POOL // 2 :]
@@ -144,12 +144,12 @@ def _signatures(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     return signature(scaled.linkages(linkages.points, linkages.assembly), origin)
 
 
-def merits(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+def scores(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """Score of each linkage; its size is that of a box around what is known of it at the first target."""
     if not scaled.exact:
         return -linkages.error
     if scaled.own_objective is not None:
-        return own_merit(scaled, linkages, scaled.own_objective)
+        return own_score(scaled, linkages, scaled.own_objective)
     score = np.zeros(len(linkages))
     for key, weight in scaled.problem.objective.weights:
         score += weight * _worth(scaled, linkages, key)

@@ -9,7 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, shares_of_turn
 from grashof.synth.starts.loop_search import project
-from grashof.synth.theory.stopping import leave_off
+from grashof.synth.theory.stopping import raise_if_overdue
 
 SMALLEST = 1e-6  # share of a turn: gaps get no smaller
 AROUND = 180  # driver angles at which each of many targets in any order is looked for
@@ -75,7 +75,7 @@ def _each_nearest(target: SearchTargets, index: IntArray, batch: Batch, places: 
     turned = np.angle(loop.e3) + to_body[:, None]
     nearest = np.empty((len(batch), len(target.points)), dtype=np.int64)
     for row in range(len(batch)):  # all at once would take much memory
-        leave_off()
+        raise_if_overdue()
         miss = _missed(target, p[row], turned[row])
         nearest[row] = np.argmin(np.where(open_ones[row], np.inf, miss), axis=1)
     return replace(

@@ -25,7 +25,7 @@ class WholeDesigns(ABC):
     cognates: ClassVar[bool] = False
     patience: ClassVar[float] = np.inf
 
-    def glance(self, _rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
         """None: a round takes little time."""
         return None
 

@@ -41,7 +41,7 @@ def mirrored(kind: Mechanism) -> tuple[int, ...]:
     return (6, 8) if kind.slides else (8,)
 
 
-EQUAL = 1e-9  # share of merits by which those differ at most that tie
+EQUAL = 1e-9  # share of scores by which those differ at most that tie
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:
@@ -57,17 +57,17 @@ def apart(one: FloatArray, others: FloatArray) -> FloatArray:
 
 def pick_apart(
     signatures: FloatArray,
-    merit: FloatArray,
+    score: FloatArray,
     least: float,
     most: int,
     between: Callable[[], None] = lambda: None,
 ) -> IntArray:
     """Indices of the `most` best entries that are pairwise more than `least` apart (see `apart`), best first.
 
-    Of `signatures` (n, 9), with greater `merit` (n,) better. `between` is called before each is picked; it
-    may raise, as `leave_off` does.
+    Of `signatures` (n, 9), with greater `score` (n,) better. `between` is called before each is picked; it
+    may raise, as `raise_if_overdue` does.
     """
-    left = best_first(merit)
+    left = best_first(score)
     picked: list[int] = []
     largest = np.abs(signatures).max(axis=1)
     while left.size and len(picked) < most:
@@ -79,18 +79,18 @@ def pick_apart(
     return np.array(picked, dtype=np.int64)
 
 
-def best_first(merit: FloatArray) -> IntArray:
-    """Indices by merit, the greatest first; what differs by rounding alone stays in its order, shape (n,).
+def best_first(score: FloatArray) -> IntArray:
+    """Indices by score, the greatest first; what differs by rounding alone stays in its order, shape (n,).
 
-    Merits tie that are no further apart than `EQUAL` of themselves, one after the other.
+    Scores tie that are no further apart than `EQUAL` of themselves, one after the other.
 
     >>> best_first(np.array([0.5, 1.0 - 1e-12, 1.0, 2.0])).tolist()
     [3, 1, 2, 0]
     """
-    order = np.argsort(-merit, kind="stable")
-    value = merit[order]
+    order = np.argsort(-score, kind="stable")
+    value = score[order]
     with np.errstate(invalid="ignore"):  # differences of infinite ones, and what is not a number
         step = ~(np.abs(np.diff(value)) <= EQUAL * np.abs(value[1:])) & (value[1:] != value[:-1])
-    rank = np.empty(len(merit), dtype=np.int64)
+    rank = np.empty(len(score), dtype=np.int64)
     rank[order] = np.concatenate([[0], np.cumsum(step)])[: len(order)]
     return np.argsort(rank, kind="stable")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
-from grashof.synth.theory.stopping import give_way
+from grashof.synth.theory.stopping import raise_if_stopped
 
 # Solutions (n, K), parameters (n, M) and their change (n, M) give the residual (n, K), its
 # derivative by the solutions (n, K, K) and its change along the change of the parameters (n, K).
@@ -46,7 +46,7 @@ def follow(
     for _ in range(steps):
         if not len(active):
             break
-        give_way()
+        raise_if_stopped()
         here, length = done[active], np.minimum(step[active], 1 - done[active])
         with np.errstate(all="ignore"):
             tried, correction = _stepped(system, solutions[active], here, length, start, way)

@@ -50,19 +50,19 @@ def stop_when(asked: Callable[[], bool]) -> None:
     _ASKED.set(_Question(asked))
 
 
-def who_asks() -> Callable[[], bool]:
-    """What is asked here and now; inside `stopping`, `asked_to_stop` asks something else."""
+def stop_request() -> Callable[[], bool]:
+    """What is asked here and now; inside `stopping`, `stop_requested` asks something else."""
     return _ASKED.get(_NOBODY).asked
 
 
-def asked_to_stop() -> bool:
+def stop_requested() -> bool:
     """Whether to be content with what there is."""
     return _ASKED.get(_NOBODY).answered()
 
 
-def give_way() -> None:
+def raise_if_stopped() -> None:
     """Raise `Stopped` where asked to stop; for what is of no use unless it is done."""
-    if asked_to_stop():
+    if stop_requested():
         raise Stopped
 
 
@@ -74,7 +74,7 @@ def overdue() -> bool:
     return perf_counter() - question.since > GRACE
 
 
-def leave_off() -> None:
+def raise_if_overdue() -> None:
     """Raise `Stopped` where that is overdue; for what soon comes to something."""
     if overdue():
         raise Stopped

@@ -118,7 +118,7 @@ def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
     assert part.ended == "the search ended after 1 of 200 solves: it was stopped"
 
 
-@pytest.mark.parametrize("method", ["glance", "round", "onward"])
+@pytest.mark.parametrize("method", ["quick_pass", "round", "onward"])
 def test_a_search_for_functions_may_be_stopped_anywhere(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """At once, without a second's grace: what was found until then is listed, and no more is lost."""
     monkeypatch.setattr(import_module("grashof.synth.theory.stopping"), "GRACE", 0.0)
@@ -133,4 +133,4 @@ def test_a_search_for_functions_may_be_stopped_anywhere(method: str, monkeypatch
     part = synthesize(Problem(task=task), stop=lambda: bool(begun))
     assert not part.complete
     assert part.ended.endswith("it was stopped") or not part.candidates
-    assert (len(part) > 0) is (method != "glance")
+    assert (len(part) > 0) is (method != "quick_pass")

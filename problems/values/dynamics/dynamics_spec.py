@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.checks import bounded, from_zero, numbers, positive_number
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,

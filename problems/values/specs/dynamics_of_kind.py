@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from grashof.problems.values.dynamics.acting import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
 

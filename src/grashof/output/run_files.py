@@ -26,7 +26,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
-from grashof.synth.search.story import Ending, now
+from grashof.synth.search.history import Ending, now
 from grashof.wording.enclosure import enclosure_record
 
 if TYPE_CHECKING:
@@ -105,8 +105,8 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = listed_files(folder, RECORD, others)
-    story = _story(result, left_out(result, drawings, files), stop)
-    write_json(folder / RECORD, _record(result, settings, story, files))
+    history = _history(result, left_out(result, drawings, files), stop)
+    write_json(folder / RECORD, _record(result, settings, history, files))
     return files
 
 
@@ -189,14 +189,14 @@ def versions_of(packages: Iterable[str]) -> dict[str, str]:
 _ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}
 
 
-def _story(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:
+def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:
     """What happened to the run until now; None of a list that no search made."""
-    if result.story is None:
+    if result.history is None:
         return None
-    ending = _ENDINGS.get(stop.code, result.story.ending)
+    ending = _ENDINGS.get(stop.code, result.history.ending)
     why = ending if stop() else "the run ended before they were drawn"
     told = replace(
-        result.story,
+        result.history,
         ended=now(),
         ending=ending,
         drawings_left_out=undrawn,
@@ -207,14 +207,14 @@ def _story(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] |
 
 
 def _record(
-    result: Result, settings: dict[str, Any], story: dict[str, Any] | None, files: list[str]
+    result: Result, settings: dict[str, Any], history: dict[str, Any] | None, files: list[str]
 ) -> dict[str, Any]:
     errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
     guards = {name: result.tally.statuses[name] for name in _GUARDS}
     return {
         "problem": result.problem.name,
         **_about(settings),
-        "run": story,
+        "run": history,
         "complete": result.complete,
         "ended": result.ended,
         **{name: None if np.isnan(error) else error for name, error in errors.items()},

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from grashof.problems import SolverError
 from grashof.sweep.task import solve_task
 from grashof.synth.search.workers import OVER, begun, new_state, processes
-from grashof.synth.theory.stopping import who_asks
+from grashof.synth.theory.stopping import stop_request
 
 # Key, name and text of a problem.
 Task: TypeAlias = tuple[str, str, str]
@@ -86,4 +86,4 @@ def _elsewhere(
 
 
 def _solve_until_stopped(name: str, text: str, options: Mapping[str, Any]) -> dict[str, Any] | None:
-    return solve_task(name, text, options, who_asks())
+    return solve_task(name, text, options, stop_request())

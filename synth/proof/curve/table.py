@@ -14,7 +14,7 @@ from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
 from grashof.synth.proof.curve.pieces import SLENDER, WIDER, Tubes, contracted
 from grashof.synth.proof.curve.trail import ROOT, Trail
 from grashof.synth.proof.forms.forms import Form, Span
-from grashof.synth.theory.stopping import give_way
+from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 32  # along each side of the disc that is covered
 COARSE = 0.5  # length of first pieces, as a share of what is near
@@ -122,7 +122,7 @@ class Table:
         places: list[IntArray] = []
         count = 0
         while len(active):
-            give_way()
+            raise_if_stopped()
             count += len(active)
             if count > MOST_RECTANGLES:
                 raise TooMany("the curve takes too many pieces to be covered")

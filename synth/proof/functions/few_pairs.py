@@ -30,7 +30,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.functions.four_bar import FourBars
-from grashof.synth.theory.stopping import Stopped, give_way
+from grashof.synth.theory.stopping import Stopped, raise_if_stopped
 
 THREE, FOUR = 3, 4
 # Of the budget of pairs: a piece takes longer, and most are needed where a centre stays open.
@@ -207,7 +207,7 @@ class _Search:
         which, level = np.arange(len(couplers)), 0
         self.begun = max(self.begun, len(which))
         while len(which):
-            give_way()
+            raise_if_stopped()
             self.count += len(which)
             if self.count > self.most:
                 raise TooMany(f"the budget of {self.most} pieces ended")

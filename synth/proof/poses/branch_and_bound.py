@@ -14,7 +14,7 @@ from grashof.synth.proof.claims.bounds import Bounds, logged
 from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.table import NOTHING, Table
 from grashof.synth.proof.poses.pairs import Pairs, bounded
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import stop_requested
 
 AT_ONCE = 8192  # pairs bounded together
 MOST_LEFT = 1_000_000  # pairs kept in memory
@@ -85,7 +85,7 @@ class Bracket:
         found = [Pairs(nothing, nothing, np.zeros(0))]
         for one, other in blocks:
             self.over_budget = self.pairs + len(one) > self.most_pairs
-            if self.over_budget or asked_to_stop():
+            if self.over_budget or stop_requested():
                 return None
             self.pairs += len(one)
             found.append(bound(one, other, self.threshold))

@@ -8,7 +8,7 @@ from grashof.synth.programme.start import Round
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.selection import feasible_starts, merits, starts_of
+from grashof.synth.starts.selection import feasible_starts, scores, starts_of
 from grashof.synth.theory.distinct import best_first
 
 MOST_REGIONS = 20  # whose best linkages are begun from
@@ -20,7 +20,7 @@ def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
     """Starts from the best linkage of each region, then as from any feasible linkages."""
     linkages = fully_screened(scaled, atlas.linkages)
     rows = np.flatnonzero(linkages.feasible)
-    order = rows[best_first(merits(scaled, linkages[rows]))]
+    order = rows[best_first(scores(scaled, linkages[rows]))]
     _, first = np.unique(atlas.region[order], return_index=True)
     firsts = order[np.sort(first)][:MOST_REGIONS]
     good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]

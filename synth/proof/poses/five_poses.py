@@ -20,7 +20,7 @@ from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.five_poses import five_pose_dyads
-from grashof.synth.theory.stopping import Stopped, give_way
+from grashof.synth.theory.stopping import Stopped, raise_if_stopped
 
 FIVE = 5
 STOPPED = "it was stopped"
@@ -96,7 +96,7 @@ def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
     active, count = squares(asked), 0
     last = complex(motion.rotation[-1]), complex(motion.shift[-1])
     while len(active):
-        give_way()
+        raise_if_stopped()
         count += len(active)
         if count > MOST_RECTANGLES:
             return _counted(asked, known, complete=False, rectangles=count)

@@ -13,7 +13,7 @@ from grashof.synth.proof.curve.table import NOTHING, OPEN, TooMany
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.charts import GROUND, MOVING, Charts, Tiles
 from grashof.synth.theory.burmester import Displacements
-from grashof.synth.theory.stopping import give_way
+from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 8  # along the longer side of a rectangle that is covered
 COARSE = 0.5  # length of first tiles, as a share of what is near
@@ -155,7 +155,7 @@ def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
     """
     active, count = side.tiles, 0
     while len(active):
-        give_way()
+        raise_if_stopped()
         count += len(active)
         if count > most:
             return None
@@ -186,7 +186,7 @@ class Tiling:
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:
-            give_way()
+            raise_if_stopped()
             ready = done.resolved
             done = Sites.joined(done[ready], Sites.of(side, done[~ready].halves)[0])
         return cls(side, done)

@@ -24,7 +24,7 @@ from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.cranks import Cranks
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
-from grashof.synth.theory.stopping import Stopped, asked_to_stop
+from grashof.synth.theory.stopping import Stopped, stop_requested
 
 MOST_LEVELS = 60  # pieces are as small as rounding then
 MOST, JUDGED = 4000, 4  # pieces looked at of each level, and how many of them by the judge, twice
@@ -145,7 +145,7 @@ class _Search:
         pieces = np.flatnonzero(table.pieces.driver)
         self.begun = len(pieces)
         while True:
-            if self.bounded + len(pieces) > self.most or asked_to_stop():
+            if self.bounded + len(pieces) > self.most or stop_requested():
                 over = self.bounded + len(pieces) > self.most
                 self.why = f"the budget of {self.most} pieces ended" if over else STOPPED
                 return

@@ -78,12 +78,12 @@ class Functions(WholeDesigns):
         """One, and one for each angle."""
         return 1 + len(self.levels)
 
-    def glance(self, _rng: np.random.Generator) -> Round | None:
+    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
         """A design of small error from few starts."""
         if self.aims.exact or self.aims.obstacle:
             return None
         search = Optima.each(self.aims)[0]
-        found = [(optimum.made, search.driver) for optimum in search.glance()]
+        found = [(optimum.made, search.driver) for optimum in search.quick_pass()]
         return Round(self._linkages(found), {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:

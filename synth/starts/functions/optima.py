@@ -16,12 +16,16 @@ from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import Aim, Optimum, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import crank_starts, function_starts
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import stop_requested
 
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
-FIRST, SPARSE, GLANCED = 3, 16, 12  # of a glance: starts tried, one of so many fitted, in so many steps
+FIRST, SPARSE, QUICK_STEPS = (
+    3,
+    16,
+    12,
+)  # of a quick pass: starts tried, one of so many fitted, in so many steps
 BEST = 2  # of the ends at a transmission angle that a choice is offered at
 HOPELESS = 50.0  # times the least error: no further
 CELL = 0.04  # of optima: closer ones are alike
@@ -88,12 +92,12 @@ class Optima:
         for k in _apart(good, np.array([one.error for one in good])):
             yield good[k]
 
-    def glance(self) -> Iterator[Optimum]:
+    def quick_pass(self) -> Iterator[Optimum]:
         """One that is good, from few starts: most often there is one, before the search has begun."""
         rng, aim = np.random.default_rng(0), self.aim()
         starts = function_starts(self.aims.kind, aim.wanted, rng, self.first)[::SPARSE]
         made, square = fitted(
-            aim.wanted, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=GLANCED
+            aim.wanted, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
         )
         best = made[best_apart(made, square, CELL)]
         if not len(best):
@@ -114,7 +118,7 @@ class Optima:
         for _ in range(SETTLED):
             before, aim = end.error, self.aim()
             end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.made)
-            if abs(end.error - before) <= MET * before or asked_to_stop():
+            if abs(end.error - before) <= MET * before or stop_requested():
                 break
         return end
 

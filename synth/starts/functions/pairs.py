@@ -12,7 +12,7 @@ from grashof.synth.theory.functions.fit import Wanted, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import function_starts
-from grashof.synth.theory.stopping import asked_to_stop
+from grashof.synth.theory.stopping import stop_requested
 
 GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
@@ -34,18 +34,18 @@ def exact_functions(
     found: list[tuple[FloatArray, Generators, int]] = []
     for sense, driver, first in aims.ways():
         made = _through(aims, sense, driver, first, rng, effort)
-        if len(made) and not asked_to_stop():
-            found.append((promise(aims, made, sense), made, driver))
+        if len(made) and not stop_requested():
+            found.append((expected_score(aims, made, sense), made, driver))
     if not found:
         return []
-    merit = np.concatenate([each for each, _, _ in found])
+    score = np.concatenate([each for each, _, _ in found])
     drivers = np.concatenate([np.full(len(made), driver) for _, made, driver in found])
     made = aims.kind.joined([each for _, each, _ in found])
     cell = NEAR
-    best = best_apart(made, -merit, cell)
+    best = best_apart(made, -score, cell)
     while len(best) > 4 * most:  # a curve or surface of designs: farther apart
         cell *= 1.5
-        best = best_apart(made, -merit, cell)
+        best = best_apart(made, -score, cell)
     return [(made[k : k + 1], int(drivers[k])) for k in best[:most]]
 
 
@@ -151,7 +151,7 @@ class _Pairs:
 
     def best(self, pool: Generators) -> Generators:
         """A few of the most promising that are distinct."""
-        return pool[best_apart(pool, -promise(self.aims, pool, self.sense), NEAR)[:ZOOMED]]
+        return pool[best_apart(pool, -expected_score(self.aims, pool, self.sense), NEAR)[:ZOOMED]]
 
     def kept(self, made: Generators) -> Generators:
         """Those within the limits that meet every pair on one branch."""
@@ -175,7 +175,7 @@ def _output_at(made: Generators, before: float, turned: float) -> FloatArray:
     return rotated
 
 
-def promise(aims: FunctionAims, made: Generators, sense: int) -> FloatArray:
+def expected_score(aims: FunctionAims, made: Generators, sense: int) -> FloatArray:
     """What the objective makes of generators, as far as it is known here, shape (M,); greater is better."""
     score = np.zeros(len(made))
     for goal, weight in aims.problem.goals:

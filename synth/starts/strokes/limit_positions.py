@@ -185,8 +185,8 @@ class LimitPositions(WholeDesigns):
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
         front = unbeaten(angle, size)
-        merit = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
-        picked = apart(np.concatenate(lengths), merit, most)
+        score = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
+        picked = apart(np.concatenate(lengths), score, most)
         number = np.concatenate([np.full(len(found.share), k) for k, (found, _) in enumerate(groups)])
         begin = np.concatenate([[0], np.cumsum([len(found.share) for found, _ in groups])])
         starts = []

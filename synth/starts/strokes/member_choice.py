@@ -32,12 +32,12 @@ def unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
     return best
 
 
-def apart(lengths: FloatArray, merit: FloatArray, most: int) -> IntArray:
+def apart(lengths: FloatArray, score: FloatArray, most: int) -> IntArray:
     """Indices of at most so many of some lengths (n, 4), as far apart as leaves that many, best first."""
-    worth = np.flatnonzero(np.isfinite(merit))  # without those of merit -inf
+    worth = np.flatnonzero(np.isfinite(score))  # without those of score -inf
     signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
     for least in (0.1, 0.05, 0.025, DISTINCT):
-        picked = pick_apart(signatures, merit[worth], least, most)
+        picked = pick_apart(signatures, score[worth], least, most)
         if len(picked) >= most:
             break
     return worth[picked]

@@ -11,7 +11,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.loop.dual import Dual
 from grashof.synth.theory.functions.output import Generators
-from grashof.synth.theory.stopping import leave_off
+from grashof.synth.theory.stopping import raise_if_overdue
 
 Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
 
@@ -71,7 +71,7 @@ def fitted(
     damping = np.full(len(made), 1e-3)
     done: BoolArray = np.zeros(len(made), dtype=bool)
     for step in range(steps):
-        leave_off()
+        raise_if_overdue()
         made, square, damping, done = _fewer(step, made, square, damping, done)
         active = np.flatnonzero(~done)
         if not active.size:

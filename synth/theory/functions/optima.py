@@ -9,7 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.theory.functions.fit import Limits, Wanted
 from grashof.synth.theory.functions.output import Generators
-from grashof.synth.theory.stopping import leave_off
+from grashof.synth.theory.stopping import raise_if_overdue
 
 STEPS = 60
 CORRECTIONS = 2  # of a step
@@ -62,7 +62,7 @@ class Aim:
             short = max(short, float(np.abs(self.errors(made)).max()) - self.band)
         return short
 
-    def merit(self, made: Generators) -> float:
+    def score(self, made: Generators) -> float:
         """What falls from step to step; infinite where the loop is open."""
         value = self.error(made) + PRICE * self.missed(made)
         return value if np.isfinite(value) else np.inf
@@ -75,27 +75,27 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     linear programme for the greatest error or linear least squares under inequalities for the mean square
     (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
     """
-    made, merit, radius = start, aim.merit(start), _FIRST
-    if not np.isfinite(merit):
+    made, score, radius = start, aim.score(start), _FIRST
+    if not np.isfinite(score):
         return Optimum(made, np.inf, np.inf, 0)
     linear = _Linear.of(aim, made)
     flat = 0
     taken = 0
     while taken < steps and linear.finite:
-        leave_off()
+        raise_if_overdue()
         taken += 1
         moved, hoped = linear.step(radius)
         there, fresh = linear.best_along(made, moved)
-        gain, promise = merit - fresh, merit - hoped
+        gain, expected_gain = score - fresh, score - hoped
         if gain > 0:
-            made, merit = there, fresh
+            made, score = there, fresh
             linear = _Linear.of(aim, made)
-        share = gain / promise if promise > 0 else 0.0
+        share = gain / expected_gain if expected_gain > 0 else 0.0
         if share > 0.7:
             radius = min(_MOST, max(radius, 2.5 * float(np.abs(moved).max())))
         elif share < 0.2:
             radius = 0.3 * min(radius, float(np.abs(moved).max()) or radius)
-        flat = flat + 1 if abs(promise) <= 1e-7 * merit + 1e-16 else 0
+        flat = flat + 1 if abs(expected_gain) <= 1e-7 * score + 1e-16 else 0
         if radius < _LEAST or flat > 1:
             break
     return Optimum(made, aim.error(made), max(0.0, aim.missed(made)), taken)
@@ -125,7 +125,7 @@ class _Linear:
         return bool(np.isfinite(self.slopes).all())
 
     def step(self, radius: float) -> tuple[FloatArray, float]:
-        """The best step, shape (K,), and the merit that it promises."""
+        """The best step, shape (K,), and the score that it promises."""
         moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
         off = self.errors + self.slopes @ moved
         short = max(0.0, float(-(self.limits + self.by_shape @ moved).min(initial=0.0)))
@@ -140,13 +140,13 @@ class _Linear:
         return moved, float(error) + PRICE * short
 
     def best_along(self, made: Generators, moved: FloatArray) -> tuple[Generators, float]:
-        """Where a step leads, or that step brought back to the errors that it promised, and the merit there.
+        """Where a step leads, or that step brought back to the errors that it promised, and the score there.
 
         The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
         steps along them would have to be tiny.
         """
         there = made.changed(made.shape + moved)
-        best = there, self.aim.merit(there)
+        best = there, self.aim.score(there)
         centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
         promised = self.errors + self.slopes @ moved
         scale = float(np.einsum("nk,nk->", centred, centred))
@@ -157,10 +157,10 @@ class _Linear:
                 break
             back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
             there = made.changed(there.shape - back)
-            merit = self.aim.merit(there)
-            if not merit < best[1]:
+            score = self.aim.score(there)
+            if not score < best[1]:
                 break
-            best = there, merit
+            best = there, score
         return best
 
     def _greatest(self, radius: float) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,

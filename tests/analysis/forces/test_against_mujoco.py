@@ -20,7 +20,12 @@ from grashof.analysis import (
 )
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.acting import CounterweightSpec, Place, SpringSpec, TorsionSpringSpec
+from grashof.problems.values.dynamics.load_specs import (
+    CounterweightSpec,
+    Place,
+    SpringSpec,
+    TorsionSpringSpec,
+)
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 

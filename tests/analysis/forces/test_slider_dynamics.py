@@ -34,7 +34,7 @@ from grashof.analysis.forces.joints import joint_motion, slides_of
 from grashof.analysis.forces.loads import wrenches
 from grashof.analysis.numerics import collocation
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, ProblemError, SliderCrank
-from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
+from grashof.problems.values.dynamics.load_specs import FrictionSpec, LoadSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 TURN = 2 * np.pi

@@ -18,7 +18,7 @@ from grashof.analysis import (
 from grashof.analysis.forces.curve_through import curve_through
 from grashof.analysis.forces.loads import wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,

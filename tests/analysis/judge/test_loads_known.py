@@ -11,7 +11,7 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.planted import planted_path
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, PathTask, Problem
-from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.load_specs import LoadSpec
 
 SLIDING = "slider-crank", "inverted-slider-crank"
 

@@ -39,7 +39,7 @@ from grashof.problems import (
     load,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
+from grashof.problems.values.dynamics.load_specs import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")

@@ -14,7 +14,7 @@ from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.problems import DynamicsSpec, Linkage, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 
 HEAVY = DynamicsSpec(speed_rpm=40, mass_per_length=2.0, payload=3.0, gravity=(0.0, -9.81))

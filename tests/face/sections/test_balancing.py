@@ -20,7 +20,7 @@ from grashof.problems import (
     SliderCrank,
     load_linkage_spec,
 )
-from grashof.problems.values.dynamics.acting import CounterweightSpec
+from grashof.problems.values.dynamics.load_specs import CounterweightSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.study import LinkageStudy
 from grashof.survey import Asked, Section, report_on

@@ -5,8 +5,8 @@ import pytest
 
 from grashof.analysis import inverse_dynamics, stated_loads, stated_masses
 from grashof.problems import FourBar, LinkageSpec
-from grashof.problems.values.dynamics.acting import FrictionSpec, LoadSpec
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.load_specs import FrictionSpec, LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.sections.loads.energies import energy_section
 from grashof.study.study import Asked, LinkageStudy

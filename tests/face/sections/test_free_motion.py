@@ -15,7 +15,7 @@ from section_facts import facts, in_both_units
 
 from grashof.analysis import balance_force, stated_masses
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.dynamics.acting import CounterweightSpec, FrictionSpec, LoadSpec
+from grashof.problems.values.dynamics.load_specs import CounterweightSpec, FrictionSpec, LoadSpec
 from grashof.survey import Section
 
 Sections = Callable[..., dict[str, Section]]

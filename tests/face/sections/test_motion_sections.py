@@ -11,7 +11,7 @@ from section_facts import facts, in_both_units
 
 from grashof.analysis import dwell, mechanical_energy, solve_kinematics
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.dynamics.acting import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
+from grashof.problems.values.dynamics.load_specs import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.study import LinkageStudy
 from grashof.survey import Asked, Section, report_on

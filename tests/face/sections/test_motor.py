@@ -12,7 +12,7 @@ from section_facts import facts, in_both_units
 
 from grashof.analysis import inverse_dynamics, motor_torque, solve_kinematics
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
-from grashof.problems.values.dynamics.acting import FrictionSpec
+from grashof.problems.values.dynamics.load_specs import FrictionSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.study import LinkageStudy
 from grashof.survey import Asked, Section, report_on

@@ -9,7 +9,7 @@ import pytest
 
 from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, stated_masses, system_centre
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.sections.loads.over_time import sawtooth
 from grashof.study.asked import Asked

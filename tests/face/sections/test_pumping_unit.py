@@ -11,7 +11,7 @@ import pytest
 from section_facts import INCH, facts
 
 from grashof.problems import DynamicsSpec, ProblemError, load_linkage_spec
-from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.survey import Section, report_on
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage, load_linkage_spec
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.load_specs import (
     DamperSpec,
     FrictionSpec,
     LoadSpec,

@@ -24,7 +24,7 @@ from grashof.analysis import (
     worst_transmission_cycle,
 )
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
-from grashof.problems.values.dynamics.acting import LoadSpec
+from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.study.quantities import Quantity, dynamic_quantities, kinematic_quantities
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import dead_positions_unwarned

@@ -11,7 +11,8 @@ from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.files.toml_file import document_of
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -20,7 +21,6 @@ from grashof.problems.values.dynamics.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
 

@@ -26,7 +26,8 @@ from grashof.problems import (
     SliderCrank,
 )
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,
@@ -35,7 +36,6 @@ from grashof.problems.values.dynamics.acting import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.section import SectionSpec
 from grashof.problems.values.requirements.requirements import QUANTITIES
@@ -45,10 +45,10 @@ from grashof.synth.programme.exchange import SOLVED, solve_by_exchange
 from grashof.synth.programme.nonlinear_programme import solve
 from grashof.synth.programme.on_symbols import numpy_on_symbols
 from grashof.synth.quantities.along_motion import ALONG
-from grashof.synth.quantities.burden import Burden
 from grashof.synth.quantities.driver_way import drive_of, driver_at
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kinds import KINDS
+from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt, polished_and_judged
 from grashof.synth.search.finder import finder_for
@@ -152,7 +152,7 @@ def found(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> Fl
     """The formula of the search on arrays, in the units of the judge."""
     instant = KINDS[linkage.mechanism.word].instant
     at = instant(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
-    values: FloatArray = magnitude(ALONG[key](at, Burden.of(problem))) * problem.scale(QUANTITIES[key])
+    values: FloatArray = magnitude(ALONG[key](at, Loading.of(problem))) * problem.scale(QUANTITIES[key])
     return values
 
 
@@ -163,7 +163,7 @@ def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) 
     with numpy_on_symbols():
         driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
         at = KINDS[linkage.mechanism.word].instant(o2, ground, lengths, arm, assembly, driver)
-        every = ALONG[key](at, Burden.of(problem))
+        every = ALONG[key](at, Loading.of(problem))
         values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
     curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])
     return np.asarray(curve(share[None])).ravel() * problem.scale(QUANTITIES[key])

@@ -8,7 +8,7 @@ from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import PathTask, Problem, Requirements
 from grashof.synth.programme import nonlinear_programme as nlp
-from grashof.synth.programme.long_programme import STOPPED, Asking, jacobian_by_rows
+from grashof.synth.programme.long_programme import STOPPED, StopCondition, jacobian_by_rows
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -70,7 +70,7 @@ def test_what_interrupts_a_long_solve_interrupts_the_search(
     def interrupted(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Asking, "eval_buffer", interrupted)
+    monkeypatch.setattr(StopCondition, "eval_buffer", interrupted)
     with pytest.raises(KeyboardInterrupt):
         nlp.solve(scaled, start)
     capfd.readouterr()

@@ -11,7 +11,7 @@ from grashof.analysis import Design, verify
 from grashof.analysis.judge.planted import planted_function
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.synth import Candidate
-from grashof.synth.results.choice import merit
+from grashof.synth.results.choice import best_at
 
 
 def test_errors_of_rounding_are_all_the_least() -> None:
@@ -22,7 +22,7 @@ def test_errors_of_rounding_are_all_the_least() -> None:
     def name(error: float, least: float) -> str:
         design = Candidate(linkage, replace(verdict, square=error**2 * len(task)), problem, 0, 0)
         assert abs(design.error(problem) - error) < 1e-12 * error
-        return merit(problem, design, least)
+        return best_at(problem, design, least)
 
     assert name(3e-16, 1e-16) == name(5e-10, 1e-16) == "least error"
     assert name(2e-4, 1.9e-4) == name(2e-9, 1e-16) == "least error nearby"

@@ -14,7 +14,7 @@ from grashof.problems import FourBar, NoSolutionError, Objective, Problem, Trans
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.families import listed
 from grashof.synth.designs.ranking import pareto_optimal, ranked
-from grashof.synth.quantities.merit import weigh
+from grashof.synth.quantities.scores import weigh
 
 Designs = tuple[Candidate, ...]
 bounded = settings(max_examples=25)

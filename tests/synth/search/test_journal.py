@@ -59,9 +59,11 @@ def test_a_search_that_was_killed_goes_on_to_the_same_list(
             assert tries < 40
     assert tries > (kind == "poses")
     assert table(result) == table(whole)
-    assert result.story.resumed == tries - 1
-    assert (result.story.steps_recorded > 0) is (tries > 1)
-    assert (f"resumed from a record of {result.story.steps_recorded} steps" in caplog.messages) is (tries > 1)
+    assert result.history.resumed == tries - 1
+    assert (result.history.steps_recorded > 0) is (tries > 1)
+    assert (f"resumed from a record of {result.history.steps_recorded} steps" in caplog.messages) is (
+        tries > 1
+    )
     assert not folder.exists()
 
 
@@ -133,8 +135,8 @@ def test_what_is_damaged_or_untrue_is_done_again(
         path.write_text(DAMAGES[damage](path.read_text(encoding="utf-8")), encoding="utf-8")
     found = synthesize(problem, **options, record=folder)
     assert table(found) == whole
-    assert found.story is not None
-    assert found.story.steps_recorded <= 2  # no design came of the glance and the first screening
+    assert found.history is not None
+    assert found.history.steps_recorded <= 2  # no design came of the quick pass and the first screening
 
 
 def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:

@@ -223,7 +223,7 @@ def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
 
 
 def test_stopped_before_anything_was_found(luggage: Problem) -> None:
-    """What a glance found is tried, and no more where that is a design."""
+    """What a quick pass found is tried, and no more where that is a design."""
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 2
@@ -234,7 +234,7 @@ def test_stopped_before_anything_was_found(luggage: Problem) -> None:
 
 def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     """What the screening found is tried, and no more."""
-    monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "GLANCE_PAIRS", 1)
+    monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "QUICK_PAIRS", 1)
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 8
@@ -245,7 +245,7 @@ def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.Mo
 @pytest.mark.slow
 def test_a_glance_takes_nothing_from_the_list(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     with_glance = {each.id for each in synthesize(luggage).candidates}
-    monkeypatch.setattr(FewPoses, "glance", lambda *_: None)
+    monkeypatch.setattr(FewPoses, "quick_pass", lambda *_: None)
     without = {each.id for each in synthesize(luggage).candidates}
     assert without <= with_glance
 

@@ -77,15 +77,15 @@ def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
 def test_picked_are_apart_best_first_and_nobody_else_fits(
     rows: FloatArray, random: Random, least: float
 ) -> None:
-    merit = np.array([random.uniform(0, 1) for _ in rows])
-    picked = pick_apart(rows, merit, least, len(rows)).tolist()
+    score = np.array([random.uniform(0, 1) for _ in rows])
+    picked = pick_apart(rows, score, least, len(rows)).tolist()
     tie = 1e-9 * len(rows)
-    assert merit[picked[0]] >= merit.max() - tie
-    assert (np.diff(merit[picked]) <= tie).all()
+    assert score[picked[0]] >= score.max() - tie
+    assert (np.diff(score[picked]) <= tie).all()
     for k, i in enumerate(picked):
         assert all(share_apart(rows[i], rows[j]) > least for j in picked[:k])
     for i in set(range(len(rows))) - set(picked):
-        better = [j for j in picked if merit[j] >= merit[i] - tie]
+        better = [j for j in picked if score[j] >= score[i] - tie]
         assert any(share_apart(rows[i], rows[j]) <= least * (1 + 1e-12) for j in better)
 
 
@@ -97,10 +97,10 @@ def test_no_more_than_asked_for_and_of_equals_the_first() -> None:
 
 
 def test_rounding_changes_no_order() -> None:
-    """Merits as two processors have them: ties to 1e-12 in another order each time."""
+    """Scores as two processors have them: ties to 1e-12 in another order each time."""
     rng = np.random.default_rng(2)
-    merit = np.repeat(rng.uniform(0, 2, 40), 3)
-    orders = {tuple(best_first(merit + 1e-12 * rng.standard_normal(merit.shape)).tolist()) for _ in range(20)}
+    score = np.repeat(rng.uniform(0, 2, 40), 3)
+    orders = {tuple(best_first(score + 1e-12 * rng.standard_normal(score.shape)).tolist()) for _ in range(20)}
     assert len(orders) == 1
     assert best_first(np.array([np.inf, 1.0, -np.inf, 2.0])).tolist() == [0, 3, 1, 2]
     assert best_first(np.array([])).tolist() == []

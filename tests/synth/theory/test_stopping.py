@@ -3,29 +3,29 @@
 import pytest
 
 from grashof.synth.theory import stopping
-from grashof.synth.theory.stopping import Stopped, asked_to_stop, give_way, leave_off, overdue
+from grashof.synth.theory.stopping import Stopped, overdue, raise_if_overdue, raise_if_stopped, stop_requested
 
 
 def test_nobody_asks() -> None:
-    assert not asked_to_stop()
+    assert not stop_requested()
     assert not overdue()
-    give_way()
-    leave_off()
+    raise_if_stopped()
+    raise_if_overdue()
 
 
 def test_what_soon_comes_to_something_has_time_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 10.0
     monkeypatch.setattr(stopping, "perf_counter", lambda: now)
     with stopping.stopping(lambda: now >= 20):
-        leave_off()
+        raise_if_overdue()
         now = 25.0  # nobody looked before
-        assert asked_to_stop()
+        assert stop_requested()
         assert not overdue()
-        leave_off()
+        raise_if_overdue()
         with pytest.raises(Stopped):
-            give_way()
+            raise_if_stopped()
         now = 25.1 + stopping.GRACE
         assert overdue()
         with pytest.raises(Stopped):
-            leave_off()
+            raise_if_overdue()
     assert not overdue()

@@ -16,7 +16,7 @@ from grashof.problems import (
     ProblemError,
     SliderCrank,
 )
-from grashof.problems.values.dynamics.acting import (
+from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
     FrictionSpec,

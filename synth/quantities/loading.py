@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems import FourBar, Problem
-from grashof.problems.values.dynamics.acting import JOINTS, DamperSpec, FrictionSpec, LoadSpec, SpringSpec
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.load_specs import JOINTS, DamperSpec, FrictionSpec, LoadSpec, SpringSpec
 from grashof.synth.quantities.frame import Frame
 
 Numbers = tuple[float, ...]
@@ -55,7 +55,7 @@ class Pull:
 
 
 @dataclass(frozen=True, slots=True)
-class Burden:
+class Loading:
     """All that takes a drive torque. It hashes, so that a programme can be kept for it."""
 
     # What a kg takes for each size of acceleration in squares of the driver's mean velocity: omega2^2 S^2 /
@@ -75,7 +75,7 @@ class Burden:
     slide_length: float = 0.0  # sizes
 
     @classmethod
-    def of(cls, problem: Problem) -> Burden | None:
+    def of(cls, problem: Problem) -> Loading | None:
         """That of a problem; None where it has no dynamics."""
         spec = problem.dynamics
         if spec is None:
@@ -106,7 +106,7 @@ class Burden:
         )
 
 
-NOTHING = Burden(0.0, (0.0, 0.0), ())
+NOTHING = Loading(0.0, (0.0, 0.0), ())
 
 
 def _masses(problem: Problem, scale: float) -> Iterator[Mass]:

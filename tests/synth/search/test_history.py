@@ -10,8 +10,8 @@ from grashof.problems import Search
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
+from grashof.synth.search.history import Ending, StopCondition
 from grashof.synth.search.searches import Run
-from grashof.synth.search.story import Asking, Ending
 from grashof.synth.search.workers import CRASHED, Here
 
 pytestmark = pytest.mark.usefixtures("small_search")
@@ -28,17 +28,22 @@ ENDINGS = {
 def test_the_story_tells_what_ended_the_search(how: str) -> None:
     options, ending = ENDINGS[how]
     before = datetime.now(UTC)
-    story = synthesize(load("luggage"), starts=8, **options).story
-    assert story.ending is ending
-    assert before <= story.begun <= story.ended <= datetime.now(UTC)
-    assert story.ended - story.begun > timedelta(milliseconds=10)
-    assert (story.resumed, story.steps_recorded, story.processes_lost, story.starts_crashed) == (0, 0, 0, ())
+    history = synthesize(load("luggage"), starts=8, **options).history
+    assert history.ending is ending
+    assert before <= history.begun <= history.ended <= datetime.now(UTC)
+    assert history.ended - history.begun > timedelta(milliseconds=10)
+    assert (history.resumed, history.steps_recorded, history.processes_lost, history.starts_crashed) == (
+        0,
+        0,
+        0,
+        (),
+    )
 
 
 def test_once_asked_to_end_it_stays_so() -> None:
     """What was cut short by an answer must not count as whole because of the next one."""
     answers = iter([False, True, False])
-    asked = Asking(None, lambda: next(answers))
+    asked = StopCondition(None, lambda: next(answers))
     assert [asked(), asked(), asked()] == [False, True, True]
     assert list(answers) == [False]  # not asked any more
     assert asked.ending is Ending.STOPPED

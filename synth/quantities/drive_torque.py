@@ -1,4 +1,4 @@
-"""What a burden takes: the drive torque and the joint forces of a linkage at an instant.
+"""What a loading takes: the drive torque and the joint forces of a linkage at an instant.
 
 Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
 """
@@ -10,65 +10,65 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.dynamics.acting import JOINTS, TURNING
+from grashof.problems.values.dynamics.load_specs import JOINTS, TURNING
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.quantities.burden import Burden, Mass, Push
 from grashof.synth.quantities.driver_way import pieces
+from grashof.synth.quantities.loading import Loading, Mass, Push
 
 _TURN_DEG = 360.0
 _FRICTION_ROUNDS = 3  # each takes the joint forces of the last
 _TINY = 1e-30  # under roots
 
 
-def drive_torque(at: Instant, burden: Burden) -> list[Any]:
+def drive_torque(at: Instant, loading: Loading) -> list[Any]:
     """Virtual work: T = sum of (m (a - g) - F) . dr + (I alpha - M) dtheta, by the driver angle."""
-    moments = _joint_moments(at, burden)
+    moments = _joint_moments(at, loading)
     torque: Any = 0.0
-    for link, arm, force in _forces(at, burden):
+    for link, arm, force in _forces(at, loading):
         torque = torque + force.dot(at.moved(link, arm))
-    for link, moment in _moments(at, burden):
+    for link, moment in _moments(at, loading):
         torque = torque + moment * at.speed(link)
     for joint, moment in enumerate(moments):
         torque = torque - moment * at.opening(joint)
     return [torque]
 
 
-def joint_forces(at: Instant, burden: Burden) -> list[Any]:
+def joint_forces(at: Instant, loading: Loading) -> list[Any]:
     """Forces in O2, A, B and O4, or a slide there, friction in the joints included."""
-    return _reactions(at, burden, _joint_moments(at, burden))[0]
+    return _reactions(at, loading, _joint_moments(at, loading))[0]
 
 
-def _reactions(at: Instant, burden: Burden, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
+def _reactions(at: Instant, loading: Loading, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
     """Forces in O2, A, B and O4, and what presses in the slide."""
     # about A of link 3 and the origin of the frame of link 4; a moment in a pin is a force along a slide
     force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
     turning = [0.0 if joint == at.slide else moment for joint, moment in enumerate(moments)]
     about: dict[int, Any] = {2: 0.0, 3: turning[2] - turning[1], 4: -turning[2] - turning[3]}
-    for link, arm, demand in _forces(at, burden):
+    for link, arm, demand in _forces(at, loading):
         force[link] = force[link] + demand
         about[link] = about[link] + arm.cross(demand)
-    for link, moment in _moments(at, burden):
+    for link, moment in _moments(at, loading):
         about[link] = about[link] + moment
     in_b = at.force_in_b(force, about, 0.0 if at.slide is None else moments[at.slide])
     in_a = force[3] - in_b  # by link 2 on link 3
     return [force[2] + in_a, in_a, in_b, force[4] + in_b], at.pressing(in_b, force, about)
 
 
-def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]:
+def _forces(at: Instant, loading: Loading) -> Iterator[tuple[int, Vector, Vector]]:
     """Link, place from the origin of its frame, and the force that the joints have to give there."""
-    weight = Vector(*burden.weight)
-    for each in burden.masses:
+    weight = Vector(*loading.weight)
+    for each in loading.masses:
         mass, _, arm = _body(at, each)
-        yield each.link, arm, mass * (burden.inertia * at.acceleration(each.link, arm) - weight)
-    for push in burden.pushes:
+        yield each.link, arm, mass * (loading.inertia * at.acceleration(each.link, arm) - weight)
+    for push in loading.pushes:
         if not push.moment:
             force = Vector(*_values(at, push))
             if push.turning:
                 along = at.link(push.link)
                 force = (force.x * along + force.y * along.left) / np.sqrt(along.square)
             yield push.link, at.on_link(push.link, push.at), -force
-    for pull in burden.pulls:
+    for pull in loading.pulls:
         first, second = map(at.place, pull.links, pull.places)
         rates = [
             at.velocity(link, at.on_link(link, place)) if link != 1 else Vector(0.0, 0.0)
@@ -85,13 +85,13 @@ def _forces(at: Instant, burden: Burden) -> Iterator[tuple[int, Vector, Vector]]
                 yield link, at.on_link(link, place), demand
 
 
-def _moments(at: Instant, burden: Burden) -> Iterator[tuple[int, Any]]:
+def _moments(at: Instant, loading: Loading) -> Iterator[tuple[int, Any]]:
     """Link, and the moment that it takes besides that of forces."""
-    for each in burden.masses:
+    for each in loading.masses:
         inertia = _body(at, each)[1]
         if each.inertia or each.per_size:
-            yield each.link, burden.inertia * inertia * at.turned(each.link)
-    for push in burden.pushes:
+            yield each.link, loading.inertia * inertia * at.turned(each.link)
+    for push in loading.pushes:
         if push.moment:
             (moment,) = _values(at, push)
             yield push.link, -moment
@@ -143,31 +143,31 @@ def _curve(push: Push, column: int, place: Any) -> Any:
     return value
 
 
-def _joint_moments(at: Instant, burden: Burden) -> list[Any]:
+def _joint_moments(at: Instant, loading: Loading) -> list[Any]:
     """On the second link of each joint: of torsion springs and friction; in a slide its friction along it."""
     moments: list[Any] = [0.0] * len(JOINTS)
-    for joint, stiffness, free in burden.windings:
+    for joint, stiffness, free in loading.windings:
         first, second = JOINTS[joint]
         angle = at.turn(second) - at.turn(first) - free
         moments[joint] = moments[joint] - stiffness * (np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
-    viscous, constant, slides = list(burden.viscous), list(burden.constant), at.slide is not None
+    viscous, constant, slides = list(loading.viscous), list(loading.constant), at.slide is not None
     if at.slide is not None:
-        viscous[at.slide], constant[at.slide] = burden.slide_viscous, burden.slide_constant
+        viscous[at.slide], constant[at.slide] = loading.slide_viscous, loading.slide_constant
     for joint in range(len(JOINTS)):
         rate = at.driver.pace * at.opening(joint)
         if viscous[joint]:
             moments[joint] = moments[joint] - viscous[joint] * rate
         if constant[joint]:
             moments[joint] = moments[joint] - constant[joint] * np.sign(rate)
-    if not any(burden.radius) and not (slides and burden.slide_mu):
+    if not any(loading.radius) and not (slides and loading.slide_mu):
         return moments
     known = moments
     for _ in range(_FRICTION_ROUNDS):
-        forces, pressed = _reactions(at, burden, moments)
+        forces, pressed = _reactions(at, loading, moments)
         sizes = [
-            burden.slide_mu * _pressing(burden, *pressed)
+            loading.slide_mu * _pressing(loading, *pressed)
             if joint == at.slide
-            else burden.radius[joint] * np.sqrt(force.square + _TINY)
+            else loading.radius[joint] * np.sqrt(force.square + _TINY)
             for joint, force in enumerate(forces)
         ]
         moments = [
@@ -177,9 +177,9 @@ def _joint_moments(at: Instant, burden: Burden) -> list[Any]:
     return moments
 
 
-def _pressing(burden: Burden, across: Any, moment: Any) -> Any:
+def _pressing(loading: Loading, across: Any, moment: Any) -> Any:
     """What friction in the slide grows with: max(|N|, 2 |M| / length)."""
     across = np.sqrt(across**2 + _TINY)
-    if not burden.slide_length:
+    if not loading.slide_length:
         return across
-    return np.maximum(across, 2 * np.sqrt(moment**2 + _TINY) / burden.slide_length)
+    return np.maximum(across, 2 * np.sqrt(moment**2 + _TINY) / loading.slide_length)

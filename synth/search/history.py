@@ -24,7 +24,7 @@ class Ending(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Story:
+class RunHistory:
     """What happened to a run, besides its designs; times in UTC."""
 
     begun: datetime  # of the search, in ``run.json`` with what is written, as `ended`
@@ -45,7 +45,7 @@ def now() -> datetime:
 
 
 @dataclass(slots=True)
-class Asking:
+class StopCondition:
     """Whether a search is asked to end, and what asks; once it is asked, it stays so."""
 
     time_limit: float | None  # s, from now on
@@ -62,7 +62,7 @@ class Asking:
                 _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
         return self.ending is not Ending.COMPLETE
 
-    def part(self, number: int, of: int) -> Asking:
+    def part(self, number: int, of: int) -> StopCondition:
         """The same for the first `number` of so many parts of a search, with their share of the time."""
         limit = None if self.time_limit is None else self.time_limit * number / of
         return replace(self, time_limit=limit)
