@@ -28,7 +28,7 @@ class Need(NamedTuple):
         )
 
 
-class Standing(NamedTuple):
+class PlacedDyad(NamedTuple):
     """A dyad in a motion.
 
     The arms are of C and D (of a slide E) from the origins of their hosts' frames, on the ground from O2.
@@ -43,7 +43,7 @@ class Frames(NamedTuple):
     """How the links of a motion lie: directions of the u-axes of their frames, and the dyads."""
 
     axes: dict[int, Vector]
-    dyads: list[Standing]
+    dyads: list[PlacedDyad]
 
     def arm(self, link: int, at: Vector) -> Vector:
         """A point of a moving link from the origin of its frame, in global axes."""
@@ -71,7 +71,7 @@ def frames_of(state: Kinematics) -> Frames:
             host = dyad.row.hosts[1]
             d = dyad.at[1] if host == 1 else frames.arm(host, dyad.at[1])
         closed = Closed(cos3, sin3, cos4, sin4, state.margins[loop], reach)
-        frames.dyads.append(Standing(dyad, closed, (c, d)))
+        frames.dyads.append(PlacedDyad(dyad, closed, (c, d)))
     return frames
 
 

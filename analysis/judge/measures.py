@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
-from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
+from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.over_task import OverTask, over_task
 from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.analysis.judge.task_peaks import task_peaks

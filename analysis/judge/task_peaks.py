@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.forces.joints import joints_of
-from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers

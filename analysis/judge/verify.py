@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis.forces.stated import TRAVEL_ROUNDING
+from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING
+from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_travel
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
-from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.how_met import HOW_MET
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
@@ -209,7 +209,7 @@ def _drive(
 ) -> list[Defect]:
     """Branch and order, of the driver that there is; and what a cylinder misses."""
     spec = None if problem is None else problem.driver
-    moved = driven_travel(linkage, task, verdict) if spec is not None else None
+    moved = cylinder_travel(linkage, task, verdict) if spec is not None else None
     through = moved is not None and not verdict.branch_ok  # a cylinder, through dead positions of link 2
     by_link2 = [] if through else [
         *_same_branch(verdict.circuit_ok, verdict.branch_ok, int(linkage.assembly), targets, wanted),

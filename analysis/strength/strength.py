@@ -45,8 +45,8 @@ class StrengthHistory:
 
     @property
     def worst_link(self) -> FloatArray:
-        """The link of which most is asked (see `most_telling`), shape (...); NaN where it is not known."""
-        key = most_telling(next(iter(self.bars.values())))
+        """The link under the greatest load (by `governing_measure`), shape (...); NaN where unknown."""
+        key = governing_measure(next(iter(self.bars.values())))
         sizes = np.stack([measures[key].value for measures in self.bars.values()])
         worst = np.array(list(self.bars), dtype=np.float64)[sizes.argmax(axis=0)]
         return np.where(np.isnan(sizes).any(axis=0), np.nan, worst)
@@ -92,7 +92,7 @@ def strength_at(
     return StrengthHistory(bars, pin_measures(state.linkage, in_pins, structure))
 
 
-def most_telling(keys: Container[str]) -> str:
+def governing_measure(keys: Container[str]) -> str:
     """Which measure tells best how much is asked of a bar: strength in use, else stress, else moment."""
     return next(key for key in ("utilisation", "stress", "moment") if key in keys)
 

@@ -14,7 +14,7 @@ from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.analysis.strength.along_bar import Along
-from grashof.analysis.strength.strength import most_telling, pin_measures, strength_at
+from grashof.analysis.strength.strength import governing_measure, pin_measures, strength_at
 from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems import AssemblyError, DeadPositionWarning
 from grashof.problems.values.arrays import FloatArray
@@ -105,8 +105,8 @@ class StrengthSummary:
 
     @property
     def worst_bar(self) -> StrengthPeak:
-        """The peak of `most_telling` in the bar where it is highest."""
-        key = most_telling({peak.key for peak in self.peaks})
+        """The peak of `governing_measure` in the bar where it is highest."""
+        key = governing_measure({peak.key for peak in self.peaks})
         return max((peak for peak in self.peaks if peak.key == key), key=lambda peak: peak.value)
 
     def peak(self, key: str, part: str) -> StrengthPeak:

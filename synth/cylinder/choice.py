@@ -7,7 +7,7 @@ import numpy as np
 from grashof.problems import Cylinder, CylinderSpec, Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.cylinder.closed_form import best_on_arm, best_on_slide
-from grashof.synth.cylinder.planes import Plane, driven, planes_of
+from grashof.synth.cylinder.planes import Plane, performance, planes_of
 from grashof.synth.cylinder.room import Room
 from grashof.synth.cylinder.search import best_by_search
 
@@ -73,7 +73,7 @@ def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[comple
     if pivots is None:
         return None
     points, bases = room.kept(pivots[0] * (1 - 1e-9), pivots[1])  # rounding puts none beyond its limits
-    found = driven(plane, points, bases)
+    found = performance(plane, points, bases)
     fine = np.flatnonzero((room.beyond(found) <= 0) & (found.least > 0))
     if not len(fine):
         return None

@@ -25,7 +25,7 @@ class Plane:
     power: FloatArray | None = None  # (M,): what a drive gives, N length; None without limit of force
 
 
-class Driven(NamedTuple):
+class Performance(NamedTuple):
     """What K cylinders do in a motion, each of shape (K,), but for `levers`, shape (K, M).
 
     Levers are signed so that they are positive where a cylinder lengthens, or all turned round.
@@ -111,7 +111,7 @@ def _link_4(linkage: Linkage, loop: _Loop, e4: ComplexArray, power: FloatArray |
     return Plane(b, e4 / 1j, way, w4, np.array([0j]), 0j, loop.r4, power)
 
 
-def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:
+def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Performance:
     """What cylinders do between points of a plane and bases on the ground, each of shape (K,)."""
     arm = point[:, None] * plane.axis
     out = plane.origin + arm - base[:, None]
@@ -129,7 +129,7 @@ def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:
     closed = np.minimum(first, last)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = finite_or(np.maximum(first, last) / closed, np.inf)
-    return Driven(levers, levers.min(axis=1), closed, ratio, force)
+    return Performance(levers, levers.min(axis=1), closed, ratio, force)
 
 
 def finite_or(values: FloatArray, otherwise: float) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Plane, driven
+from grashof.synth.cylinder.planes import Plane, performance
 from grashof.synth.cylinder.room import Room
 
 _STEP = 1e-7  # of differences
@@ -29,7 +29,7 @@ def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     from scipy import optimize  # only here, and few problems have cylinders
 
     scale = _Scale.of(plane, room)
-    least = driven(plane, *(np.array([each]) for each in pivots)).least
+    least = performance(plane, *(np.array([each]) for each in pivots)).least
 
     def margins(z: FloatArray) -> FloatArray:
         levers, limits = scale.margins(z[:, :4])
@@ -149,7 +149,7 @@ class _Scale:
     def margins(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Levers, and what the limits leave, of (N, 4) unknowns."""
         points, bases = self.pivots(x)
-        found = driven(self.plane, points, bases)
+        found = performance(self.plane, points, bases)
         inside = 1 - (np.abs(points - self.room.middle) / self.room.reach) ** 2
         limits = np.concatenate([self.room.left(found), inside[:, None]], axis=1)
         return found.levers, np.clip(np.where(np.isnan(limits), 0.0, limits), -50.0, 50.0)

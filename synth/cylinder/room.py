@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import CylinderSpec
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.synth.cylinder.planes import Driven, Plane
+from grashof.synth.cylinder.planes import Performance, Plane
 
 INSET = 1e-7  # share: limits are kept with this to spare, so that the judge finds them kept
 _TINY = float(np.finfo(np.float64).tiny)
@@ -50,7 +50,7 @@ class Room:
         carried = plane.middle, plane.joints, plane.reach
         return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET))
 
-    def left(self, found: Driven) -> FloatArray:
+    def left(self, found: Performance) -> FloatArray:
         """What limits leave K cylinders, in logarithms, a column each, negative beyond."""
         with np.errstate(divide="ignore"):
             closed, force = (np.log(np.maximum(each, _TINY)) for each in (found.closed, found.force))
@@ -60,7 +60,7 @@ class Room:
             columns += [np.log(self.force) - force] if np.isfinite(self.force) else []
         return np.stack(columns, axis=1)
 
-    def beyond(self, found: Driven) -> FloatArray:
+    def beyond(self, found: Performance) -> FloatArray:
         """How far cylinders are beyond the limits, in logarithms; shape (K,), 0 where all are kept."""
         return np.asarray(np.maximum(-self.left(found), 0.0).sum(axis=1))
 

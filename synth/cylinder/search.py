@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Driven, Plane, driven
+from grashof.synth.cylinder.planes import Performance, Plane, performance
 from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
 from grashof.synth.cylinder.room import Room
 from grashof.synth.theory.stopping import overdue
@@ -50,7 +50,7 @@ def _searched(
     points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
     coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
     score = np.concatenate([
-        _score(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
+        _score(room, performance(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
         for k in range(0, len(points), _BLOCK)
     ])  # fmt: skip
     best = np.argsort(-score)[: round(_BEST * effort)]
@@ -75,7 +75,7 @@ def _searched(
 def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray, ComplexArray, FloatArray]:
     """Cylinders put where they may be, and their least levers, negative beyond the limits."""
     points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
-    found = driven(plane, points, bases)
+    found = performance(plane, points, bases)
     return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
 
 
@@ -106,7 +106,7 @@ def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[
     return [tried[k] for k in np.argsort(-least, kind="stable")[:count]]
 
 
-def _score(room: Room, found: Driven) -> FloatArray:
+def _score(room: Room, found: Performance) -> FloatArray:
     return found.least - _PENALTY * room.beyond(found)
 
 
@@ -162,7 +162,7 @@ def _closed_in(
         tried_points = np.where(alone < 0.25, points[:, None], tried_points)
         tried_bases = np.where(alone > 0.75, bases[:, None], tried_bases)
         kept = room.kept(tried_points.ravel(), tried_bases.ravel())
-        found = _score(room, driven(plane, *kept)).reshape(shape)
+        found = _score(room, performance(plane, *kept)).reshape(shape)
         child = found.argmax(axis=1)
         better = found[parents, child] > score
         one, other = (each.reshape(shape)[parents, child] for each in kept)

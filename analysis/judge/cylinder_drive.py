@@ -11,7 +11,7 @@ import numpy as np
 from grashof.analysis.cylinder.force import cylinder_force
 from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
+from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
@@ -25,7 +25,7 @@ SLACK = 1e-9  # share of a limit, or of the size of the task
 _KEY = "driver.cylinder"
 
 
-def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
+def cylinder_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
     """The task motion as a cylinder drives it, on links 3 and 4 through dead positions; else None."""
     if verdict.branch_ok:
         return travel(linkage, verdict.theta2, verdict.assembly, motion_ends(task, verdict))
@@ -75,7 +75,7 @@ def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigure
     """What the cylinder of a verdict does in the task motion; None where there is none, or no motion."""
     if verdict.cylinder is None:
         return None
-    moved = driven_travel(linkage, task, verdict)
+    moved = cylinder_travel(linkage, task, verdict)
     return None if moved is None else cylinder_figures(verdict.cylinder, moved)
 
 
