@@ -73,9 +73,8 @@ from grashof.analysis.four_bar.pumping_unit import (
 from grashof.analysis.judge.cylinder_drive import cylinder_forces
 from grashof.analysis.judge.design import Constraint, Design
 from grashof.analysis.judge.function_output import FunctionCurves, function_curves
-from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
-from grashof.analysis.judge.tolerance import Robustness, robustness
+from grashof.analysis.judge.tolerance import MadeMoves, Robustness, made_moves, output_sensitivity, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences

@@ -8,11 +8,10 @@ from contextlib import suppress
 
 import numpy as np
 
-from grashof.analysis.cylinder.force import cylinder_force
-from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
+from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures, cylinder_force
 from grashof.analysis.cylinder.travel import Travel, travel
 from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends, sampled
+from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.numerics.peaks import peaks

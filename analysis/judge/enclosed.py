@@ -14,7 +14,7 @@ from grashof.analysis.enclosure.turns import Least, least_transmission
 from grashof.analysis.judge.limits import SLACK
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY
-from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Linkage, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import TURN, FloatArray

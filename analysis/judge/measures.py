@@ -12,9 +12,7 @@ import numpy as np
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
-from grashof.analysis.judge.over_task import OverTask, over_task
-from grashof.analysis.judge.sampled_motion import motion_ends
-from grashof.analysis.judge.task_peaks import task_peaks
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position

@@ -14,7 +14,7 @@ from grashof.analysis.judge.how_met import HOW_MET
 from grashof.analysis.judge.limits import SLACK, missed
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
-from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
+from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.mobility import (
     branch_index,

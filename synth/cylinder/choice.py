@@ -7,8 +7,7 @@ import numpy as np
 from grashof.problems import Cylinder, CylinderSpec, Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.cylinder.closed_form import best_on_arm, best_on_slide
-from grashof.synth.cylinder.planes import Plane, performance, planes_of
-from grashof.synth.cylinder.room import Room
+from grashof.synth.cylinder.planes import Plane, Room, performance, planes_of
 from grashof.synth.cylinder.search import best_by_search
 
 _GREATEST = 1 - 1e-12  # sine of a lever angle of 90 deg, but for rounding: no other link has a better one

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.room import Room
+from grashof.synth.cylinder.planes import Room
 
 _GRID = 65
 _AT_B = 1e-12  # share of the reach within which a pivot is B

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Plane, performance
-from grashof.synth.cylinder.room import Room
+from grashof.synth.cylinder.planes import Plane, Room, performance
 
 _STEP = 1e-7  # of differences
 _MOST = 60  # iterations of quadratic programmes

@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Performance, Plane, performance
+from grashof.synth.cylinder.planes import Performance, Plane, Room, performance
 from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
-from grashof.synth.cylinder.room import Room
 from grashof.synth.theory.stopping import overdue
 
 _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -62,7 +63,7 @@ def begins(
     if task.travels == linkage.mechanism.loops[0].pinned:
         way = "slides" if task.travels else "turns"
         raise ProblemError(
-            f"mechanism {linkage.mechanism.word} has no output that {way}; the function asks for one"
+            f"mechanism {linkage.mechanism.word} has no output that {way}; the function requires one"
         )
     search = _Search(linkage, task, exact or task.norm == "rms", transmission)
     found: list[tuple[float, int, float]] = []
@@ -128,13 +129,11 @@ class _Search:
         for low, high in self._ranges(direction):
             starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
             value = self.values(starts, direction, _SAMPLES)
-            padded = np.pad(value, 1, constant_values=np.inf)
-            lowest = np.flatnonzero((value <= padded[:-2]) & (value <= padded[2:]) & np.isfinite(value))
-            found += [(float(value[k]), direction, float(starts[k])) for k in lowest]
+            found += [(float(value[k]), direction, float(starts[k])) for k in valleys(value)]
         return found
 
     def _ranges(self, direction: int) -> list[tuple[float, float]]:
-        """Where the driver may stand at the first pair."""
+        """Driver angles at the first pair from which the range is possible."""
         low, high = self.task.span
         ranges = driver_ranges(self.linkage, self.transmission).tolist()
         if (rotatability(self.linkage) >= 0).all() and ranges[0][1] - ranges[0][0] >= TURN:
@@ -209,6 +208,6 @@ def _crest(samples: FloatArray) -> FloatArray:
 
 
 def _from_first(task: Task, outputs: FloatArray) -> FloatArray:
-    """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
+    """Differences from the first (last axis), those of angles moved into [-pi, pi)."""
     off: FloatArray = outputs - outputs[..., :1]
     return off if task.travels else turned_from(off, 0.0)

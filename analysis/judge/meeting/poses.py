@@ -5,8 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
-from grashof.analysis.judge.meeting.misses import as_good, misses, squares
-from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.meeting.task_motion import (
+    Targets,
+    TaskMotion,
+    as_good,
+    misses,
+    squares,
+    task_motion,
+)
 from grashof.analysis.mechanism.driver_samples import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
@@ -18,7 +24,7 @@ _SAMPLES = 361
 _VALLEYS = 6
 _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 _PLACES = 120  # driver angles of a turn, or of a range, among which poses are assigned in order
-_MOST = 360  # such angles at most: the valleys of many poses lie so close together that some stand for all
+_MOST = 360  # such angles at most: valleys of many poses lie close together, so that some represent all
 _FOLLOWED = 2.0  # times the least sum there: such guesses are followed
 _FREE = np.array(np.inf)
 

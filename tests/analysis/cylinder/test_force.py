@@ -18,8 +18,7 @@ from grashof.analysis import (
     system_of_equations,
     uniform_bars,
 )
-from grashof.analysis.cylinder.force import cylinder_force
-from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.cylinder.lengths import cylinder_force, cylinder_state
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3, coupler_point=(1, 1))

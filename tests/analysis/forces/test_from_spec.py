@@ -15,7 +15,7 @@ from grashof.analysis import (
     stated_masses,
     virtual_work_torque,
 )
-from grashof.analysis.forces.curve_through import curve_through
+from grashof.analysis.forces.from_spec import curve_through
 from grashof.analysis.forces.loads import wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.dynamics.load_specs import (

@@ -11,9 +11,8 @@ import pytest
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.limits import missed
 from grashof.analysis.judge.measures import MEASURES, PARTS, Values
-from grashof.analysis.judge.over_task import over_task
+from grashof.analysis.judge.over_task import motion_ends, over_task
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
-from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.analysis.judge.tolerance import made_linkages
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (

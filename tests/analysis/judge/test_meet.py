@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.problems import FourBar, MotionTask, PathTask, Requirements
 

@@ -25,8 +25,8 @@ from grashof.analysis import (
 )
 from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion
-from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import (
     DynamicsSpec,
     FourBar,

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES

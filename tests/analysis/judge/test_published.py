@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
 from grashof.problems import PathTask, Requirements, catalogue, load
 from grashof.problems.files.published import ErrorDefinition, PublishedDesign, published
 

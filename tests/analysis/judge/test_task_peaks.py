@@ -7,9 +7,8 @@ import pytest
 
 from grashof.analysis import verify
 from grashof.analysis.forces.joints import Joint, joint_motion
+from grashof.analysis.judge.over_task import as_used, driver_law, load_curves, motion_ends, task_peaks
 from grashof.analysis.judge.planted import random_full_crank, random_slider_crank
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
-from grashof.analysis.judge.task_peaks import load_curves, task_peaks
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.problems import DynamicsSpec, Linkage, PathTask, Problem, Requirements

@@ -11,8 +11,8 @@ from grashof import load, synthesize
 from grashof.analysis import Loads, inverse_dynamics, over_task, solve_kinematics
 from grashof.analysis.forces.from_spec import stated_loads, stated_masses
 from grashof.analysis.forces.joints import joints_of
+from grashof.analysis.judge.over_task import driver_law
 from grashof.analysis.judge.planted import planted_motion, planted_path
-from grashof.analysis.judge.sampled_motion import driver_law
 from grashof.problems import (
     DynamicsSpec,
     FourBar,

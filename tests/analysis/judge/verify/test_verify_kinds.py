@@ -18,10 +18,9 @@ from grashof.analysis import (
     verify,
 )
 from grashof.analysis.judge.design import Design
-from grashof.analysis.judge.made_moves import made_moves
 from grashof.analysis.judge.measures import PARTS, Values
 from grashof.analysis.judge.planted import RANDOM, planted_motion, planted_path
-from grashof.analysis.judge.tolerance import made_linkages, robustness
+from grashof.analysis.judge.tolerance import made_linkages, made_moves, robustness
 from grashof.problems import (
     FourBar,
     InvertedSliderCrank,
