@@ -36,7 +36,7 @@ class CylinderState:
         dL/dtheta2; infinite in dead positions of link 2.
     lever : ndarray, shape (...)
         |dL| / |dQ|: the sine of the angle between cylinder and arm, signed as dL in the motion of the linkage
-        around its circuit; 0 where Q stands or lies in C.
+        around its circuit; 0 where Q is at rest or lies in C.
     """
 
     pivot: FloatArray
@@ -55,9 +55,9 @@ class CylinderState:
 
 @dataclass(frozen=True, slots=True)
 class CylinderFigures:
-    """Least and greatest length over a motion, and the least lever angle, rad.
+    """Least and greatest length over a motion, and the least lever angle, rad; 0 unless `monotone`.
 
-    `monotone`: the length goes one way and nowhere stands, so that the cylinder drives; else the angle is 0.
+    `monotone`: the length changes in one sense and is nowhere stationary, so that the cylinder drives.
     """
 
     closed: float
@@ -123,8 +123,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
     """Extremes of a cylinder over a motion, right to rounding, from ever closer samples.
 
-    The lever changes its sign where the length turns back, so that the least of it, signed, decides whether
-    the length goes one way.
+    The lever changes its sign where the length turns back: its least value, signed, decides on `monotone`.
     """
 
     def curves(places: FloatArray) -> FloatArray:
@@ -144,9 +143,9 @@ def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
 def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads: Loads) -> FloatArray:
     """Force of a cylinder without mass or friction of its own, shape (...), in newtons over the metre.
 
-    Positive where it pushes; infinite where its length stands, or friction locks it. Virtual work (Norton,
-    *Design of Machinery*, sec. 11.10): F dL/dtheta2 = T, the torque on link 2. Friction that grows with joint
-    forces depends on what drives: there F is put on the link and corrected until no torque is left.
+    Positive where it pushes; infinite where its length is stationary, or friction locks it. Virtual work
+    (Norton, *Design of Machinery*, sec. 11.10): F dL/dtheta2 = T, the torque on link 2. Friction that grows
+    with joint forces depends on the drive: there F acts on the link and is corrected until no torque is left.
     """
     found = cylinder_state(cylinder, state.linkage, state)
     out = found.pivot - np.asarray(cylinder.base)
@@ -157,7 +156,7 @@ def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads:
         push = out / found.length[..., None]
 
         def step(tried: FloatArray) -> FloatArray:
-            """The correction that the torque left at some forces would take, friction as it is there."""
+            """The correction against the torque that some forces leave, with the friction there."""
             pushed = AppliedForce(cylinder.link, cylinder.point, tried[..., None] * push)
             left = inverse_dynamics(state, masses, replace(loads, forces=(*loads.forces, pushed))).torque
             return np.asarray(left / found.rate)
@@ -178,9 +177,9 @@ def _by_secants(
     known: tuple[FloatArray, FloatArray],
     force: FloatArray,
 ) -> tuple[BoolArray, FloatArray]:
-    """Forces where friction is nearly as much as what the cylinder gives: there single steps hardly end.
+    """Forces where friction nearly balances the cylinder, so that single steps converge slowly.
 
-    Friction that grows faster than that, so that more force leaves more to be done, locks.
+    Friction that grows faster than the force, so that more force leaves more torque, locks.
     """
     before, last = known
     moving = ~settled

@@ -14,15 +14,15 @@ from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power, virtual_power
 from grashof.analysis.mechanism.virtual_motion import virtual_motion
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 _SAMPLES = 721
-_NOTHING = 1e-12  # share of what the loads do at most: no torque
+_NOTHING = 1e-12  # share of the greatest power of the loads: no torque
 _WINDOW = 0.02  # rad, about an equilibrium, in which the torque is a polynomial
 _DEGREE = 10
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-_SAME = 1e-9  # rad: roots so close are one
+_SAME = 1e-9  # rad: roots closer than this are one
 Curve = Callable[[FloatArray], FloatArray]
 
 
@@ -35,7 +35,7 @@ class Equilibria:
     theta2 : ndarray, shape (N,), rad
         Rising.
     stiffness : ndarray, shape (N,), N length/rad
-        By which the torque that brings the driver back grows; negative where it goes on falling.
+        By which the torque that brings the driver back grows; negative where it moves away.
     inertia : ndarray, shape (N,), kg length^2
         That the driver feels.
     everywhere : bool
@@ -118,7 +118,7 @@ def equilibria(
 
 
 def _work(linkage: Linkage, masses: Masses, loads: Loads, places: FloatArray) -> float:
-    """What the power comes to where its parts do not balance each other."""
+    """Greatest power of all loads if their parts did not balance each other."""
     virtual, rest = virtual_motion(linkage, places)
     gravity = float(np.hypot(*loads.gravity_vector()))
     parts = [

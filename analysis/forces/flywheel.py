@@ -13,9 +13,8 @@ from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.quadrature import Curve, Panels, gauss_legendre, held, integrate
-from grashof.problems import AssemblyError, ProblemError
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 _PANELS = 36
 _HALVINGS = 60
@@ -164,7 +163,7 @@ def flywheel_speed(
 def _turn(
     linkage: Linkage, masses: Masses, omega2: float, loads: Loads | None
 ) -> tuple[EvenMotion, Curve, Panels, Curve]:
-    """A steady turn; by shares of it the torque that it takes, panels of the work, and the work so far."""
+    """A steady turn; by shares of it the torque required, panels of the work, and the work up to there."""
     motion = even_motion(linkage, 0.0, TURN)
 
     def torque(share: FloatArray) -> FloatArray:

@@ -11,11 +11,10 @@ from grashof.analysis.forces.joints import Joint, joint_motion, slides_of
 from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import Body, Masses, given_masses, loaded, uniform_bars
 from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.problems import DynamicsSpec, ProblemError
+from grashof.problems import DynamicsSpec, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.load_specs import TURNING, LoadSpec, Place
-from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place
 

@@ -1,4 +1,4 @@
-"""What the judge accepted, shown over the whole motion by intervals of the driver angle."""
+"""Designs that the judge accepted, verified over the entire motion by intervals of the driver angle."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ import numpy as np
 from grashof.analysis.enclosure.closure import Places, places
 from grashof.analysis.enclosure.interval import EPS, Interval, crank, unit
 from grashof.analysis.enclosure.turns import Least, least_transmission
-from grashof.analysis.judge.limits import SLACK
-from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.measures import SLACK, Values
 from grashof.analysis.judge.meeting.task_motion import STEADY
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.verdict import Enclosure, Verdict
@@ -23,11 +22,11 @@ from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.requirements.function_ground import grounded
 
 _AT_ONCE = 100  # linkages, so that memory is bounded
-_OPEN = 1e-8  # share of the margins: an open loop, beyond what the judge takes for rounding
+_OPEN = 1e-8  # share of the margins: an open loop, beyond the rounding of the judge
 
 
 class _Shown(IntEnum):
-    """What became of a claim; the worst of several counts."""
+    """Outcome of a claim; of several the worst counts."""
 
     TRUE = 0
     OPEN = 1
@@ -78,24 +77,24 @@ def enclose(
 def _of_kind(
     linkages: list[Linkage], verdicts: list[Verdict], task: Task, wanted: Requirements
 ) -> Iterator[Enclosure]:
-    """Each linkage twice: over the task motion, and over the turn if it is asked for."""
-    whole = wanted.rotatability is not Rotatability.ANY or task.closed
+    """Each linkage twice: over the task motion, and over the turn if that is required."""
+    full = wanted.rotatability is not Rotatability.ANY or task.closed
     cycle = wanted.transmission_over == "cycle"
     ends = np.array([motion_ends(task, verdict) for verdict in verdicts])
-    if whole or cycle:
+    if full or cycle:
         ends = np.concatenate([ends, ends[:, :1] + [0.0, TURN + 1e-14]])
     count = len(linkages)
     batch = linkages[0].stacked(linkages)
     over = batch[np.arange(len(ends)) % count]
-    asked = np.arange(len(ends)) // count == int(cycle)
-    required = np.where(asked, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
+    limited = np.arange(len(ends)) // count == int(cycle)
+    required = np.where(limited, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
     least = least_transmission(over, ends[:, 0], ends[:, 1], required)
     at = _at_targets(batch, verdicts)
     for k, verdict in enumerate(verdicts):
         row = count + k if cycle else k
-        joined = verdict.branch_ok or whole
+        joined = verdict.branch_ok or full
         claims = [_closes(least, k, "the task motion")] if joined else [_UNJOINED]
-        if whole:
+        if full:
             claims.append(_closes(least, count + k, "the turn"))
         claims += [
             *([_at_least(least.lo[row], least.hi[row], required[row])] if joined or cycle else []),
@@ -124,7 +123,7 @@ def _at_least(lo: float, hi: float, required: float) -> _Claim:
 
 
 def _compared(lo: float, hi: float, most: float, beyond: float = 1e-12) -> _Shown:
-    """Whether a number in [lo, hi] is at most so much; false where it is more by what no rounding makes."""
+    """Whether a number in [lo, hi] is at most `most`; false where it is more by over `beyond`, a rounding."""
     return _Shown.TRUE if hi <= most else _Shown.FALSE if lo > most + beyond else _Shown.OPEN
 
 

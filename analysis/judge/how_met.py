@@ -80,11 +80,10 @@ def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
 
 def _as_function(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     """The entire range counts, not only its pairs."""
-    targets, motion, error = met_as_function(linkage, task, wanted)
+    targets, motion, figures = met_as_function(linkage, task, wanted)
     theta2 = np.array([motion.start, *targets.theta2, motion.end])
     assembly = np.full(len(theta2), int(linkage.assembly))
-    figures = {} if error is None else error.figures
-    return Met(targets, motion, theta2, assembly, covered=error is not None, figures=figures)
+    return Met(targets, motion, theta2, assembly, covered=figures is not None, figures=figures or {})
 
 
 def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:

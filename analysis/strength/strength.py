@@ -1,4 +1,4 @@
-"""What the bars and pins of a linkage bear at a driver angle: stress, pressure, deflection."""
+"""Stress, pressure and deflection in the bars and pins of a linkage at a driver angle."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _ROUNDING = 1e-12  # share of the greatest force in a bar below which other forc
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StrengthHistory:
-    """What bars and pins bear at driver angles; not finite where joint forces are not.
+    """Loads on bars and pins at driver angles; not finite where joint forces are not.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class StrengthHistory:
 def strength_at(
     state: Kinematics, structure: Structure, found: Dynamics | None = None, links: Sequence[int] | None = None
 ) -> StrengthHistory:
-    """What bars and pins bear at every driver angle.
+    """Loads on bars and pins at every driver angle.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def strength_at(
     found : Dynamics, optional
         Of `inverse_dynamics` for them; by default it is computed.
     links : sequence of int, optional
-        Whose bars are looked at; all by default.
+        The bars to examine; all by default.
 
     Returns
     -------
@@ -93,14 +93,14 @@ def strength_at(
 
 
 def governing_measure(keys: Container[str]) -> str:
-    """Which measure tells best how much is asked of a bar: strength in use, else stress, else moment."""
+    """The measure that governs a bar: the share of its strength in use, else stress, else moment."""
     return next(key for key in ("utilisation", "stress", "moment") if key in keys)
 
 
 def pin_measures(
     linkage: Linkage, forces: Mapping[Joint, FloatArray], structure: Structure
 ) -> dict[Joint, dict[str, FloatArray]]:
-    """What pins bear, in the units of `PIN_MEASURES`, of forces in kg, s and the length unit."""
+    """Measures of pins, in the units of `PIN_MEASURES`, from forces in kg, s and the length unit."""
     return {
         joint: {"pin_force": force * structure.in_si("N")}
         | {
@@ -175,5 +175,5 @@ def von_mises(axial: FloatArray, bending: FloatArray, shear: FloatArray) -> Floa
 
 
 def _above(along: Along, least: FloatArray) -> Along:
-    """What is borne, nothing where it is less than could be rounding."""
+    """A measure along a bar, zero where it may be rounding."""
     return Along(np.where(along.value <= least, 0.0, along.value), along.at)

@@ -114,6 +114,6 @@ def _along(along: complex, place: Any) -> Any:
 
 
 def _arm(far: FloatArray, length: float, sine: float, cosine: float) -> FloatArray:
-    """The arm with which a cylinder is so long when closed; negative where there is none."""
+    """The arm at which a closed cylinder has a given length; negative where there is none."""
     square = (far - length * cosine) * (far + length * cosine)
     return np.where(square >= 0, np.sqrt(np.maximum(square, 0.0)) - length * sine, -1.0)

@@ -41,56 +41,25 @@ class Performance(NamedTuple):
     force: FloatArray
 
 
-class _Loop(NamedTuple):
-    """The loop at the samples: pivots of the ground, crank, AB, and how links 2, 3 and 4 turn."""
-
-    ground: dict[str, complex]
-    r2: float
-    r4: float
-    crank: ComplexArray
-    coupler: ComplexArray
-    farthest: float  # B from A, negative behind it
-    turns: tuple[FloatArray, FloatArray, FloatArray]
-
-
 def planes_of(
     linkage: Linkage, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
 ) -> dict[str, Plane]:
     """The planes of links 2, 3 and 4 of a single linkage, by the words for them.
 
     Angles are of shape (M,); so is the power of a driver of link 2 at 1 rad/s, N length: the drive torque.
+    The motion of link 4 has no component along n = e^(i theta4): with the crank k and c = B - A, that is
+    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as the link
+    that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead position.
     """
     e2, e3, e4 = (np.exp(1j * angle) for angle in (theta2, theta3, theta4))
-    loop = _loop(linkage, e2, e3, e4)
-    o2, r2, (w2, w3, _) = loop.ground["o2"], loop.r2, loop.turns
-    given = None if power is None else power * w2
-    still = np.zeros_like(loop.crank)
-    far, p = complex(loop.farthest), complex(*linkage.coupler_point)
-    corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
-    way = 1j * w2 * loop.crank
-    return {
-        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
-        "coupler": Plane(o2 + loop.crank, e3, way, w3, corners, far / 2, length, given),
-        "output": _link_4(linkage, loop, e4, given),
-    }
-
-
-def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray) -> _Loop:
-    """How the links turn.
-
-    Along n = e^(i theta4) what link 4 does has no part: with the crank k and c = B - A, that is
-    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as
-    the one that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead
-    position.
-    """
     sizes = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
     ground = {name: complex(*getattr(linkage, name)) for name in linkage.mechanism.ground}
-    r2, crank = sizes["r2"], sizes["r2"] * e2
-    r4 = sizes.get("r4", r2)  # of what slides any length will do
+    o2, r2 = ground["o2"], sizes["r2"]
+    crank, r4 = r2 * e2, sizes.get("r4", r2)  # of what slides any length will do
     if "r3" in sizes:
         farthest, coupler = sizes["r3"], sizes["r3"] * e3
     else:  # a rod, up to the foot of O4 on it
-        along = np.real(np.conj(e3) * (ground["o4"] - ground["o2"] - crank))
+        along = np.real(np.conj(e3) * (ground["o4"] - o2 - crank))
         farthest, coupler = float(along[np.argmax(np.abs(along))]), along * e3
     output = r4 * e4
     size = (r2 + abs(farthest) + r4) ** 2
@@ -99,19 +68,23 @@ def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray
         for one, other in ((output, coupler), (crank, output), (crank, coupler))
     )
     slides = {link: on for on, link in linkage.mechanism.slides}
-    turns = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}
-    return _Loop(ground, r2, r4, crank, coupler, farthest, (w2, w3, turns[slides.get(4, 4)]))
-
-
-def _link_4(linkage: Linkage, loop: _Loop, e4: ComplexArray, power: FloatArray | None) -> Plane:
-    """The plane of link 4: about O4, or with B along a slide of the ground."""
-    w2, w3, w4 = loop.turns
-    if "o4" in loop.ground:
-        arm = float(getattr(linkage, "r4" if "r4" in linkage.mechanism.lengths else "offset"))
-        still, reach = np.zeros_like(e4), max(loop.r4, abs(arm))
-        return Plane(still + loop.ground["o4"], e4, still, w4, np.array([complex(arm)]), 0j, reach, power)
-    b, way = loop.ground["o2"] + loop.crank + loop.coupler, 1j * (w2 * loop.crank + w3 * loop.coupler)
-    return Plane(b, e4 / 1j, way, w4, np.array([0j]), 0j, loop.r4, power)
+    turn4 = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}[slides.get(4, 4)]
+    given = None if power is None else power * w2
+    still, way = np.zeros_like(crank), 1j * w2 * crank
+    far, p = complex(farthest), complex(*linkage.coupler_point)
+    corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
+    if "o4" in ground:  # about O4
+        arm = float(getattr(linkage, "r4" if "r4" in sizes else "offset"))
+        end, reach = np.array([complex(arm)]), max(r4, abs(arm))
+        link4 = Plane(still + ground["o4"], e4, still, turn4, end, 0j, reach, given)
+    else:  # with B along a slide of the ground
+        b, way_b = o2 + crank + coupler, 1j * (w2 * crank + w3 * coupler)
+        link4 = Plane(b, e4 / 1j, way_b, turn4, np.array([0j]), 0j, r4, given)
+    return {
+        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
+        "coupler": Plane(o2 + crank, e3, way, w3, corners, far / 2, length, given),
+        "output": link4,
+    }
 
 
 def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Performance:

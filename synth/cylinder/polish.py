@@ -13,9 +13,9 @@ from grashof.synth.cylinder.planes import Plane, Room, performance
 _STEP = 1e-7  # of differences
 _MOST = 60  # iterations of quadratic programmes
 _ROUNDS, _FIRST, _LEAST, _WIDEST = 40, 0.02, 1e-9, 0.3  # linear programmes, and their region of trust
-_GAIN = 1e-10  # sine of the lever angle; less is not worth another programme
+_GAIN = 1e-10  # sine of the lever angle; less does not justify another programme
 _WEIGHT = 300.0  # of a limit, in logarithms, against a lever
-_INSIDE = 1e-9  # limits are kept by so much in linear programmes, since they end on them
+_INSIDE = 1e-9  # margin to the limits in linear programmes, since they end on them
 
 Pivots = tuple[complex, complex]  # of the link, and the base
 
@@ -23,7 +23,7 @@ Pivots = tuple[complex, complex]  # of the link, and the base
 def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     """The least lever t made greatest with all levers at least t, by quadratic programmes (SLSQP).
 
-    The pivots that come of it may be beyond the limits.
+    The resulting pivots may be beyond the limits.
     """
     from scipy import optimize  # only here, and few problems have cylinders
 
@@ -62,12 +62,12 @@ def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     levers, limits = scale.margins(x[None])
     score = _score(levers, limits)
     for _ in range(_ROUNDS):
-        step, promised = _step(scale, x, trust, levers[0], limits[0])
-        if promised - score < _GAIN or trust < _LEAST:
+        step, predicted = _step(scale, x, trust, levers[0], limits[0])
+        if predicted - score < _GAIN or trust < _LEAST:
             break
         next_levers, next_limits = scale.margins((x + step)[None])
         reached = _score(next_levers, next_limits)
-        share = (reached - score) / (promised - score)
+        share = (reached - score) / (predicted - score)
         if share > 0:
             x, levers, limits, score = x + step, next_levers, next_limits, reached
         trust = trust / 3 if share < 0.25 else min(2 * trust, _WIDEST) if share > 0.75 else trust
@@ -81,7 +81,7 @@ def _score(levers: FloatArray, limits: FloatArray) -> float:
 def _step(
     scale: _Scale, x: FloatArray, trust: float, levers: FloatArray, limits: FloatArray
 ) -> tuple[FloatArray, float]:
-    """The step that is best where all is linear, and the score that it promises."""
+    """The best step of the linear model, and the score that it predicts."""
     from scipy import optimize
 
     count = len(limits)

@@ -12,17 +12,17 @@ from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
 from grashof.synth.theory.stopping import overdue
 
 _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24
-_FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
+_FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and its factor after each round
 _PENALTY = 10.0
 _BLOCK = 500
-_BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
-_HOPELESS = -0.5  # score so far below zero is not mended
+_BEST, _APART = 2000, 0.12  # parents are among the best, and this far apart as a share of the room
+_HOPELESS = -0.5  # a lower score cannot be repaired
 _POLISHED, _AGAIN = 8, 3
 # Cylinders polished to the end, and how often linear programmes follow quadratic ones.
 _FINISHED, _TURNS = 2, 2
 _GAIN = 1e-9  # of the sine of the lever angle, below which a programme more is not worth it
-COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
-_OVER = 0.15  # of their box: so far beyond it bases are drawn, and put back on its sides, where the best are
+COARSE, FINE = 4, 2  # steps between samples that suffice to compare, and to polish
+_OVER = 0.15  # share of their box by which bases are drawn beyond it, to be put on its sides, as the best are
 _MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 
@@ -60,7 +60,7 @@ def _searched(
         return None, False
     tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
     tried += [by_quadratic(coarse, room, pair) for pair in tried if not overdue()]
-    for _ in range(_AGAIN):  # it may go on from where it stopped
+    for _ in range(_AGAIN):  # it may continue from where it stopped
         tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2) if not overdue()]
     for pair in _best_of(plane, room, tried, _FINISHED):  # between all samples
         tried += [] if overdue() else _finished(plane, room, pair)
@@ -79,10 +79,7 @@ def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray
 
 
 def _finished(plane: Plane, room: Room, first: Pivots) -> list[Pivots]:
-    """What linear programmes make of a cylinder, and quadratic ones in turn.
-
-    Linear ones are exact where many limits are active, and quadratic ones go on where few are.
-    """
+    """A cylinder after linear programmes (best where many limits are active) and quadratic ones (few)."""
     found = [by_linear(plane, room, first)]
     for _ in range(_TURNS):
         found.append(by_quadratic(plane, room, found[-1]))
@@ -110,7 +107,7 @@ def _score(room: Room, found: Performance) -> FloatArray:
 
 
 def _thinned(plane: Plane, step: int) -> Plane:
-    """The plane at every so many samples, and at the last."""
+    """The plane at every `step`-th sample, and at the last."""
     kept = np.unique(np.append(np.arange(0, len(plane.axis), step), len(plane.axis) - 1))
     power = None if plane.power is None else plane.power[kept]
     frame = {name: getattr(plane, name)[kept] for name in ("origin", "axis", "slide", "turn")}
@@ -175,7 +172,7 @@ def _closed_in(
 def _distinct(
     room: Room, points: ComplexArray, bases: ComplexArray, most: int, least: float = 0.02
 ) -> list[int]:
-    """At most so many cylinders that are not like a better one, in their order."""
+    """At most `most` cylinders, each at least `least` of the room from every better one, in their order."""
     size = float(np.hypot(*(room.high - room.low))) + room.reach
     kept: list[int] = []
     for k in range(len(points)):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Design
-from grashof.analysis.judge.limits import SLACK
+from grashof.analysis.judge.measures import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity

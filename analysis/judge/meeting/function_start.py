@@ -66,15 +66,12 @@ def begins(
             f"mechanism {linkage.mechanism.word} has no output that {way}; the function requires one"
         )
     search = _Search(linkage, task, exact or task.norm == "rms", transmission)
-    found: list[tuple[float, int, float]] = []
-    for direction in directions:
-        if theta2_start is not None:
-            found.append((search.value(theta2_start, direction), direction, theta2_start))
-            continue
-        found += search.valleys(direction)
-    found = sorted(one for one in found if np.isfinite(one[0]))[: 1 if theta2_start is not None else _VALLEYS]
     if theta2_start is None:
-        found = search.bottoms(found)
+        lowest = sorted(valley for direction in directions for valley in search.valleys(direction))
+        found = search.bottoms(lowest[:_VALLEYS])
+    else:
+        given = [(search.value(theta2_start, direction), direction, theta2_start) for direction in directions]
+        found = sorted(one for one in given if np.isfinite(one[0]))[:1]
     if not found:
         return None
     least = min(value for value, _, _ in found)

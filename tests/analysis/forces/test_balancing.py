@@ -25,7 +25,7 @@ from grashof.analysis import (
 from grashof.analysis.mechanism.means import mean_over
 from grashof.problems import AssemblyError, FourBar, ProblemError
 
-CHECKED = settings(max_examples=25)
+CHECKED = settings(max_examples=10)
 TURN = 2 * np.pi
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]

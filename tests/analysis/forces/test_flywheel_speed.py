@@ -26,15 +26,16 @@ BARS = uniform_bars(JACK, (312, 312, 314))
 LOADS = Loads(gravity=(0, -9.81), springs=(Spring(1, (0, 6), 4, (2, 0), 9e3, 1.0),))
 
 
-@pytest.mark.parametrize("linkage", LINKAGES)
-@pytest.mark.parametrize("omega2", [TURN / 3, -TURN / 3])
-@pytest.mark.parametrize("fluctuation", [0.05, 0.3])
+@pytest.mark.parametrize(
+    ("linkage", "omega2", "fluctuation"),
+    [(LINKAGES[0], TURN / 3, 0.05), (LINKAGES[1], -TURN / 3, 0.3), (LINKAGES[2], TURN / 3, 0.3)],
+)
 def test_the_speed_varies_by_the_fluctuation_about_its_mean(
     linkage: Linkage, omega2: float, fluctuation: float
 ) -> None:
     bars = uniform_bars(linkage, 312.0)
     wheel = size_flywheel(linkage, bars, omega2, fluctuation, LOADS)
-    theta2 = np.linspace(0, TURN, 2001)
+    theta2 = np.linspace(0, TURN, 1001)
     speed = flywheel_speed(linkage, bars, omega2, wheel, theta2, LOADS)
     assert np.ptp(speed) == pytest.approx(fluctuation * abs(omega2), rel=1e-5)
     assert (speed.max() + speed.min()) / 2 == pytest.approx(omega2, rel=1e-5)

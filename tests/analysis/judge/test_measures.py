@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.limits import missed
-from grashof.analysis.judge.measures import MEASURES, PARTS, Values
+from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
 from grashof.analysis.judge.over_task import motion_ends, over_task
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
@@ -50,9 +49,9 @@ def planted(seed: int, kind: str = "motion") -> Values:
     return Values(linkage, verify(linkage, task, problem.requirements, problem=problem), problem)
 
 
-@pytest.fixture(scope="module", params=range(6))
+@pytest.fixture(scope="module", params=[(0, "motion"), (1, "path"), (2, "closed")], ids=lambda each: each[1])
 def values(request: pytest.FixtureRequest) -> Values:
-    return planted(request.param, ("motion", "path", "closed")[request.param % 3])
+    return planted(*request.param)
 
 
 def test_every_quantity_is_measured_once() -> None:
@@ -174,13 +173,17 @@ def limiting(key: str, low: float, high: float) -> Any:
     )
 
 
-@pytest.mark.parametrize("key", MEASURED)
 @pytest.mark.parametrize("kind", ["motion", "closed"])
-def test_whatever_is_measured_can_be_limited(key: str, kind: str) -> None:
+def test_every_measured_quantity_can_be_limited(kind: str) -> None:
     values = planted(2, kind)
+    known = [key for key in MEASURED if not np.isnan(values[key])]
+    assert len(known) > len(MEASURED) / 2
+    for key in known:
+        check_limits(values, key)
+
+
+def check_limits(values: Values, key: str) -> None:
     value, shown = values[key], MEASURED[key].unit.shown
-    if np.isnan(value) or (QUANTITIES[key].needs.value == "a closed path" and kind != "closed"):
-        return
     assert not list(missed(values, limiting(key, value, value)))
     step = {Unit.ANGLE: 1.0, Unit.RATIO: abs(value) + 0.01}.get(MEASURED[key].unit) or values.problem.scale(
         MEASURED[key]

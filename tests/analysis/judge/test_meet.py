@@ -38,7 +38,7 @@ def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
 @pytest.mark.parametrize("poses", [2, 4, 12])
 @pytest.mark.parametrize("mixed", [False, True])
 def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
-    for seed in range(8):
+    for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([poses, seed]), poses, timed=True)
         task = freed(task) if mixed and poses > 2 else task
         for order in (True, False):
@@ -52,13 +52,13 @@ def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
 
 @pytest.mark.parametrize("mixed", [False, True])
 def test_no_other_first_angle_has_less_squares(mixed: bool) -> None:
-    for seed in range(6):
+    for seed in range(3):
         rng = np.random.default_rng([9, seed])
         task, linkage = planted_motion(rng, 7, timed=True)
         task = moved(task, rng, 0.1)
         task = freed(task, weights=task.weights) if mixed else task
         verdict = verify(linkage, task, LEAST)
-        first = np.linspace(0, TURN, 20_000)[:, None]
+        first = np.linspace(0, TURN, 4000)[:, None]
         around = [squares_at(linkage, task, first + sense * task.driver_turns).min() for sense in (1, -1)]
         assert verdict.square <= min(around) * (1 + 1e-9)
         assert verdict.square == pytest.approx(squares_at(linkage, task, verdict.theta2), rel=1e-9)
@@ -72,7 +72,7 @@ def test_timed_poses_are_met_from_a_given_angle_on() -> None:
 
 @pytest.mark.parametrize("timed", [False, True])
 def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
-    for seed in range(6):
+    for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([3, seed]), 5, timed=timed)
         plain, closed = (
             verify(linkage, each, LEAST)
@@ -87,7 +87,7 @@ def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
 
 
 def test_positions_alone_are_met_as_points() -> None:
-    for seed in range(6):
+    for seed in range(3):
         rng = np.random.default_rng([8, seed])
         path, linkage = planted_path(rng, 6)
         places = path.points + 0.1 * path.size * rng.normal(size=(6, 2))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, grashof_class, solve_position
 from grashof.analysis.judge.planted import planted_motion, random_full_crank, uneven_driver_angles
 
-CHECKED = settings(max_examples=60)
+CHECKED = settings(max_examples=20)
 
 
 def test_random_linkages_turn_fully_either_way_and_spread_as_promised() -> None:

@@ -76,7 +76,7 @@ def assert_no_angle_of_a_scan_is_nearer(close_loop: Brute, linkage: FourBar, tas
 
 
 @given(seed=SEEDS, parts=PARTS)
-@settings(max_examples=50)
+@settings(max_examples=15)
 def test_exact_parts_are_met_to_rounding(seed: int, parts: Parts) -> None:
     whole, linkage = planted_motion(np.random.default_rng(seed), len(parts))
     task = freed(whole, parts)
@@ -116,7 +116,7 @@ def test_no_driver_angle_of_a_scan_comes_nearer_for_any_class(
 
 
 @given(seed=SEEDS, parts=PARTS)
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_errors_are_those_of_the_angles(close_loop: Brute, seed: int, parts: Parts) -> None:
     """Of those that are found, and of any others on either assembly."""
     rng = np.random.default_rng(seed)

@@ -18,7 +18,7 @@ def recomputed(design: PublishedDesign, task: PathTask) -> float:
         gap = solve_position(design.linkage, design.theta2).p - task.points
         return float((gap**2).sum())
     if design.error_definition is ErrorDefinition.BEST_START:
-        start = np.linspace(0, 2 * np.pi, 72001)
+        start = np.linspace(0, 2 * np.pi, 18001)
         assert task.timing is not None
         by_start = np.zeros(len(start))
         for turn, point in zip(task.timing, task.points, strict=True):

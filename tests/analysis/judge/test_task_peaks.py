@@ -17,7 +17,7 @@ from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 
 HEAVY = DynamicsSpec(speed_rpm=40, mass_per_length=2.0, payload=3.0, gravity=(0.0, -9.81))
-SOME = 8
+SOME = 4
 
 
 @pytest.fixture(scope="module")

@@ -171,7 +171,7 @@ def test_a_misplaced_coupler_point_alone_moves_as_far_as_it_is_misplaced(band: f
     assert yield_monte_carlo(CRANK_ROCKER, task, verdict, band, errors) == pytest.approx(linear, abs=1e-4)
 
 
-@pytest.mark.quick("1", "2", "3", "4", "5")
+@pytest.mark.quick("1", "4")
 @pytest.mark.parametrize("index", range(6))
 def test_one_inexact_dimension(index: int) -> None:
     """The worst target moves in proportion: a share of one normal variable."""
@@ -198,11 +198,11 @@ def test_shares_are_those_of_linkages_made_one_by_one(kind: str) -> None:
     else:
         task, linkage = planted_path(rng, 5, timed=kind == "timed path")
     verdict = verify(linkage, task, Requirements(rotatability_margin=0, link_length=(0, 1e3)))
-    errors = dimension_errors(Manufacturing(0.02 * task.size), 400, np.random.default_rng(2))
+    errors = dimension_errors(Manufacturing(0.02 * task.size), 150, np.random.default_rng(2))
     moves = moves_one_by_one(linkage, task, verdict, errors)
     for band in np.quantile(moves[np.isfinite(moves)], [0.2, 0.5, 0.9]):
         found = yield_monte_carlo(linkage, task, verdict, float(band), errors)
-        assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 400)
+        assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 150)
 
 
 @pytest.mark.slow

@@ -235,7 +235,7 @@ def test_every_cut_is_in_equilibrium(four_bars: Drawer, kind: GrashofClass, data
 @pytest.mark.parametrize("smallest_mu", [1e-3, 1e-5])
 def test_the_far_end_closes_close_to_dead_positions(smallest_mu: float) -> None:
     rng = np.random.default_rng(5)
-    for _ in range(20):
+    for _ in range(4):
         # At theta2 = 0 the diagonal is r1 - r2, and mu little.
         r2, r3 = rng.uniform(0.5, 1.5), rng.uniform(2.5, 4.0)
         r4 = rng.uniform(2.0, 4.0)

@@ -24,7 +24,7 @@ from grashof.analysis import (
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import FourBar, MotionTask, Requirements
 
-CHECKED = settings(max_examples=25)
+CHECKED = settings(max_examples=10)
 # In general position, so that no two limits are missed at once.
 CRANK_ROCKER = FourBar(
     o2=(0.5, -1), o4=(4.2, 0.3), r2=1.1, r3=3.2, r4=2.6, coupler_point=(1.5, 0.8), body_angle=0.3

@@ -40,7 +40,7 @@ ANY = Requirements(
 SWINGING = [GrashofClass.NON_GRASHOF, GrashofClass.SLIDER_ROCKER, GrashofClass.INVERTED_SLIDER_ROCKER]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("timed", [False, True], ids=["free", "timed"])
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_planted_tasks_are_met(mechanism, timed, seed) -> None:
@@ -53,7 +53,7 @@ def test_planted_tasks_are_met(mechanism, timed, seed) -> None:
         assert (verdict.assembly == linkage.assembly).all()
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_a_target_moved_away_is_missed_by_its_distance_at_most(mechanism, seed) -> None:
     task, linkage = planted_path(np.random.default_rng(seed), 6, mechanism=mechanism)
@@ -70,7 +70,7 @@ def test_a_target_moved_away_is_missed_by_its_distance_at_most(mechanism, seed) 
 
 @pytest.mark.parametrize("kind", SWINGING)
 def test_drivers_that_swing_do_planted_tasks_in_either_sense(linkages, kind) -> None:
-    @settings(max_examples=12)
+    @settings(max_examples=5)
     @given(linkages(kind), st.booleans(), st.booleans())
     def check(linkage, back, poses) -> None:
         low, high = driver_ranges(linkage)[0]
@@ -94,7 +94,7 @@ def test_drivers_that_swing_do_planted_tasks_in_either_sense(linkages, kind) -> 
 
 @pytest.mark.parametrize("kind", SWINGING)
 def test_both_assemblies_are_one_circuit_and_two_branches(linkages, kind) -> None:
-    @settings(max_examples=8)
+    @settings(max_examples=4)
     @given(linkages(kind))
     def check(linkage) -> None:
         low, high = driver_ranges(linkage)[0]
@@ -120,10 +120,9 @@ def test_the_two_assemblies_of_a_full_crank_are_two_circuits(mechanism) -> None:
     assert verdict.error_max < 1e-9 * task.size
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_every_quantity_has_a_value_or_is_not_of_the_kind(mechanism, seed) -> None:
-    task, linkage = planted_path(np.random.default_rng(seed), 6, mechanism=mechanism)
+def test_every_quantity_has_a_value_or_is_not_of_the_kind(mechanism) -> None:
+    task, linkage = planted_path(np.random.default_rng(0), 6, mechanism=mechanism)
     problem = Problem(
         task=task, requirements=ANY, mechanism=mechanism, manufacturing=Manufacturing(1e-3 * task.size)
     )
@@ -146,7 +145,7 @@ _MAY_LACK = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_stroke_is_the_way_of_the_slider(seed) -> None:
     rng = np.random.default_rng(seed)
     task, linkage = planted_path(rng, 5, mechanism="slider-crank")
@@ -160,7 +159,7 @@ def test_the_stroke_is_the_way_of_the_slider(seed) -> None:
         assert values["stroke"] == pytest.approx(np.ptp(travel), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_swing_and_size_are_those_of_dense_positions(mechanism, seed) -> None:
     task, linkage = planted_path(np.random.default_rng(seed), 5, mechanism=mechanism)
@@ -175,10 +174,9 @@ def test_swing_and_size_are_those_of_dense_positions(mechanism, seed) -> None:
         assert values["output_swing"] == pytest.approx(np.ptp(theta4), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) -> None:
-    task, linkage = planted_path(np.random.default_rng(seed), 5, mechanism=mechanism)
+def test_small_deviations_move_targets_as_exact_positions_do(mechanism) -> None:
+    task, linkage = planted_path(np.random.default_rng(0), 5, mechanism=mechanism)
     verdict = verify(linkage, task, ANY)
     step = 1e-6 * task.size
     made = robustness(linkage, task, verdict, Manufacturing(step))
@@ -197,7 +195,7 @@ def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) ->
     assert np.allclose(moves.theta4, turned.T, rtol=1e-3, atol=1e-8)
 
 
-@pytest.mark.quick("slider-crank", "inverted-slider-crank")
+@pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_what_reaches_into_an_area_is_named(mechanism) -> None:
     task, linkage = planted_path(np.random.default_rng(2), 5, mechanism=mechanism)

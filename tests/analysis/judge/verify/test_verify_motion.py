@@ -42,7 +42,7 @@ def test_what_does_the_whole_task_does_it_with_parts_left_free(
     poses: int, places: list[int], angles: list[int]
 ) -> None:
     """An angle alone is met at several driver angles, on both assemblies: one way through them will do."""
-    for seed in range(20):
+    for seed in range(6):
         task, linkage = planted(seed, poses)
         free = freed(task, places, angles)
         size = free.size / task.size  # what is judged by the size may be less now

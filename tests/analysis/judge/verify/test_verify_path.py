@@ -104,7 +104,7 @@ def test_a_closed_task_needs_a_driver_that_turns(poses: bool) -> None:
         task = MotionTask(state.p, state.theta3, closed=closed) if poses else path
         verdict = verify(ROCKER, task, Requirements(rotatability="any"))  # type: ignore[arg-type]
         assert [defect.requirement for defect in verdict.defects] == ["rotatability"] * closed
-        whole = f"a closed {task.kind} takes a whole turn"
+        whole = f"a closed {task.kind} takes a full turn"
         assert all(whole in str(defect) for defect in verdict.defects)
 
 
