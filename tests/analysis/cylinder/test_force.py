@@ -1,4 +1,4 @@
-"""The force of a cylinder on every kind of one loop: what it leaves of the drive torque is nothing."""
+"""The force of a cylinder on every kind of one loop: it leaves no drive torque."""
 
 from dataclasses import replace
 from itertools import product
@@ -45,7 +45,7 @@ def range_of(linkage: Linkage) -> np.ndarray:
 
 
 def left(state: Kinematics, jack: Cylinder, loads: Loads, force: np.ndarray) -> float:
-    """What torque is left where the cylinder pushes, by the links one by one and by all equations at once."""
+    """Torque left where the cylinder pushes, by the links one by one and by all equations at once."""
     found = cylinder_state(jack, state.linkage, state)
     push = force[:, None] * (found.pivot - np.array(jack.base)) / found.length[:, None]
     pushed = replace(loads, forces=(*loads.forces, AppliedForce(jack.link, jack.point, push)))

@@ -130,7 +130,7 @@ def test_extremes_are_those_of_dense_samples(
         assert found.angle_min == 0
 
 
-def test_a_cylinder_that_reverses_or_whose_pivot_stands_does_not_drive() -> None:
+def test_a_cylinder_that_reverses_or_whose_pivot_rests_does_not_drive() -> None:
     assert full_rotation(CRANK)
     found = cylinder_figures(Cylinder("driver", (3, 0), (1, 0)), moved_by(CRANK, [-0.6, 0.9]))
     assert (found.monotone, found.angle_min) == (False, 0.0)  # in line with its arm at 0

@@ -122,7 +122,7 @@ def _rods(omega4: np.ndarray) -> np.ndarray:
     return np.stack([np.zeros_like(load), load], axis=-1)
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     bars, state = uniform_bars(JACK, 300.0), solve_kinematics(JACK, np.linspace(0, 6, 20))
     gravity = Loads(gravity=(0, -9.81))
     with pytest.raises(ProblemError, match="gravity is zero"):

@@ -137,7 +137,7 @@ def test_dead_and_open_positions_have_no_finite_forces() -> None:
     np.testing.assert_array_equal(np.isfinite(found.f43).all(axis=-1), [True, False, False])
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     state, masses = solve_kinematics(JACK, 0.3), uniform_bars(JACK, 2.0)
     for loads, message in (
         (Loads(gravity=(0, 0, 1)), "gravity is"),

@@ -95,7 +95,7 @@ def test_an_even_torque_needs_no_flywheel() -> None:
     assert wheel.energy == pytest.approx(0, abs=1e-15)
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     with pytest.raises(AssemblyError, match="turn fully"):
         size_flywheel(FourBar((0, 0), (4, 0), 2, 2, 3), BARS, 1.0, 0.1)
     for speed, share in ((0.0, 0.1), (1.0, 0.0), (1.0, float("nan"))):

@@ -72,7 +72,7 @@ def test_forces_turn_with_their_link_or_do_not() -> None:
     np.testing.assert_allclose(felt[2].moment, 3.0 * np.cos(STATE.theta2))
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     with pytest.raises(ProblemError, match="coulomb friction"):
         Friction(coulomb=(1, 2, 3)).each("coulomb")
     with pytest.raises(ProblemError, match="gravity"):

@@ -56,7 +56,7 @@ def test_the_secondary_force_is_not_changed_and_the_series_is_the_force() -> Non
     np.testing.assert_allclose((waves @ before).real, shaking, rtol=0, atol=1e-11 * np.abs(shaking).max())
 
 
-def test_what_has_no_harmonics_is_refused() -> None:
+def test_a_linkage_without_harmonics_is_refused() -> None:
     none = Masses(Body(0), Body(0), Body(1))
     with pytest.raises(AssemblyError, match="does not turn fully"):
         shaking_harmonics(SliderCrank((0, 0), 2, 1), none, 1.0)

@@ -167,8 +167,8 @@ def test_strength_over_a_turn_is_that_of_a_dense_search(
         long = float(longest_travel(linkage)) * metre
         euler = np.pi**2 * 210e9 * 0.03 * 0.05**3 / 12 / long**2
         crushing = 235e6 * 0.05 * 0.03
-        stands = euler if 2 * euler < crushing else crushing * (1 - crushing / (4 * euler))
-        assert limit.limit == pytest.approx(stands, rel=1e-9)
+        expected = euler if 2 * euler < crushing else crushing * (1 - crushing / (4 * euler))
+        assert limit.limit == pytest.approx(expected, rel=1e-9)
 
 
 def test_sliders_and_blocks_are_no_bars() -> None:

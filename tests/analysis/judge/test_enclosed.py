@@ -13,7 +13,7 @@ from grashof.analysis.judge.planted import planted_function, planted_motion, pla
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Box, FourBar, Linkage, PathTask, Requirements, Task, load
 
-# Limits of dimensions, which hang on no driver angle.
+# Limits of dimensions, which do not depend on the driver angle.
 OF_DESIGN = {"link_length", "link_ratio_max", "coupler_arms", "rotatability"}
 LOOSE = Requirements(rotatability="any")  # type: ignore[arg-type]
 
@@ -85,7 +85,7 @@ def test_a_dead_position_between_targets_is_not_verified() -> None:
     assert "dead position over the task motion" in shown.why
 
 
-def test_what_is_plainly_wrong_contradicts() -> None:
+def test_a_plainly_wrong_verdict_is_contradicted() -> None:
     task, linkage = planted_motion(np.random.default_rng(3), 4)
     wanted = Requirements()
     verdict = verify(linkage, task, wanted)
@@ -107,10 +107,10 @@ def test_what_is_plainly_wrong_contradicts() -> None:
         assert what in shown.why
 
 
-def test_a_limit_within_the_judges_slack_is_said_to_be_undecided() -> None:
+def test_a_limit_within_the_slack_of_the_judge_is_undecided() -> None:
     task, linkage = planted_motion(np.random.default_rng(3), 4)
     verdict = verify(linkage, task, Requirements())
-    # The judge grants 1e-9 rad: exactly so far, where the enclosure of 2e-10 rad cannot tell.
+    # The judge grants 1e-9 rad: exactly at that limit the enclosure of 2e-10 rad cannot decide.
     limit = float(np.degrees(verdict.transmission_min_task + 1e-9))
     shown = enclose([linkage], task, Requirements(transmission_min_deg=limit), [verdict])[0]
     assert (shown.holds, shown.contradicts) == (False, False)

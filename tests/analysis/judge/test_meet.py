@@ -15,7 +15,7 @@ TURN = 2 * np.pi
 
 
 def freed(task: MotionTask, **rest: Any) -> MotionTask:
-    """Whole poses, points and angles in turn."""
+    """Full poses, points and angles in turn."""
     positions, angles = task.positions.copy(), task.angles.copy()
     angles[1::3], positions[2::3] = np.nan, np.nan
     return MotionTask(positions, angles, timing=task.timing, **rest)
@@ -71,7 +71,7 @@ def test_timed_poses_are_met_from_a_given_angle_on() -> None:
 
 
 @pytest.mark.parametrize("timed", [False, True])
-def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
+def test_closed_poses_take_a_full_turn(timed: bool) -> None:
     for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([3, seed]), 5, timed=timed)
         plain, closed = (
@@ -98,7 +98,7 @@ def test_positions_alone_are_met_as_points() -> None:
 
 
 def test_weights_of_points_move_where_they_are_met_together() -> None:
-    """Two points out of order stand together: at the better of the two for the heavier one."""
+    """Two points out of order are met together: at the better place for the heavier one."""
     linkage = random_full_crank(np.random.default_rng(2))
     places = solve_position(linkage, [0.1, 1.4, 1.2, 2.5]).p
     errors = []

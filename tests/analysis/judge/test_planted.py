@@ -40,7 +40,7 @@ def test_driver_angles_go_one_way_with_uneven_gaps(seed: int, count: int) -> Non
 
 @given(seed=st.integers(0, 2**32), poses=st.integers(2, 12))
 @CHECKED
-def test_planted_linkage_stands_in_every_pose(seed: int, poses: int) -> None:
+def test_a_planted_linkage_meets_every_pose(seed: int, poses: int) -> None:
     task, linkage = planted_motion(np.random.default_rng(seed), poses)
     assert len(task) == poses
     theta3 = task.angles - linkage.body_angle

@@ -144,7 +144,7 @@ def test_errors_have_three_deviations_in_the_tolerance() -> None:
     np.testing.assert_allclose((np.abs(errors) <= 0.3).mean(axis=0), 0.9973, atol=5e-4)
 
 
-def test_made_linkages_deviate_in_what_is_made_alone() -> None:
+def test_made_linkages_deviate_in_their_dimensions_alone() -> None:
     errors = 0.1 * np.random.default_rng(1).standard_normal((5, 6))
     errors[4, 2] = -CRANK_ROCKER.r3 - 1
     batch, possible = made_linkages(CRANK_ROCKER, errors)
@@ -205,24 +205,6 @@ def test_shares_are_those_of_linkages_made_one_by_one(kind: str) -> None:
         assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 150)
 
 
-@pytest.mark.slow
-@given(seed=st.integers(0, 2**32), motion=st.booleans())
-@settings(max_examples=25)
-def test_small_tolerances_agree_linearised_and_exact(seed: int, motion: bool) -> None:
-    rng = np.random.default_rng(seed)
-    task, linkage = planted_motion(rng, 4) if motion else planted_path(rng, 5)
-    verdict = verify(linkage, task, Requirements(rotatability_margin=0, link_length=(0, 1e3)))
-    if not verdict.branch_ok or verdict.transmission_min_task < np.radians(10):
-        return
-    tolerance = 1e-4 * float(linkage.lengths.min())
-    moves = robustness(linkage, task, verdict, Manufacturing(tolerance)).moves
-    found = robustness(
-        linkage, task, verdict, Manufacturing(tolerance, band=float(np.linalg.norm(moves)) * tolerance / 3)
-    )
-    assert 0.05 < found.share_linear < 0.95
-    assert abs(found.share_made - found.share_linear) < 3 * standard_error(found.share_linear)
-
-
 def test_the_difference_vanishes_with_the_tolerance() -> None:
     task, verdict = poses_of(CRANK_ROCKER, np.array([0.3, 0.9, 1.5]))
     unit = dimension_errors(Manufacturing(1.0), SAMPLES, np.random.default_rng(0))
@@ -259,7 +241,7 @@ def stretched(theta2: FloatArray, gap: float) -> tuple[FourBar, MotionTask, Verd
 def test_linkages_that_cannot_be_assembled_are_outside(theta2: list[float], closed: bool) -> None:
     """In a band that holds all others: r3 + r4 - r1 - r2 is normal with twice a dimension's deviation."""
     linkage, task, verdict = stretched(np.array(theta2), gap=0.01)
-    if closed:  # a whole turn
+    if closed:  # a full turn
         task = PathTask(task.positions, closed=True)
         verdict = verify(linkage, task, replace(ANY, order=True, same_branch=True))
         assert verdict.ok

@@ -222,7 +222,7 @@ def test_a_walking_beam_bends_over_its_saddle() -> None:
     np.testing.assert_allclose(bar.at([-4.572, -1]).shear, -20000 * np.cos(state.theta4)[:, None] * [1, 1])
 
 
-def test_a_body_of_the_whole_beam_is_that_beam() -> None:
+def test_a_body_of_the_full_beam_is_that_beam() -> None:
     """From B over O4 to the horsehead, stated by mass, centre and inertia alone."""
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=2)
     beam = uniform_bar(6.0, 2.0)
@@ -248,7 +248,7 @@ def test_wide_bars_turn_their_sections() -> None:
     np.testing.assert_allclose(wide.at(u).shear, slender.at(u).shear, atol=1e-12)
 
 
-def test_what_hangs_beside_a_bar_acts_through_an_arm_at_its_foot() -> None:
+def test_a_load_beside_a_bar_acts_through_an_arm_at_its_foot() -> None:
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1, coupler_point=(1.0, 2.0))
     state = solve_kinematics(linkage, np.pi / 2, 0.0)
     pushed = Loads(forces=(AppliedForce(3, (1.0, 2.0), (30.0, -7.0)),))
@@ -301,7 +301,7 @@ def test_a_beam_with_a_crank_weight_is_balanced_over_its_shaft() -> None:
     np.testing.assert_allclose(bar.at([0.0]).moment[:, 0], -4.0 * 10 / 2 * level, atol=1e-12)
 
 
-def test_batches_give_what_single_linkages_give() -> None:
+def test_batches_agree_with_single_linkages() -> None:
     batch = FourBar(o2=(0, 0), o4=(4, 1), r2=[[1.0], [0.8]], r3=[[4.0], [3.9]], r4=3, coupler_point=(1, 2))
     loads = Loads(gravity=(0, -9.81), forces=(AppliedForce(3, (3.95, 0.0), (1.0, 2.0)),))
     theta2 = np.linspace(0, 6, 5)

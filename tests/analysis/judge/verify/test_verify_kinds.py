@@ -1,4 +1,4 @@
-"""Verdicts on linkages of every kind: planted tasks are met, and what is wrong is found."""
+"""Verdicts on linkages of every kind: planted tasks are met, and errors are found."""
 
 from __future__ import annotations
 
@@ -197,7 +197,7 @@ def test_small_deviations_move_targets_as_exact_positions_do(mechanism) -> None:
 
 @pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_what_reaches_into_an_area_is_named(mechanism) -> None:
+def test_parts_that_reach_into_an_area_are_named(mechanism) -> None:
     task, linkage = planted_path(np.random.default_rng(2), 5, mechanism=mechanism)
     verdict = verify(linkage, task, ANY)
     theta2 = verdict.theta2.mean()
@@ -238,7 +238,7 @@ def test_a_verdict_does_not_depend_on_place_size_and_direction(mechanism) -> Non
 
 
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_a_closed_path_is_gone_round(mechanism) -> None:
+def test_a_closed_path_is_followed_all_around(mechanism) -> None:
     linkage = RANDOM[mechanism](np.random.default_rng(1))
     theta2 = np.linspace(0, 2 * np.pi, 13)[:-1]
     task = PathTask(solve_position(linkage, theta2).p, closed=True)
@@ -252,7 +252,7 @@ def test_a_closed_path_is_gone_round(mechanism) -> None:
     assert 0 < values["hausdorff"] <= values["frechet"] * (1 + 1e-9)
 
 
-def test_a_design_has_what_its_kind_has() -> None:
+def test_a_design_has_the_dimensions_of_its_kind() -> None:
     angles, signs = np.array([0.3, 0.5]), np.array([1, 1])
     slider = Design.of(SliderCrank(o2=(0, 0), r2=1, r3=3, offset=0.5), angles, signs)
     assert (slider.o4, slider.r1, slider.r4) == (None, None, None)
