@@ -56,7 +56,7 @@ def test_a_batch_of_kinds_is_as_each_by_itself() -> None:
 def test_random_linkages_contradict_no_verdict() -> None:
     """Whatever the judge accepts at random limits, of linkages near and at their limits."""
     rng, accepted = np.random.default_rng(7), 0
-    for seed in range(12):
+    for seed in range(8):
         task, linkage = planted_motion(np.random.default_rng(seed), 3)
         verdict = verify(linkage, task, Requirements())
         at = np.degrees(verdict.transmission_min_task)
@@ -68,7 +68,7 @@ def test_random_linkages_contradict_no_verdict() -> None:
             assert not shown.contradicts
         if shown.holds:
             assert {defect.requirement for defect in verdict.defects} <= OF_DESIGN
-    assert accepted > 5
+    assert accepted > 3
 
 
 # The crank is 1e-10 too long to turn: open for 1e-5 rad about 180 deg, between the targets at 2.9 and 3.4.

@@ -29,8 +29,8 @@ def followed(linkage: Linkage, theta2: FloatArray) -> FloatArray:
 
 
 @pytest.mark.quick(
-    *(f"{case}-four-bar" for case in ("3-1", "4--1", "9--1")),
-    "4-1-slider-crank", "5--1-slider-crank", "9--1-inverted-slider-crank",
+    *(f"{case}-four-bar" for case in ("3-1", "9--1")),
+    "5--1-slider-crank", "9--1-inverted-slider-crank",
 )  # fmt: skip
 @pytest.mark.parametrize("mechanism", WIDE)
 @pytest.mark.parametrize("direction", [1, -1])

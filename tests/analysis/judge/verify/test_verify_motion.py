@@ -42,7 +42,7 @@ def test_a_design_of_the_full_task_does_it_with_parts_left_free(
     poses: int, places: list[int], angles: list[int]
 ) -> None:
     """An angle alone is met at several driver angles, on both assemblies: one way through them will do."""
-    for seed in range(6):
+    for seed in range(3):
         task, linkage = planted(seed, poses)
         free = freed(task, places, angles)
         size = free.size / task.size  # what is judged by the size may be less now
