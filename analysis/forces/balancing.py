@@ -116,9 +116,8 @@ def balance_force(
 
 def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, ComplexArray]:
     """Factors of the directions of links 2 and 4 in the moment of all masses, in the frames of these."""
-    crank = masses.crank.mass * _complex(masses.crank.centre)
-    output = masses.output.mass * _complex(masses.output.centre)
-    own = _complex(masses.coupler.centre)
+    at_crank, own, at_output = (body.centre @ np.array([1, 1j]) for body in masses.bodies[:3])
+    crank, output = masses.crank.mass * at_crank, masses.output.mass * at_output
     kind = linkage.mechanism
     if len(kind.dyads) > 1:
         raise ProblemError(
@@ -170,7 +169,7 @@ def balance_torque(
     -----
     At steady speed a weight on the crank adds -(r x m g) to the torque, linear in the two
     components of m r: least squares, or a linear programme for the peak. With friction in
-    proportion to the joint forces the result is optimal only nearly.
+    proportion to the joint forces the result is only nearly optimal.
     """
     gravity = _acting(loads)
     if np.ndim(state.theta2) != 1 or np.any(state.alpha2 != 0):
@@ -317,7 +316,3 @@ def _counterweight(moment: ComplexArray, radius: npt.ArrayLike) -> Body:
         raise ProblemError(f"the counterweight's radius is {radius}; it must be greater than zero")
     place = radius * np.exp(1j * np.angle(moment))
     return Body(np.abs(moment) / radius, 0.0, np.stack([place.real, place.imag], axis=-1))
-
-
-def _complex(at: FloatArray) -> ComplexArray:
-    return at[..., 0] + 1j * at[..., 1]

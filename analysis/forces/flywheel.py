@@ -30,7 +30,7 @@ class Flywheel:
     energy : float, N length
         That it takes up and gives back each turn.
     mean_torque : float, N length
-        What a drive of constant torque has to give.
+        Of a drive of constant torque.
     slowest, fastest : float, rad
         Driver angles at which the speed is least and largest.
     """
@@ -96,7 +96,7 @@ def size_flywheel(
     mean = held(float(panels.total) / TURN, 2 * float(panels.error) / TURN)
     samples = np.concatenate([[0.0], gauss_legendre(panels.edges)[0], [1.0]])
     at = np.append(0.0, _passages(lambda share: mean - torque(share), samples))
-    # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
+    # The integral of the torque of the drive less that of the turn is the energy of the flywheel.
     theta2 = motion.theta2(at)
     gained = mean * theta2 - taken(at)
     least, most = (int(choose(gained)) for choose in (np.argmin, np.argmax))

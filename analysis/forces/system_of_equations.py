@@ -78,7 +78,7 @@ def system_of_equations(
     Notes
     -----
     Norton, *Design of Machinery*, sec. 11.4: of each link the sum of forces is m a, and the moments of the
-    joint forces about its centre of mass, R x F = Rx Fy - Ry Fx, with what else turns it, are I alpha.
+    joint forces about its centre of mass, R x F = Rx Fy - Ry Fx, with all other moments, are I alpha.
 
     Examples
     --------

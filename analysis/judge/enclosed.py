@@ -89,15 +89,18 @@ def _of_kind(
     limited = np.arange(len(ends)) // count == int(cycle)
     required = np.where(limited, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
     least = least_transmission(over, ends[:, 0], ends[:, 1], required)
-    at = _at_targets(batch, verdicts)
+    theta2, sign = (np.stack([getattr(v, name) for v in verdicts]) for name in ("theta2", "assembly"))
+    # Where all are at the targets, shape (linkages, targets).
+    at = places(batch[:, None], sign.astype(np.float64), crank(theta2, np.zeros_like(theta2)))
     for k, verdict in enumerate(verdicts):
         row = count + k if cycle else k
         joined = verdict.branch_ok or full
         claims = [_closes(least, k, "the task motion")] if joined else [_UNJOINED]
+        transmits = _compared(-least.hi[row], -least.lo[row], -required[row])
         if full:
             claims.append(_closes(least, count + k, "the turn"))
         claims += [
-            *([_at_least(least.lo[row], least.hi[row], required[row])] if joined or cycle else []),
+            *([_Claim("the transmission angle at its limit", transmits)] if joined or cycle else []),
             *_order(verdict, wanted),
             *_met(at, k, batch, task, wanted),
             *_boxed(at, k, task, wanted),
@@ -117,11 +120,6 @@ def _closes(least: Least, row: int, motion: str) -> _Claim:
     return _Claim(f"closure without a dead position over {motion}", shown)
 
 
-def _at_least(lo: float, hi: float, required: float) -> _Claim:
-    shown = _compared(-hi, -lo, -required)
-    return _Claim("the transmission angle at its limit", shown)
-
-
 def _compared(lo: float, hi: float, most: float, beyond: float = 1e-12) -> _Shown:
     """Whether a number in [lo, hi] is at most `most`; false where it is more by over `beyond`, a rounding."""
     return _Shown.TRUE if hi <= most else _Shown.FALSE if lo > most + beyond else _Shown.OPEN
@@ -135,13 +133,6 @@ def _order(verdict: Verdict, wanted: Requirements) -> Iterator[_Claim]:
         turned = abs(verdict.theta2[-1] - verdict.theta2[0])
         held = (step >= -2 * STEADY).all() and turned <= TURN + 2 * STEADY
         yield _Claim("the order of the targets", _Shown.TRUE if held else _Shown.FALSE)
-
-
-def _at_targets(batch: Linkage, verdicts: list[Verdict]) -> Places:
-    """Where all are at the targets, shape (linkages, targets)."""
-    theta2 = np.stack([verdict.theta2 for verdict in verdicts])
-    sign = np.stack([verdict.assembly for verdict in verdicts]).astype(np.float64)
-    return places(batch[:, None], sign, crank(theta2, np.zeros_like(theta2)))
 
 
 def _met(at: Places, k: int, batch: Linkage, task: Task, wanted: Requirements) -> Iterator[_Claim]:

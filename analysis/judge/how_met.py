@@ -132,7 +132,7 @@ def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements) -> Iterab
 
 @dataclass(frozen=True, slots=True)
 class HowMet:
-    """How a kind of task is met, and the defects against what the task itself requires."""
+    """How a kind of task is met, and the defects against its own requirements."""
 
     met: Callable[[Linkage, Any, Requirements], Met]
     defects: Callable[[Linkage, Any, Requirements], Iterable[Defect]] = _no_defects

@@ -32,8 +32,8 @@ _OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 class Values(Mapping[str, float]):
     """The values of a design by the keys of their quantities, each measured on first use.
 
-    In rad, N, N m and the problem's unit of length. NaN where the problem does not state what one needs, or
-    the linkage has no such value.
+    In rad, N, N m and the problem's unit of length. NaN where the problem lacks the data for one, or the
+    linkage has no such value.
     """
 
     def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:

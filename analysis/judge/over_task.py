@@ -140,17 +140,13 @@ def over_task(
     linkage, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
     fit, rms = float(coupler_fit_r2(linkage, *ends)), torque
     if problem.dynamics is not None and np.isfinite(torque):
-        rms = _torque_rms(linkage, problem.dynamics, metres(problem.length_unit), driver_law(problem, *ends))
+        law = driver_law(problem, *ends)
+        curves = load_curves(linkage, problem.dynamics, metres(problem.length_unit), law)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeadPositionWarning)
+            mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
+        rms = float(np.sqrt(mean))
     return OverTask(omega4, speed, acceleration, fit, torque, rms, force)
-
-
-def _torque_rms(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) -> float:
-    """Root mean square of the torque over time, N m."""
-    curves = load_curves(linkage, spec, metre, law)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
-        mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
-    return float(np.sqrt(mean))
 
 
 class _Motion(NamedTuple):

@@ -63,7 +63,7 @@ class Verdict:
     size : float, length
         Diagonal of the box around O2, O4 and all that A, B and P reach in it.
     defects : tuple of Defect
-        Empty for a design that does what is required.
+        Empty for a design that meets all requirements.
     cylinder : Cylinder, optional
         That drives it, where one does.
     output_error : ndarray, shape (N,), rad

@@ -25,7 +25,7 @@ class Plane:
     joints: ComplexArray  # (J,): the link's own points, in its frame
     middle: complex  # in its frame: its pivot of the ground, or half way from A to B
     reach: float  # from there to pivots: as far as it is long, a slider or block as far as link 2 is
-    power: FloatArray | None = None  # (M,): what a drive gives, N length; None without limit of force
+    power: FloatArray | None = None  # (M,): of the drive, N length; None without limit of force
 
 
 class Performance(NamedTuple):
@@ -55,7 +55,7 @@ def planes_of(
     sizes = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
     ground = {name: complex(*getattr(linkage, name)) for name in linkage.mechanism.ground}
     o2, r2 = ground["o2"], sizes["r2"]
-    crank, r4 = r2 * e2, sizes.get("r4", r2)  # of what slides any length will do
+    crank, r4 = r2 * e2, sizes.get("r4", r2)  # any length suits a link that slides
     if "r3" in sizes:
         farthest, coupler = sizes["r3"], sizes["r3"] * e3
     else:  # a rod, up to the foot of O4 on it
@@ -131,7 +131,7 @@ class Room:
         """The room of a cylinder on the link of a plane.
 
         Sides of the base that the problem leaves open are those of the box around the places (N,) that the
-        linkage reaches, further out by its diagonal, or by what the least closed length takes.
+        linkage reaches, further out by its diagonal, or as the least closed length requires.
         """
         corners = np.array([[np.min(part), np.max(part)] for part in (around.real, around.imag)])
         closed = (0.0, np.inf) if spec.closed is None else spec.closed

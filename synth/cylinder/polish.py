@@ -146,7 +146,7 @@ class _Scale:
         return complex(points[0]), complex(bases[0])
 
     def margins(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Levers, and what the limits leave, of (N, 4) unknowns."""
+        """Levers, and margins to the limits, of (N, 4) unknowns."""
         points, bases = self.pivots(x)
         found = performance(self.plane, points, bases)
         inside = 1 - (np.abs(points - self.room.middle) / self.room.reach) ** 2

@@ -15,7 +15,7 @@ from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import Linkage, ProblemError, Task
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
-_STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
+_STARTS = 720  # driver angles at the first pair that are tried, over the range of the driver
 _VALLEYS = 5
 _NEAR = 17  # places about the lowest ones of valleys, ever closer
 _CLOSE = 1e-10  # rad, between starts: no closer
@@ -168,7 +168,9 @@ class _Search:
         way = way_of(self.task, direction)
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.driver_turns)
-            rate = _output_rate(self.linkage, self.task, state.theta2)
+            loops, _ = close(self.linkage.mechanism, operands_of(self.linkage), state.theta2)
+            first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
+            rate = first.travel if self.task.travels else first.turn4
             if not np.isfinite(rate).all():  # a dead position
                 break
             output = moved_output(self.task, state, direction, unwrapped=False)
@@ -185,13 +187,6 @@ class _Search:
                 break
             at = moved
         return at
-
-
-def _output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
-    """Derivative of the output by the driver angle; not finite in dead positions."""
-    loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
-    first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
-    return first.travel if task.travels else first.turn4
 
 
 def _crest(samples: FloatArray) -> FloatArray:

@@ -28,7 +28,7 @@ _VALLEYS = 3
 _BASINS = 4
 _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
-_STARTS = 360  # driver angles at the first timed target, over what the driver can reach
+_STARTS = 360  # driver angles at the first timed target, over the range of the driver
 
 # Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
 Met: TypeAlias = tuple[FloatArray, IntArray, int]

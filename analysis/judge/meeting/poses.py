@@ -69,7 +69,7 @@ def _rounding(task: Task) -> float:
 def _descend(
     linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Driver angles after Gauss-Newton steps, and what they miss by; each shape (K, N)."""
+    """Driver angles after Gauss-Newton steps, and their misses; each shape (K, N)."""
     ends, model = driver_ranges(linkage), squares(linkage, task, signs)
     best = misses(linkage, task, angle, signs)
     for _ in range(6):
@@ -125,9 +125,9 @@ def poses_in_order(
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
-    On the own assembly and in one range; what is given where there are none. Poses free in part are met at
-    several angles, so nearest places may be out of order: dynamic programming over samples and valleys of the
-    misses, then Newton's method in all angles.
+    On the own assembly and in one range; `nearest` and `motion` where there are none. Poses free in part are
+    met at several angles, so nearest places may be out of order: dynamic programming over samples and valleys
+    of the misses, then Newton's method in all angles.
     """
     own = np.full(len(task), int(linkage.assembly))
     found = list[tuple[FloatArray, float]]()
