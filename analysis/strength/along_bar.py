@@ -24,22 +24,17 @@ class Along(NamedTuple):
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def greatest(bar: BarForces, terms: FloatArray, spans: BoolArray | None = None) -> Along:
-    """Greatest value of polynomials of degree three at most, coefficients (..., K - 1, N) as those of `bar`.
+def greatest(
+    bar: BarForces, *polynomials: FloatArray, size: bool = False, spans: BoolArray | None = None
+) -> Along:
+    """Greatest value or size of any of some polynomials up to degree 3, coefficients (..., K - 1, N) as in `bar`.
 
-    It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) says which
-    count; by default all that there are.
+    It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) states
+    which count; by default all that exist.
     """
-    places = _candidates(bar, terms)
-    return _best(bar, polynomial(terms, places), places, spans)[0]
-
-
-@np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def greatest_size(bar: BarForces, *polynomials: FloatArray) -> Along:
-    """Greatest magnitude of any of several polynomials, as for `greatest`."""
     places = [_candidates(bar, terms) for terms in polynomials]
-    sizes = [np.abs(polynomial(terms, at)) for terms, at in zip(polynomials, places, strict=True)]
-    return _best(bar, np.concatenate(sizes, axis=-1), np.concatenate(places, axis=-1))[0]
+    values = np.concatenate([polynomial(*each) for each in zip(polynomials, places, strict=True)], axis=-1)
+    return _best(bar, np.abs(values) if size else values, np.concatenate(places, axis=-1), spans)[0]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

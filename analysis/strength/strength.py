@@ -16,7 +16,6 @@ from grashof.analysis.strength.along_bar import (
     greatest,
     greatest_deflection,
     greatest_of,
-    greatest_size,
 )
 from grashof.analysis.strength.section_forces import BarForces, section_forces
 from grashof.analysis.strength.structure import MEASURES, Structure
@@ -116,9 +115,9 @@ def _bar_measures(bar: BarForces, structure: Structure) -> dict[str, Along]:
     found = {
         "tension": greatest(bar, bar.normal),
         "compression": greatest(bar, -bar.normal),
-        "thrust": greatest(bar, -bar.normal, bar.between_joints),
-        "shear": greatest_size(bar, bar.shear),
-        "moment": greatest_size(bar, bar.moment),
+        "thrust": greatest(bar, -bar.normal, spans=bar.between_joints),
+        "shear": greatest(bar, bar.shear, size=True),
+        "moment": greatest(bar, bar.moment, size=True),
     }
     reach = bar.stations[..., -1] - bar.stations[..., 0]
     sizes = [found[key].value for key in ("tension", "compression", "shear")]
@@ -146,12 +145,12 @@ def _stresses(bar: BarForces, section: CrossSection) -> dict[str, Along]:
     axial, shear = bar.normal / section.area, bar.shear * (section.shear_factor / section.area)
     bending = bar.moment * (section.extreme_fibre / section.inertia)
     pulled = np.concatenate([axial, np.zeros_like(axial[..., :1])], axis=-1)
-    normal = greatest_size(bar, pulled + bending, pulled - bending)
+    normal = greatest(bar, pulled + bending, pulled - bending, size=True)
     # In fibres further inside, and where it is greatest in the outermost, exactly.
     inner = greatest_of(bar, lambda *stresses: von_mises(*map(np.abs, stresses)), axial, bending, shear)
     deeper = inner.value > normal.value
     stress = Along(np.where(deeper, inner.value, normal.value), np.where(deeper, inner.at, normal.at))
-    return {"normal_stress": normal, "shear_stress": greatest_size(bar, shear), "stress": stress}
+    return {"normal_stress": normal, "shear_stress": greatest(bar, shear, size=True), "stress": stress}
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")

@@ -1,6 +1,7 @@
-"""Where a linkage comes nearest to points: planted paths, and the least sums found anew on dense samples."""
+"""Where a linkage comes nearest to points: planted paths, least sums found anew, assignments to pieces."""
 
 from collections.abc import Callable
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.judge.how_met import meet
+from grashof.analysis.judge.meeting import assignment
+from grashof.analysis.judge.meeting.assignment import _least_costs, _least_costs_of_many, assigned_around
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
@@ -265,3 +268,27 @@ def test_a_rocker_that_swings_too_little_for_the_timing_is_infinitely_far_at_som
     task = PathTask.from_degrees(STILL, timing_deg=[0, 150, 300])
     targets, _ = nearest(rocker, task)
     assert np.isinf(targets.position_error).any()
+
+
+@pytest.mark.parametrize("function", [_least_costs, _least_costs_of_many])
+def test_no_assignment_that_does_not_go_back_costs_less(function) -> None:
+    squared = np.random.default_rng(0).random((4, 6))
+    around, length = np.concatenate([squared, squared], axis=1), 5
+    cuts = np.array([0, 2, 5])
+    least = [
+        min(
+            sum(around[target, cut + piece] for target, piece in enumerate(pieces))
+            for pieces in combinations_with_replacement(range(length), len(squared))
+        )
+        for cut in cuts
+    ]
+    np.testing.assert_allclose(function(around, cuts, length), least, rtol=1e-14)
+
+
+def test_many_targets_have_the_same_sums_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    squared = np.random.default_rng(1).random((150, 40))
+    squared[squared > 0.9] = np.inf
+    found = assigned_around(squared)
+    monkeypatch.setattr(assignment, "_FEW", 1000)
+    for one, other in zip(found, assigned_around(squared), strict=True):
+        np.testing.assert_array_equal(one, other)
