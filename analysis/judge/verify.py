@@ -155,11 +155,10 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     ]
 
 
-def _zones(targets: Targets, task: Task) -> list[Defect]:
+def _zones(targets: Targets, task: Task) -> Iterator[Defect]:
     """Targets that are missed by more than each allows."""
     if task.zones is None:
-        return []
-    defects = []
+        return
     misses = (targets.position_error, targets.angle_error)
     for what, miss, zone, size in zip(
         ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
@@ -171,16 +170,14 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
             key, deg = ("angle_within_deg", " in deg") if what == "angle" else ("within", "")
             found, allowed = unit * float(miss[worst]), f"up to {unit * zone[worst]:.6g}"
             where = f"the {what} error{deg} at target {worst + 1}"
-            defects.append(Defect(key, where, found, allowed, float(over[worst])))
-    return defects
+            yield Defect(key, where, found, allowed, float(over[worst]))
 
 
-def _total_error(targets: Targets, task: Task, most_square: float) -> list[Defect]:
+def _total_error(targets: Targets, task: Task, most_square: float) -> Iterator[Defect]:
     found, most = (float(np.sqrt(square / len(task))) for square in (_square(targets, task), most_square))
     miss = (found - most) / task.size
-    if not miss > SLACK:
-        return []
-    return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
+    if miss > SLACK:
+        yield Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)
 
 
 def _drive(
@@ -207,52 +204,45 @@ def _drive(
 
 def _same_branch(
     circuit_ok: bool, branch_ok: bool, declared: int, targets: Targets, wanted: Requirements
-) -> list[Defect]:
-    if not wanted.same_branch:
-        return []
-    if not branch_ok:
-        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
-        return [Defect("same_branch", f"the number of {what}", 2, "1", 1.0)]
+) -> Iterator[Defect]:
     used = int(targets.assembly[0])
-    if used != declared:
+    if wanted.same_branch and not branch_ok:
+        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
+        yield Defect("same_branch", f"the number of {what}", 2, "1", 1.0)
+    elif wanted.same_branch and used != declared:
         allowed = f"{declared:+d}, the linkage's own"
-        return [Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)]
-    return []
+        yield Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)
 
 
-def _order(motion: TaskMotion, wanted: Requirements) -> list[Defect]:
+def _order(motion: TaskMotion, wanted: Requirements) -> Iterator[Defect]:
     if not wanted.order or motion.in_order:
-        return []
+        return
     turns = abs(motion.end - motion.start) / (2 * np.pi)
     if turns > 1:
-        what = "turns of the driver to meet the targets in sequence"
-        return [Defect("order", what, turns, "up to 1", 1.0)]
-    step = np.diff(motion.theta2)
-    reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
-    return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
+        yield Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0)
+    else:
+        step = np.diff(motion.theta2)
+        reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
+        yield Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)
 
 
-def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> list[Defect]:
+def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
     margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
         if not task.closed:
-            return []
+            return
         margin, why = 0.0, f"a closed {task.kind} takes a full turn"
     least = float(rotatability(linkage).min())
-    defects = []
     if least < margin - SLACK:
-        miss = margin - least
         allowed = f"from {margin:g} ({why})"
-        defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
+        yield Defect("rotatability", "the margin of full rotation", least, allowed, margin - least)
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
     # As far as O4 of a slider-crank: it lies at infinity.
     difference = float(getattr(linkage, "r1", np.inf) - linkage.r2)
     miss = -kind * difference / float(linkage.lengths.sum())
     if miss > SLACK:
-        which = "greater" if kind > 0 else "less"
-        allowed = f"{which} than 0 ({wanted.rotatability})"
-        defects.append(Defect("rotatability", "r1 - r2", difference, allowed, miss))
-    return defects
+        allowed = f"{'greater' if kind > 0 else 'less'} than 0 ({wanted.rotatability})"
+        yield Defect("rotatability", "r1 - r2", difference, allowed, miss)
 
 
 def _covered(targets: Targets) -> list[Defect]:

@@ -27,7 +27,7 @@ class Along(NamedTuple):
 def greatest(
     bar: BarForces, *polynomials: FloatArray, size: bool = False, spans: BoolArray | None = None
 ) -> Along:
-    """Greatest value or size of any of some polynomials up to degree 3, coefficients (..., K - 1, N) as in `bar`.
+    """Greatest value or size of some polynomials up to degree 3, coefficients (..., K - 1, N) as in `bar`.
 
     It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) states
     which count; by default all that exist.
