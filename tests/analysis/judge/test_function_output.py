@@ -94,7 +94,7 @@ def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(no
         least = np.degrees(free.transmission_min_task) + 2.0
         wanted = Requirements(exact=False, tolerance=1.0, transmission_min_deg=least)
         verdict = verify(linkage, task, wanted)
-        turned = task.inputs if norm == "rms" else np.linspace(0, task.inputs[-1], 151)
+        turned = task.inputs if norm == "rms" else np.linspace(0, task.inputs[-1], 61)
         best = np.inf
         for direction in (1, -1):
             starts = np.linspace(-np.pi, np.pi, 2001)

@@ -74,9 +74,9 @@ def test_depth_of_points(polygon: Points) -> None:
 
 @pytest.mark.parametrize("polygon", [STAIRS, SPIRAL])
 def test_depth_of_segments(polygon: Points) -> None:
-    begin, end = np.random.default_rng(2).uniform(-2, 10, (2, 60, 2))
+    begin, end = np.random.default_rng(2).uniform(-2, 10, (2, 30, 2))
     end[:5] = begin[:5]
-    shares = np.linspace(0, 1, 1001)[:, None, None]
+    shares = np.linspace(0, 1, 501)[:, None, None]
     expected = signed(polygon, begin + shares * (end - begin)).max(axis=0)
     found = segment_depth(Area.of([polygon]), begin, end)
     assert (found >= expected - 1e-9).all()
