@@ -24,13 +24,12 @@ def best_cylinder(
     power: FloatArray | None = None,
     force: float = np.inf,
     one_branch: bool = True,
-    effort: float = 1.0,
 ) -> Cylinder | None:
     """The cylinder of the greatest worst lever angle within limits; None where none was found.
 
     Of a single linkage whose theta2, theta3 and theta4 (M,) are samples of the task motion. A limit of the
     force, N, needs the power (M,) of a driver of link 2 at 1 rad/s, N length. Without `one_branch` link 2
-    passes a dead position, so that it cannot be driven. The effort multiplies the samples of a search.
+    passes a dead position, so that it cannot be driven.
     """
     theta2, theta3, theta4 = map(np.unwrap, angles)
     planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
@@ -45,7 +44,7 @@ def best_cylinder(
     for number, on in enumerate(spec.on):
         drives = on in allowed and (on not in theta or not _reverses(planes[on]))
         if drives and found.get(on) is None and best < _GREATEST:
-            found[on] = best_by_search(planes[on], rooms[on], number, effort)
+            found[on] = best_by_search(planes[on], rooms[on], number)
     ranked = [(each[2], on, each) for on in allowed if (each := found.get(on)) is not None]
     if not ranked:
         return None

@@ -27,33 +27,30 @@ _MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 
 
-def best_by_search(
-    plane: Plane, room: Room, seed: int, effort: float = 1.0
-) -> tuple[complex, complex, float] | None:
+def best_by_search(plane: Plane, room: Room, seed: int) -> tuple[complex, complex, float] | None:
     """Pivot of the link, base, and the sine of the worst lever angle, of the best cylinder found.
 
-    None where no sample, of which `effort` multiplies the number, and nothing near one drives the linkage
-    within the limits.
+    None where no sample, and nothing near one, drives the linkage within the limits.
     """
     rng = np.random.default_rng(seed)
-    found, near = _searched(plane, room, effort, rng)
+    found, near = _searched(plane, room, 1, rng)
     if found is None and near:
-        found, _ = _searched(plane, room, _MORE * effort, rng)
+        found, _ = _searched(plane, room, _MORE, rng)
     return found
 
 
 def _searched(
-    plane: Plane, room: Room, effort: float, rng: np.random.Generator
+    plane: Plane, room: Room, times: int, rng: np.random.Generator
 ) -> tuple[tuple[complex, complex, float] | None, bool]:
     """The best cylinder found, and where there is none, whether one came near."""
-    points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
+    points, bases = _drawn(plane, room, _SAMPLES * times, rng)
     coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
     score = np.concatenate([
         _score(room, performance(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
         for k in range(0, len(points), _BLOCK)
     ])  # fmt: skip
-    best = np.argsort(-score)[: round(_BEST * effort)]
-    apart = _distinct(room, points[best], bases[best], round(_PARENTS * effort), _APART)
+    best = np.argsort(-score)[: _BEST * times]
+    apart = _distinct(room, points[best], bases[best], _PARENTS * times, _APART)
     best = best[apart]
     points, bases, score = _closed_in(coarse, room, points[best], bases[best], score[best], rng)
     if score[0] < _HOPELESS:
@@ -81,20 +78,12 @@ def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray
 def _finished(plane: Plane, room: Room, first: Pivots) -> list[Pivots]:
     """A cylinder after linear programmes (best where many limits are active) and quadratic ones (few)."""
     found = [by_linear(plane, room, first)]
-    for _ in range(_TURNS):
-        found.append(by_quadratic(plane, room, found[-1]))
-        if not _gains(plane, room, found):
-            break
-        found.append(by_linear(plane, room, found[-1]))
-        if not _gains(plane, room, found):
+    for programme in (by_quadratic, by_linear) * _TURNS:
+        found.append(programme(plane, room, found[-1]))
+        before, last = _judged(plane, room, found[-2:])[2]
+        if not last > before + _GAIN:
             break
     return found
-
-
-def _gains(plane: Plane, room: Room, found: list[Pivots]) -> bool:
-    """Whether the last cylinder is better than the one before."""
-    before, last = _judged(plane, room, found[-2:])[2]
-    return bool(last > before + _GAIN)
 
 
 def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[Pivots]:
