@@ -1,4 +1,4 @@
-"""Where a linkage stays at rest by itself, whether it comes back there, and how fast it swings about it."""
+"""Equilibrium positions of a linkage, their stability, and the frequency of small swings about them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Curve = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Equilibria:
-    """Driver angles at which weights, springs and loads need nothing that holds them.
+    """Driver angles at which weights, springs and loads are in balance.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Equilibria:
 
     @property
     def frequency(self) -> FloatArray:
-        """Natural frequency of small swings, shape (N,), Hz; NaN where it does not come back."""
+        """Natural frequency of small swings, shape (N,), Hz; NaN where it is unstable."""
         with np.errstate(invalid="ignore", divide="ignore"):
             found = np.sqrt(self.stiffness / self.inertia) / (2 * np.pi)
         return np.where(np.isfinite(found) & (self.stiffness > 0), found, np.nan)

@@ -1,4 +1,4 @@
-"""The flywheel that keeps a driver's speed even, and how the speed goes up and down with it."""
+"""The flywheel for an even speed of the driver, and the fluctuation of the speed with it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motion that a given drive torque makes."""
+"""The motion of a linkage under a given drive torque."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def free_response(
     loads: Loads | None = None,
     tolerance: float = 1e-10,
 ) -> FreeResponse:
-    """Motion of a linkage that a drive torque, weights and springs are left to move.
+    """Motion of a linkage under a drive torque, weights, springs and friction.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def _moved(
     tolerance: float,
     rubbing: _Rubbing,
 ) -> tuple[list[Path], Ending]:
-    """The motion, in parts in which each joint turns in one sense where that matters; how it ended."""
+    """Parts of the motion, in each of which joints with friction turn in one sense, and how it ended."""
     now, last, path = float(time[0]), float(time[-1]), list[Path]()
     fastest = abs(omega2)
     while True:
@@ -236,7 +236,7 @@ def _moved(
 def _sets_off(
     rates: Callable[[FloatArray | None], Acceleration], now: float, theta2: float, rubbing: _Rubbing
 ) -> int:
-    """The sense in which a driver at rest begins to turn against friction; 0 where that holds it."""
+    """The sense in which a driver at rest begins to turn against friction; 0 where friction holds it."""
     for sense in (1, -1):
         alpha, state = np.zeros(1), (np.array([now]), np.array([theta2]), np.zeros(1))
         begin = rates(rubbing.senses(theta2, sense))

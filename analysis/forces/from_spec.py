@@ -139,7 +139,7 @@ def _ends(between: tuple[Place, Place]) -> tuple[int, tuple[float, float], int, 
 
 
 def _each(values: tuple[float, ...]) -> FloatArray:
-    """One for each joint, or one that is meant for all pins."""
+    """One for each joint, or one for all pins."""
     return np.array(values if len(values) > 1 else values[0])
 
 

@@ -102,14 +102,14 @@ class TorsionSpring:
     free_angle: float = 0.0
 
     def wound(self, angle: FloatArray) -> FloatArray:
-        """By how much it is wound at an angle between the links, in [-pi, pi), rad."""
+        """The angle by which it is wound, in [-pi, pi), rad, at an angle between the links."""
         wound: FloatArray = (angle - self.free_angle + np.pi) % (2 * np.pi) - np.pi
         return wound
 
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction in the joints O2, A, B, O4, of six-bars C, E, D, too; a single number is meant for each.
+    """Friction in the joints O2, A, B, O4, of six-bars C, E, D, too; a single number holds for each.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Planted tasks: random linkages and tasks that they are known to do, for tests and benchmarks."""
+"""Planted tasks: random linkages and tasks that they do exactly, for tests and benchmarks."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Perfor
 
 
 def finite_or(values: FloatArray, otherwise: float) -> FloatArray:
-    """Values, and something else where they are not finite."""
+    """Values, replaced where they are not finite."""
     return np.where(np.isfinite(values), values, otherwise)
 
 
@@ -164,7 +164,7 @@ class Room:
         return np.asarray(np.maximum(-self.left(found), 0.0).sum(axis=1))
 
     def kept(self, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Pivots put back to where they may be."""
+        """Pivots moved back to where they are allowed."""
         off = points - self.middle
         size = np.abs(off)
         points = self.middle + off * np.where(size > self.reach, self.reach / np.maximum(size, 1e-300), 1.0)

@@ -69,7 +69,7 @@ def _searched(
 
 
 def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Cylinders put where they may be, and their least levers, negative beyond the limits."""
+    """Cylinders moved to where they are allowed, and their least levers, negative beyond the limits."""
     points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
     found = performance(plane, points, bases)
     return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
