@@ -79,16 +79,6 @@ def test_payload_and_given_masses() -> None:
     np.testing.assert_array_equal(placed.coupler.centre, [1, 1])
 
 
-def test_batches() -> None:
-    batch = FourBar(o2=(0, 0), o4=(4, 0), r2=[[1.0], [0.9]], r3=4, r4=3, coupler_point=(1, 2))
-    bars = uniform_bars(batch, 2.0, payload=1.0)
-    state = solve_kinematics(batch, np.linspace(0, 1, 5))
-    together = system_centre(bars, state)
-    assert together.acceleration.shape == (2, 5, 2)
-    alone = system_centre(uniform_bars(batch[0, 0], 2.0, payload=1.0), solve_kinematics(batch[0, 0], 1.0))
-    np.testing.assert_allclose(together.acceleration[0, -1], alone.acceleration)
-
-
 def test_bad_input_is_reported() -> None:
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     with pytest.raises(ProblemError, match="mass is -1"):

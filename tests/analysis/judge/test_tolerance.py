@@ -6,8 +6,6 @@ from math import erf, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.judge.planted import (
@@ -86,23 +84,6 @@ def normal_share(limit: float, deviation: float) -> float:
 
 def standard_error(share: float, samples: int = SAMPLES) -> float:
     return sqrt(share * (1 - share) / samples)
-
-
-@pytest.mark.slow
-@given(seed=st.integers(0, 2**32), assembly=st.sampled_from([1, -1]))
-@settings(max_examples=100)
-def test_derivatives_are_the_differences(seed: int, assembly: int) -> None:
-    rng = np.random.default_rng(seed)
-    linkage, theta2 = random_full_crank(rng), uneven_driver_angles(rng, 5)
-    state = solve_position(linkage, theta2, assembly)
-    near_dead = np.abs(np.sin(state.theta4 - state.theta3)) < 0.1
-    theta2 = theta2[~near_dead]
-    step = 1e-5 * float(linkage.lengths.min())
-    expected = differences(linkage, theta2, np.full(len(theta2), assembly), step)
-    found = sensitivity(linkage, theta2, assembly)
-    assert found.shape == (len(theta2), 3, 6)
-    scale = np.abs(expected).max(initial=1.0)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5 * scale)
 
 
 def test_a_square_by_hand() -> None:

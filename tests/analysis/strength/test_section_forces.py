@@ -2,7 +2,6 @@
 
 import warnings
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -282,28 +281,6 @@ def test_a_beam_with_a_crank_weight_is_balanced_over_its_shaft() -> None:
     pull = 2.0 * 9 + 2.0 * 10 * np.sin(state.theta2)
     np.testing.assert_allclose(bar.at([-0.5]).normal[:, 0], pull, atol=1e-12)
     np.testing.assert_allclose(bar.at([0.0]).moment[:, 0], -4.0 * 10 / 2 * level, atol=1e-12)
-
-
-def test_batches_agree_with_single_linkages() -> None:
-    batch = FourBar(o2=(0, 0), o4=(4, 1), r2=[[1.0], [0.8]], r3=[[4.0], [3.9]], r4=3, coupler_point=(1, 2))
-    loads = Loads(gravity=(0, -9.81), forces=(AppliedForce(3, (3.95, 0.0), (1.0, 2.0)),))
-    theta2 = np.linspace(0, 6, 5)
-    wide = [[[0.5], [2.0]], [[0.0], [1.0]]]  # one bar, one point
-
-    def masses(own: FourBar, inertia: Any) -> Masses:
-        bars = uniform_bars(own, 2.0, payload=1.0)
-        return Masses(bars.crank, bars.coupler, bars.output + Body(2.0, inertia, (0.5, 0.1)))
-
-    together = section_forces(solve_kinematics(batch, theta2), masses(batch, np.array(wide)[1]), loads)
-    for index in range(2):
-        own = batch[index, 0]
-        state = solve_kinematics(own, theta2)
-        alone = section_forces(state, masses(own, wide[1][index][0]), loads)
-        for link in LINKS:
-            assert together[link].stations.shape[:2] == (2, 5)
-            cuts = np.linspace(0, 0.99, 7) * float(getattr(own, f"r{link}"))
-            for many, one in zip(together[link].at(cuts), alone[link].at(cuts), strict=True):
-                np.testing.assert_allclose(many[index], one, atol=1e-11)
 
 
 def test_dead_positions_have_no_finite_section_forces() -> None:
