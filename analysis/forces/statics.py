@@ -42,7 +42,7 @@ class Advantage:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Holding:
-    """Torque, moment or force, each by itself, that holds a linkage against its loads, without friction.
+    """Torque, moment or force, each by itself, that holds a linkage against weight and loads; no friction.
 
     Parameters
     ----------
