@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
@@ -125,13 +126,10 @@ def _work(linkage: Linkage, masses: Masses, loads: Loads, places: FloatArray) ->
         body.mass * gravity * virtual.point(link, body.centre).speed
         for link, body in masses.by_link(linkage).items()
     ]
-    alone = [
-        *(Loads(forces=(each,)) for each in loads.forces),
-        *(Loads(moments=(each,)) for each in loads.moments),
-        *(Loads(springs=(each,)) for each in loads.springs),
-        *(Loads(torsion_springs=(each,)) for each in loads.torsion_springs),
-    ]
-    parts += [np.abs(load_power(virtual, rest, each)) for each in alone]
+    for kind in ("forces", "moments", "springs", "torsion_springs"):
+        for each in getattr(loads, kind):
+            alone: dict[str, Any] = {kind: (each,)}
+            parts.append(np.abs(load_power(virtual, rest, Loads(**alone))))
     return float(np.nanmax(np.sum(parts, axis=0), initial=0.0))
 
 

@@ -150,11 +150,9 @@ def test_limits_are_kept_in_all_combinations(
         assert box.y[0] <= cylinder.base[1] <= box.y[1]
 
 
-def test_there_is_none_that_cannot_close() -> None:
+def test_there_is_none_whose_base_is_beyond_its_length() -> None:
     far = CylinderSpec(closed=(0.1, 0.2), base=Box((50, 51), (50, 51)), on=["output"])
     assert chosen(moved(ENGINE, 95, 145), far) is None
-    half_a_turn = moved(FourBar((0, 0), (4, 0), 1, 4, 3), 0, 200)
-    assert chosen(half_a_turn, CylinderSpec(on=["driver"])) is None
 
 
 @pytest.mark.parametrize("linkage", [ENGINE, SHAPER])

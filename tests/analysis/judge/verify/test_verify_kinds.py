@@ -40,12 +40,11 @@ ANY = Requirements(
 SWINGING = [GrashofClass.NON_GRASHOF, GrashofClass.SLIDER_ROCKER, GrashofClass.INVERTED_SLIDER_ROCKER]
 
 
-@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("timed", [False, True], ids=["free", "timed"])
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_planted_tasks_are_met(mechanism, timed, seed) -> None:
+def test_planted_tasks_are_met(mechanism, timed) -> None:
     for plant, targets in ((planted_motion, 4), (planted_path, 8)):
-        task, linkage = plant(np.random.default_rng(seed), targets, timed=timed, mechanism=mechanism)
+        task, linkage = plant(np.random.default_rng(0), targets, timed=timed, mechanism=mechanism)
         verdict = verify(linkage, task, ANY)
         assert verdict.ok, verdict.defects
         assert verdict.error_max < 1e-11 * task.size
