@@ -11,7 +11,7 @@ from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.curvature import SLACK, driver_intervals
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, frozen_array
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 _REAL = 1e-6  # imaginary share up to which rounding may have split a double root
 _ROUNDING = 1e-12  # share of the size: gaps below it are rounding

@@ -17,7 +17,7 @@ from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 _FEWEST, _MOST = 8, 512  # panels over a motion
 _SETTLED = 1e-13

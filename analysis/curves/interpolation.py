@@ -12,7 +12,7 @@ from grashof.analysis.curves.fit import samples
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_number
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, eq=False)

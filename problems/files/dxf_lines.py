@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.foreign import Budget, finite, read_by_others
+from grashof.problems.files.on_disk import read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.errors import ProblemError, shown
 
 MOST_POINTS = 20_000
+_DEEPEST = 32  # blocks within blocks, groups within groups
 FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
 # By $INSUNITS: in, ft, mm, cm, m, yd, micrometre, dm.
 _METRES = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 13: 1e-6, 14: 0.1}
@@ -26,6 +27,28 @@ _PLACES = ("points", "vertices", "control_points", "fit_points", "knots", "weigh
 _TURNS = ("start_param", "end_param", "start_angle", "end_angle")
 _MOST_DEGREES, _MOST_DEGREE = 1e6, 11  # of an arc, and of a spline
 _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
+
+
+class Budget:
+    """How many parts a drawing may have once what it repeats is written out.
+
+    `part` is what they are, `level` what of them may contain others, in the plural: "entities", "blocks".
+    """
+
+    def __init__(self, most: int, part: str, level: str) -> None:
+        self._most, self._part, self._level = most, part, level
+        self._left = most
+
+    def spend(self, count: int = 1) -> None:
+        """Count parts; `ProblemError` when they are too many."""
+        self._left -= count
+        if self._left < 0:
+            raise ProblemError(f"the drawing has more than {self._most} {self._part}; that is the most")
+
+    def enter(self, depth: int) -> None:
+        """`ProblemError` for parts within parts that are nested too deep."""
+        if depth > _DEEPEST:
+            raise ProblemError(f"{self._level} are nested more than {_DEEPEST} deep, perhaps in themselves")
 
 
 def dxf_polylines(text: str) -> list[FloatArray]:
@@ -93,8 +116,17 @@ def _is_sound(entity: Any) -> bool:
     given = entity.dxf.all_existing_dxf_attribs()
     places = [getattr(entity, name, ()) for name in _PLACES]
     turns = [given.get(name, 0.0) for name in _TURNS]
-    small = finite(turns, _MOST_DEGREES) and given.get("degree", 3) <= _MOST_DEGREE
-    return small and finite([*given.values(), *places], GREATEST)
+    small = _finite(turns, _MOST_DEGREES) and given.get("degree", 3) <= _MOST_DEGREE
+    return small and _finite([*given.values(), *places], GREATEST)
+
+
+def _finite(values: Any, most: float) -> bool:
+    """Whether all numbers within nested sequences are finite and not beyond a size."""
+    if isinstance(values, int | float):
+        return abs(values) <= most
+    if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
+        return True
+    return all(_finite(each, most) for each in values)
 
 
 def ezdxf_installed() -> ModuleType:

@@ -9,26 +9,14 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
-from grashof.problems.files.number_table import Names, number_table
-from grashof.problems.files.spec_table import SpecTable, keys_of, spec_table
-from grashof.problems.files.tables import Table, listed
+from grashof.problems.files.spreadsheet import Names, number_table
+from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spec_table
 from grashof.problems.values.checks import located, refuse
+from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.dynamics.load_specs import (
-    OVER,
-    TURNING,
-    CounterweightSpec,
-    DamperSpec,
-    FrictionSpec,
-    LoadSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
 from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
-from grashof.problems.values.dynamics.section import SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec
+from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.specs.dynamics_of_kind import without_place
@@ -36,9 +24,9 @@ from grashof.problems.values.specs.dynamics_of_kind import without_place
 _POINT = Annotated[list[float], listed("[u, v]")]
 _Kinds = Sequence[Sequence[Names]]
 # Columns of files, with or without their units.
-_ENDINGS = {"time": "_s", **dict.fromkeys(TURNING, "_deg")}
+_ENDINGS = {"time": "_s", **dict.fromkeys(load_specs.TURNING, "_deg")}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
-_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
+_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in load_specs.OVER}
 _LOADS: dict[str, _Kinds] = {
     over: ((places, *_FORCE), (places, *_MOMENT)) for over, places in _PLACES.items()
 }
@@ -80,7 +68,7 @@ class _FromFile(_Acting):
 
 
 @keys_of(
-    LoadSpec,
+    load_specs.LoadSpec,
     {
         "at": _POINT,
         "force": Annotated[list[float], listed("[fx, fy] in N")],
@@ -158,9 +146,9 @@ class MotorTable(_Acting):
         return _rows(profile, info, (_MOTION,)) if is_file else profile
 
 
-@keys_of(Place, {"at": _POINT})
+@keys_of(load_specs.Place, {"at": _POINT})
 class PlaceTable(_Acting):
-    telling = False
+    suggested = False
 
 
 _SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
@@ -216,11 +204,11 @@ _Machine = create_model(
     __base__=Table,
     dynamics=_one(DynamicsTable),
     loads=_some(LoadTable),
-    springs=_some(spec_table(SpringSpec, _Acting, {"between": _BETWEEN})),
-    dampers=_some(spec_table(DamperSpec, _Acting, {"between": _BETWEEN})),
-    torsion_springs=_some(spec_table(TorsionSpringSpec, _Acting, {"between": _JOINT})),
-    counterweights=_some(spec_table(CounterweightSpec, _Acting, {"at": _POINT})),
-    friction=_one(spec_table(FrictionSpec, _Acting, _ONE_OR_EACH)),
+    springs=_some(spec_table(load_specs.SpringSpec, _Acting, {"between": _BETWEEN})),
+    dampers=_some(spec_table(load_specs.DamperSpec, _Acting, {"between": _BETWEEN})),
+    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, _Acting, {"between": _JOINT})),
+    counterweights=_some(spec_table(load_specs.CounterweightSpec, _Acting, {"at": _POINT})),
+    friction=_one(spec_table(load_specs.FrictionSpec, _Acting, _ONE_OR_EACH)),
     motor=_one(MotorTable),
     section=_one(spec_table(SectionSpec, _Acting)),
     strength=_one(spec_table(StrengthSpec, _Acting)),

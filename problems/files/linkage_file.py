@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.problem_file import catalogue, problem_of
-from grashof.problems.files.toml_file import (
+from grashof.problems.files.on_disk import (
     MOST_BYTES_MADE,
     Catalogue,
     document_of,
@@ -20,14 +19,8 @@ from grashof.problems.files.toml_file import (
     file_text,
     looks_like_path,
 )
-from grashof.problems.values.checks import (
-    GREATEST,
-    finite_number,
-    located,
-    located_in,
-    number_within,
-    readable,
-)
+from grashof.problems.files.problem_file import catalogue, problem_of
+from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
@@ -96,7 +89,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
                 f"{shown(text)} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
             )
     path = Path(linkage)
-    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem), path.parent)
+    return _parsed(file_text(path, "a linkage file"), str(path), checks.readable(path.stem), path.parent)
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -106,8 +99,11 @@ def load_design(path: Path, which: str) -> ListedDesign:
         return ListedDesign(
             spec=spec,
             rank=_rank(design["rank"]),
-            id=readable(str(design["id"])),
-            theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
+            id=checks.readable(str(design["id"])),
+            theta2=tuple(
+                checks.number_within(angle, -checks.GREATEST, checks.GREATEST, "theta2")
+                for angle in design["theta2"]
+            ),
             assembly=tuple(design["assembly"]),
             position_error=_errors(design["position_error"]),
             angle_error=_errors(design.get("angle_error", [])),
@@ -159,7 +155,7 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) ->
     try:
         return linkage_from(document, name, folder)
     except ProblemError as error:
-        raise located(error, file_name) from None
+        raise checks.located(error, file_name) from None
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
@@ -187,7 +183,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{where}: has no design {which or '(none named)'}; {hint}")
     rank = ranks[which]
     design = designs[rank]
-    with located_in(where):
+    with checks.located_in(where):
         kind = mechanism(design.get("mechanism", FOUR_BAR), among=WORDS)
     keys = _names(kind, design.get("linkage"))
     try:
@@ -199,20 +195,20 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
             f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
         ) from None
     # JSON can spell what no file can hold.
-    heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
+    heading, unit = (checks.readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "mechanism": kind, **as_document(stated)}
     document["dynamics"] = content.get("dynamics", {})
-    with located_in(where):
+    with checks.located_in(where):
         driven = _cylinder(design.get("cylinder"))
-        spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
-        angles = {key: np.asarray(finite_number(angle, key)) for key, angle in turned.items()}
+        spec = linkage_from(document, checks.readable(f"{path.parent.name or path.stem}-{rank}"))
+        angles = {key: np.asarray(checks.finite_number(angle, key)) for key, angle in turned.items()}
         linkage = spec.linkage.changed(**angles)
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)
     dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
-    title, source = f"{spec.title}: design {rank}", readable(str(path))
-    with located_in(where):
+    title, source = f"{spec.title}: design {rank}", checks.readable(str(path))
+    with checks.located_in(where):
         listed = LinkageSpec(
             linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
         )
@@ -247,7 +243,7 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     wrong = f"{shown(text)} is not text"
     if isinstance(text, str):
         try:
-            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
+            return problem_of(text, "problem_toml", checks.readable(str(content.get("problem", path.stem))))
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
     writer = content.get("grashof")
@@ -260,7 +256,10 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
-    return tuple(None if error is None else number_within(error, 0.0, GREATEST, "error") for error in given)
+    return tuple(
+        None if error is None else checks.number_within(error, 0.0, checks.GREATEST, "error")
+        for error in given
+    )
 
 
 def _rank(given: object) -> int:

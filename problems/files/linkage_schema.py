@@ -12,20 +12,11 @@ from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_
 
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, one_of, stated
-from grashof.problems.values.checks import (
-    GREATEST,
-    MOST_TURNS,
-    finite_number,
-    noted,
-    number_within,
-    refuse,
-    refused,
-)
+from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
     PARAMETERS,
@@ -46,11 +37,11 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     wrong = dict(_of_other_kinds(document, kind))
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
-    with noted(lines):
+    with checks.noted(lines):
         found: LinkageTable = stated(FILES[kind], rest, folder)
         if not lines:
             return found.spec(name)
-    raise refused(lines)
+    raise checks.refused(lines)
 
 
 def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -133,19 +124,19 @@ class _Checked(Table):
     @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        where, most = str(key.field_name), MOST_TURNS * 360
+        where, most = str(key.field_name), checks.MOST_TURNS * 360
         row = _PARAMETERS.get(where)
         if given is None:
             return given
         if where in ("r1", "output_arm"):
-            if finite_number(given, where) <= 0:
+            if checks.finite_number(given, where) <= 0:
                 raise ProblemError(f"{where} is {given:g}; it must be greater than zero")
-            number_within(given, -GREATEST, GREATEST, where)
+            checks.number_within(given, -checks.GREATEST, checks.GREATEST, where)
         elif where == "ground_angle_deg" or (row is not None and row.kind == "angle"):
-            number_within(given, -most, most, where)
+            checks.number_within(given, -most, most, where)
         elif row is not None:
             for number in np.ravel(row.array(given)).tolist():
-                number_within(number, -GREATEST, GREATEST, where)
+                checks.number_within(number, -checks.GREATEST, checks.GREATEST, where)
         return given
 
 
@@ -181,7 +172,7 @@ class _DyadTable(_Checked):
                 found[row.name] = _in_radians(row, given)
             elif given is not None:
                 wrong.append(f"{key} does not go with kind {self.kind}; only {' and '.join(having)} has it")
-        refuse(wrong)
+        checks.refuse(wrong)
         return found
 
     def row(self, word: str) -> Mechanism:

@@ -1,15 +1,123 @@
-"""Results on disk: files that are there whole or not at all, and the versions that they depend on."""
+"""Files on disk: TOML that people write, the catalogues, and results that are complete or absent."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
-from contextlib import suppress
+import stat
+import tomllib
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import cache
+from importlib import resources
 from importlib.metadata import version
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
+
+from grashof.problems.values.checks import near_miss
+from grashof.problems.values.errors import ProblemError, shown
+
+MOST_BYTES = 4 * 2**20  # of files that people write or draw
+MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """Files shipped with the package, each under the name of its stem."""
+
+    what: str  # one of them, in messages
+    folder: str = ""  # below the data of the problems; empty for these themselves
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, sorted."""
+        return tuple(sorted(self._files))
+
+    def text(self, name: str) -> str:
+        """The file of this name; `ProblemError` when there is none."""
+        if name not in self._files:
+            raise ProblemError(f"{shown(name)} is not a {self.what} of the catalogue; {self.hint(name)}")
+        return self._files[name].read_text(encoding="utf-8")
+
+    def hint(self, name: str) -> str:
+        """What could be meant by a name that is not there."""
+        meant = near_miss(name, self.names)
+        return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(self.names)}"
+
+    @property
+    def _files(self) -> dict[str, Traversable]:
+        folder = resources.files("grashof.problems") / "data" / self.folder
+        return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
+
+
+def looks_like_path(text: str) -> bool:
+    """Whether a string names a file, and not an entry of a catalogue."""
+    separators = {"/", os.sep, os.altsep}
+    return text.endswith(".toml") or any(sep in text for sep in separators if sep)
+
+
+def exists(text: str) -> bool:
+    """Whether there is such a file; False for names that no file can have, where Path.exists raises."""
+    return bool(text) and os.path.exists(text)  # noqa: PTH110
+
+
+def file_text(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> str:
+    """Text of a file that a user named; `ProblemError` states why it cannot be read, a hint what is meant."""
+    try:
+        # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
+        return file_bytes(path, wanted, hint, most).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
+
+
+def file_bytes(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> bytes:
+    """Content of a plain file that a user named, of so many bytes at most, likewise."""
+    content = b""
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISREG(mode):  # reading a pipe or a device may never end
+            with path.open("rb") as file:
+                content = file.read(most + 1)
+    except FileNotFoundError:
+        raise ProblemError(f"{path}: there is no such file{hint and '; '}{hint}") from None
+    except OSError as error:
+        raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:  # no name of a file, such as one with a null character
+        raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
+    if not stat.S_ISREG(mode):
+        found = "a folder" if stat.S_ISDIR(mode) else "not a plain file"
+        raise ProblemError(f"{path}: is {found}; it must be {wanted}")
+    if len(content) > most:
+        raise ProblemError(f"{path}: has more than {most} bytes; {wanted} must have at most that")
+    return content
+
+
+@contextmanager
+def read_by_others(wanted: str) -> Iterator[None]:
+    """What a library raises on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except ProblemError:
+        raise
+    except Exception as error:  # noqa: BLE001  (no library documents what damaged bytes make it raise)
+        said = str(error).split("\n", maxsplit=1)[0].strip()
+        raise ProblemError(f"is not {wanted}: {shown(said) if said else type(error).__name__}") from None
+
+
+def document_of(text: str, file_name: str) -> dict[str, Any]:
+    """What TOML states; `ProblemError` where it is none."""
+    try:
+        return tomllib.loads(text)
+    # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
+    except (ValueError, RecursionError) as error:
+        why = str(error).replace("Cannot overwrite a value", "a key or table is given twice")
+        raise ProblemError(f"{file_name}: is not TOML: {why}") from None
+
 
 PACKAGES = ("grashof", "casadi", "numpy", "scipy")  # whose versions may change a digit
 WRITING = ".writing-"  # how names of files begin that are not whole yet

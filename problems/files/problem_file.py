@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
+from grashof.problems.files.on_disk import Catalogue, document_of, exists, file_text, looks_like_path
 from grashof.problems.values.checks import located, readable
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.specs.problem import Problem

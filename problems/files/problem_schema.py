@@ -21,23 +21,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from grashof.problems.files import tables
 from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
-from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
-from grashof.problems.files.tables import (
-    LIST,
-    NUMBER,
-    TABLE,
-    WORD,
-    WRONG,
-    Table,
-    Text,
-    either,
-    listed,
-    one_of,
-    stated,
-    tag,
-)
 from grashof.problems.files.task_schema import TASKS, Corners, Pair, SceneTable
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, refused
@@ -63,7 +49,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     document = with_files(document, folder)
     wrong: list[str] = []
     with noted(wrong):
-        return stated(ProblemFile, document, folder).problem(name)
+        return tables.stated(ProblemFile, document, folder).problem(name)
     raise refused([*wrong, *_ill_matched(document)])
 
 
@@ -80,30 +66,30 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     yield from wrong
 
 
-@keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
-class BoxTable(SpecTable):
-    telling: ClassVar[bool] = False  # x and y do not show where they belong
+@tables.keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
+class BoxTable(tables.SpecTable):
+    suggested: ClassVar[bool] = False  # x and y do not show where they belong
 
     @field_validator("x", "y", mode="before", check_fields=False)
     @classmethod
     def _line(cls, given: Any) -> Any:
         """A number alone is a side of no width."""
-        return [given, given] if tag(given) == NUMBER else given
+        return [given, given] if tables.tag(given) == tables.NUMBER else given
 
 
 def _at(point: list[float]) -> Box:
     """The box of a single point."""
     if len(point) != 2:
-        raise PydanticCustomError(WRONG, _PLACE_SHAPES)
+        raise PydanticCustomError(tables.WRONG, _PLACE_SHAPES)
     x, y = point
     return Box((x, x), (y, y))
 
 
 _PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
 Place = Annotated[
-    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(TABLE)]
-    | Annotated[list[float], AfterValidator(_at), Tag(LIST)],
-    either(_PLACE_SHAPES),
+    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(tables.TABLE)]
+    | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST)],
+    tables.either(_PLACE_SHAPES),
 ]
 
 
@@ -113,7 +99,7 @@ _AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg f
 def _several(given: Any) -> Any:
     """Polygons; a single one, which is no list of them, is refused in one line."""
     if isinstance(given, list) and given and all(_is_corner(each) for each in given):
-        raise PydanticCustomError(WRONG, "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]")
+        raise PydanticCustomError(tables.WRONG, "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]")
     return given
 
 
@@ -121,11 +107,13 @@ def _is_corner(given: Any) -> bool:
     return isinstance(given, list) and len(given) == 2 and all(isinstance(x, int | float) for x in given)
 
 
-Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
-Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
+Areas = Annotated[list[Corners], tables.listed(_AREAS), BeforeValidator(_several)]
+Parts = Annotated[
+    list[str], tables.listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")
+]
 Direction = Annotated[
-    Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
-    either("a number or [lo, hi]"),
+    Annotated[float, Tag(tables.NUMBER)] | Annotated[Pair, Tag(tables.LIST)],
+    tables.either("a number or [lo, hi]"),
 ]
 _BY_KIND = {
     Kind.DIRECTION: Direction,
@@ -147,12 +135,14 @@ def _type_of(name: str) -> Any:
     return _BY_KIND.get(LIMITS[name].kind, float) if name in LIMITS else _MODES.get(name, float)
 
 
-@keys_of(Requirements, {each.name: (_type_of(each.name) | None, None) for each in fields(Requirements)})
-class RequirementsTable(SpecTable):
-    beside = EACH
+@tables.keys_of(
+    Requirements, {each.name: (_type_of(each.name) | None, None) for each in fields(Requirements)}
+)
+class RequirementsTable(tables.SpecTable):
+    beside = tables.EACH
 
 
-_Weights = create_model("_Weights", __base__=Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
+_Weights = create_model("_Weights", __base__=tables.Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
 
 
 class WeightsTable(_Weights):  # type: ignore[misc, valid-type]
@@ -168,17 +158,17 @@ _GOALS = "transmission, compactness, torque, another quantity"
 
 def _goal(word: str) -> str:
     if word not in GOALS:
-        raise PydanticCustomError(WRONG, f"{near_miss(word, list(GOALS)) or _GOALS}")
+        raise PydanticCustomError(tables.WRONG, f"{near_miss(word, list(GOALS)) or _GOALS}")
     return word
 
 
 Maximise = Annotated[
-    Annotated[str, AfterValidator(_goal), Tag(WORD)] | Annotated[WeightsTable, Tag(TABLE)],
-    either(f"{_GOALS} or a table of weights"),
+    Annotated[str, AfterValidator(_goal), Tag(tables.WORD)] | Annotated[WeightsTable, Tag(tables.TABLE)],
+    tables.either(f"{_GOALS} or a table of weights"),
 ]
 
 
-class ObjectiveTable(Table):
+class ObjectiveTable(tables.Table):
     """What makes one design better than another.
 
     Parameters
@@ -195,15 +185,15 @@ class ObjectiveTable(Table):
         return Objective(**{"transmission": 0.0, self.maximise: 1.0})
 
 
-Carriers = Annotated[list[str], listed(f"a list of some of {', '.join(CARRIERS)}")]
+Carriers = Annotated[list[str], tables.listed(f"a list of some of {', '.join(CARRIERS)}")]
 
 
-@keys_of(CylinderSpec, {"closed": Pair, "on": Carriers, "base": Place})
-class CylinderTable(SpecTable):
-    beside = EACH
+@tables.keys_of(CylinderSpec, {"closed": Pair, "on": Carriers, "base": Place})
+class CylinderTable(tables.SpecTable):
+    beside = tables.EACH
 
 
-class DriverTable(Table):
+class DriverTable(tables.Table):
     """What drives the linkage in place of a crank.
 
     Parameters
@@ -219,24 +209,24 @@ class DriverTable(Table):
         return made
 
 
-@keys_of(Manufacturing)
-class ManufacturingTable(SpecTable):
+@tables.keys_of(Manufacturing)
+class ManufacturingTable(tables.SpecTable):
     beside = MappingProxyType({"*": {"length_tolerance": 1.0}})
 
 
-@keys_of(Search)
-class SearchTable(SpecTable):
-    beside = EACH
+@tables.keys_of(Search)
+class SearchTable(tables.SpecTable):
+    beside = tables.EACH
 
 
 Mechanism = Annotated[
-    Annotated[str, Tag(WORD)] | Annotated[list[Any], Tag(LIST)],
-    either(ANY_KINDS),
+    Annotated[str, Tag(tables.WORD)] | Annotated[list[Any], Tag(tables.LIST)],
+    tables.either(ANY_KINDS),
     AfterValidator(mechanisms),
 ]
 
 
-class _Heading(Table):
+class _Heading(tables.Table):
     """What is asked; the keys of a file come in this order.
 
     Parameters
@@ -251,11 +241,11 @@ class _Heading(Table):
         Unit of all lengths: mm, cm, m, in or ft where forces are asked for, otherwise any word.
     """
 
-    kind: Annotated[str, one_of(*TASKS)]
+    kind: Annotated[str, tables.one_of(*TASKS)]
     mechanism: Mechanism = FOUR_BAR
-    title: Text = ""
-    source: Text = ""
-    length_unit: Text = ""
+    title: tables.Text = ""
+    source: tables.Text = ""
+    length_unit: tables.Text = ""
 
 
 _tables: dict[str, Any] = {kind: (table | None, None) for kind, table in TASKS.items()}
@@ -274,9 +264,9 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
-        mine = tables.pop(self.kind)
-        for other, table in tables.items():
+        by_kind: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
+        mine = by_kind.pop(self.kind)
+        for other, table in by_kind.items():
             if table is not None:
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:

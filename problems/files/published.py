@@ -11,7 +11,7 @@ from importlib import resources
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
-from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.one_loop import FourBar
 
 
 class ErrorDefinition(StrEnum):

@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS
-from grashof.problems.files.foreign import Budget, read_by_others
+from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS, Budget
+from grashof.problems.files.on_disk import read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError, shown
 

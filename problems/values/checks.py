@@ -26,6 +26,7 @@ LEAST = 1e-20  # size of a task, for the same reason
 _FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
 Checked = TypeVar("Checked")
+Rows = tuple[tuple[float, ...], ...]
 
 
 def finite_rows(
@@ -158,9 +159,19 @@ def number_within(value: float, low: float, high: float, where: str) -> float:
     return number
 
 
+def within(low: float, high: float) -> Callable[[float, str], float]:
+    """The check of a number from `low` to `high`, by its value and the place that messages name."""
+    return lambda value, where: number_within(value, low, high, where)
+
+
 def bounded(value: float, where: str) -> float:
     """`value` as a float, refused beyond 1e20 either way."""
     return number_within(value, -GREATEST, GREATEST, where)
+
+
+def positive_bounded(value: float, where: str) -> float:
+    """`value` as a float, refused when it is not greater than zero, or beyond 1e20."""
+    return number_within(positive_number(value, where), 0.0, GREATEST, where)
 
 
 def from_zero(value: float, where: str) -> float:
@@ -181,6 +192,11 @@ def numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...
         entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
         raise ProblemError(f"{where} has {entries}; it must have {count} numbers")
     return tuple(bounded(value, f"{where}[{index}]") for index, value in enumerate(given))
+
+
+def pair(values: Sequence[float], where: str) -> tuple[float, ...]:
+    """Two floats, neither beyond 1e20."""
+    return numbers(values, 2, where)
 
 
 def one_or_each(
@@ -208,6 +224,13 @@ def one_or_each(
 def size_number(value: float, where: str, least: float = LEAST, greatest: float = GREATEST) -> float:
     """`value` as a float, refused where it is not greater than zero or beyond limits."""
     return number_within(positive_number(value, where), least, greatest, where)
+
+
+def true_or_false(value: bool, where: str) -> bool:
+    """`value` as a bool, refused when it is not one."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise wrong_value(where, value, "true or false")
+    return bool(value)
 
 
 def task_size(points: FloatArray, where: str) -> float:
@@ -245,6 +268,36 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     if low < least:
         raise ProblemError(f"{given}; lo must be at least {least:g}")
     return low, high
+
+
+def rising_rows(
+    values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two"
+) -> FloatArray:
+    """Checked rows (N, `columns`), as `means` tells; the first columns, named in `rising`, have to rise."""
+    table = finite_rows(values, columns, "values", means, GREATEST)  # type: ignore[arg-type]
+    if len(table) < {"two": 2, "three": 3}[least]:
+        raise ProblemError(f"values has {len(table)} rows; it must have {least} or more")
+    for column, name in enumerate(rising):
+        for row in np.flatnonzero(~(np.diff(table[:, column]) > 0)) + 1:
+            given = f"values[{row}] has {name} {table[row, column]:.15g}"
+            raise ProblemError(f"{given}; it must rise from row to row")
+    return table
+
+
+def refuse_open(table: FloatArray, over: str) -> None:
+    """Refuse rows over an angle (deg) that do not cover a turn, or end otherwise than they begin."""
+    first, last = table[0, 0], table[-1, 0]
+    if abs(last - first - 360) > 1e-9:
+        raise ProblemError(
+            f"values cover {over} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
+        )
+    if (table[0, 1:] != table[-1, 1:]).any():
+        raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
+
+
+def as_rows(table: FloatArray) -> Rows:
+    """The rows as tuples."""
+    return tuple(tuple(row) for row in table.tolist())
 
 
 def counted(number: int, noun: str) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.checks import bounded, from_zero, numbers, positive_number
+from grashof.problems.values.checks import bounded, from_zero, numbers, pair, positive_bounded
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
@@ -19,11 +20,10 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec, check_strength
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 STEADY = 30 / np.pi  # rpm: 1 rad/s
@@ -42,7 +42,7 @@ DYNAMICS_KEYS = (
 
 
 @dataclass(frozen=True, slots=True)
-class DynamicsSpec(Stated):
+class DynamicsSpec(TableValue):
     """Masses, speed, gravity and what else acts, of a problem or of one linkage; kg, s and its length unit.
 
     Forces are in N, moments in N m, stiffness in N/m, whatever the length unit.
@@ -118,23 +118,16 @@ class DynamicsSpec(Stated):
 
     def __post_init__(self) -> None:
         self._check_masses()
-        for name in ("mass_per_length", "density"):
-            if (given := getattr(self, name)) is not None:
-                self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
-        for name in ("masses", "inertias"):
-            self._set(name, _each(getattr(self, name), f"dynamics.{name}"))
+        each = {"masses": _each, "inertias": _each}
+        check_fields(self, "dynamics.", mass_per_length=positive_bounded, density=positive_bounded, **each)
         if self.masses and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
-        if self.centres is not None:
-            self._set("centres", _places(self.centres, "dynamics.centres"))
-        self._set("payload", from_zero(self.payload, "dynamics.payload"))
-        self._set("speed_rpm", bounded(self.speed_rpm, "dynamics.speed_rpm"))
-        self._set("gravity", numbers(self.gravity, 2, "dynamics.gravity"))
+        check_fields(self, "dynamics.", centres=_places, payload=from_zero, speed_rpm=bounded, gravity=pair)
         for name, kind in _LISTS.items():
             entries = getattr(self, name)
             if not isinstance(entries, Sequence) or not all(isinstance(each, kind) for each in entries):
                 raise wrong_value(name, entries, f"a list of {kind.__name__}")
-            self._set(name, tuple(entries))
+            set_fields(self, **{name: tuple(entries)})
 
     def _check_masses(self) -> None:
         given = [name for name in ("mass_per_length", "density") if getattr(self, name) is not None]
@@ -149,9 +142,6 @@ class DynamicsSpec(Stated):
         if self.density is not None and self.section is None:
             raise ProblemError("section is missing; dynamics.density needs it")
         check_strength(self.section, self.strength)
-
-    def _set(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
 
     @property
     def tables(self) -> dict[str, Any]:
@@ -207,6 +197,23 @@ class DynamicsSpec(Stated):
         return self.speed_rpm * np.pi / 30
 
 
+def reference_torque(spec: DynamicsSpec, task_size: float, metre: float) -> float:
+    """What `Problem.reference_torque` states, N m, from the size of the task and its unit in metres."""
+    size = task_size * metre
+    mass = (spec.mass_per_length or 0.0) * task_size + sum(spec.masses or ()) + spec.payload
+    mass += sum(weight.mass for weight in spec.counterweights)
+    if spec.density is not None and spec.section is not None:
+        mass += spec.density * max(spec.section.areas) * metre**2 * size
+    torque = mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
+    torque += sum(load.greatest * (1.0 if load.is_moment else size) for load in spec.loads)
+    torque += sum(spring.stiffness for spring in spec.springs) * size**2
+    torque += sum(damper.damping for damper in spec.dampers) * spec.omega2 * size**2
+    torque += sum(spring.stiffness for spring in spec.torsion_springs)
+    if spec.friction is not None:
+        torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
+    return torque or 1.0
+
+
 def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     """Length of a unit in metres; `ProblemError` where it is none of `METRES`."""
     if length_unit not in METRES:
@@ -214,9 +221,7 @@ def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     return METRES[length_unit]
 
 
-def _each(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
-    if values is None:
-        return None
+def _each(values: Sequence[float], where: str) -> tuple[float, ...]:
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a number for each moving link")
     given = tuple(values)

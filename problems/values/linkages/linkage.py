@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
-from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
+from grashof.problems.values.value_bases import Displayed, set_fields
 
 
 class Linkage(Displayed):
@@ -49,7 +48,7 @@ class Linkage(Displayed):
             ) from None
         for row, array in arrays.items():
             full = (*batch, 2) if row.paired else batch
-            object.__setattr__(self, row.name, frozen_array(np.broadcast_to(array, full)))
+            set_fields(self, **{row.name: frozen_array(np.broadcast_to(array, full))})
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -8,13 +8,10 @@ from typing import Any
 
 from grashof.problems.values.checks import each_checked, near_miss, refuse
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Parameter
+from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
-from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
 WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in linkage files and tables

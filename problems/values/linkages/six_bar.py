@@ -12,6 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
+from grashof.problems.values.value_bases import set_fields
 
 _SIX_BARS = tuple(row for row in MECHANISMS if len(row.dyads) > 1)
 
@@ -122,7 +123,7 @@ class SixBar(Linkage):
             if (value is None) == (name in names):
                 with_slide = "with slide_angle_2" if slides else "without slide_angle_2"
                 raise ProblemError(f"{name} is {'missing' if value is None else 'given'} {with_slide}")
-        object.__setattr__(self, "mechanism", row)
+        set_fields(self, mechanism=row)
         self._keep(*(given[name] for name in names))
 
     @property

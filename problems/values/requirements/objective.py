@@ -8,6 +8,7 @@ from grashof.problems.values.checks import near_miss, number_within
 from grashof.problems.values.errors import ProblemError, shown_key
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
+from grashof.problems.values.value_bases import set_fields
 
 _HEAVIEST = 1e9
 _PLAIN = {"compactness": "size", "torque": "torque_peak"}  # goals that go by a name of their own
@@ -70,7 +71,7 @@ class Objective:
             weights.append((GOALS[name].key, number_within(weight, 0.0, _HEAVIEST, where)))
         if not any(weight for _, weight in weights):
             raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
-        object.__setattr__(self, "weights", tuple(pair for pair in weights if pair[1]))
+        set_fields(self, weights=tuple(pair for pair in weights if pair[1]))
 
     @property
     def goals(self) -> dict[str, float]:

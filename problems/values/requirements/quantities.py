@@ -17,7 +17,6 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     DIMENSIONS,
@@ -26,10 +25,12 @@ from grashof.problems.values.linkages.mechanisms import (
     SLIDER_CRANK,
     having,
 )
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import set_fields
 
 
-class Over(StrEnum):
+class Scope(StrEnum):
     """Where a quantity is taken."""
 
     DESIGN = "the design"
@@ -61,7 +62,7 @@ class Quantity:
     key: str
     label: str  # heading in tables
     unit: Unit
-    over: Over = Over.DESIGN
+    over: Scope = Scope.DESIGN
     better: int = 0  # +1 where more is better, -1 where less is, 0 for neither
     needs: Needs = Needs.NOTHING
     digits: int = 0  # significant ones of the largest value in a table; 0 where it is listed in files only
@@ -74,9 +75,8 @@ class Quantity:
     full: str = ""  # its name in words in a list of all values, where that is not `words`
 
     def __post_init__(self) -> None:
-        for name in ("words", "short"):
-            object.__setattr__(self, name, getattr(self, name) or self.label)
-        object.__setattr__(self, "full", self.full or self.words)
+        set_fields(self, words=self.words or self.label, short=self.short or self.label)
+        set_fields(self, full=self.full or self.words)
 
     @property
     def column(self) -> str:
@@ -122,7 +122,7 @@ def _stated(kind: str, digits: int = 0) -> list[Quantity]:
 def _move(name: str) -> Quantity:
     about = f"how far the worst target moves per unit of change of {name}"
     return Quantity(
-        f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING, about=about,
+        f"move_{name}", f"move by {name}", Unit.RATIO, Scope.TARGETS, -1, Needs.MANUFACTURING, about=about,
         kinds=having(name), full=f"sensitivity to {name}",
     )  # fmt: skip
 
@@ -135,8 +135,8 @@ _WORST = "worst transmission angle over the"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
-_MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
-_OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
+_MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
+_OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": "from the first target to the last"}
 TURNING = having("o4")  # kinds whose link 4 turns
 ROCKERS = having("r4")  # those where it is a bar
 TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
@@ -151,23 +151,23 @@ MEASURED: dict[str, Quantity] = {
         *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
         *_stated("arm"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
-        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
-        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Scope.TARGETS),
+        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Scope.TARGETS),
         _length(
             "error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, full=_ALL, **_MISSED
         ),
-        _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
+        _length("error_max", "largest position error", over=Scope.TARGETS, better=-1),
         _length("error_rms", "position error rms", full=f"position error{_RMS}", **_MISSED),
-        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
-        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Scope.TARGETS, -1),
+        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Scope.TARGETS, -1),
         Quantity(
             "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{_RMS}", **_MISSED,
         ),
         Quantity(
-            "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
+            "transmission_min_task", "mu task", Unit.ANGLE, Scope.TASK, +1, digits=3, words=f"{_WORST} task"
         ),
         Quantity(
-            "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
+            "transmission_min_cycle", "mu turn", Unit.ANGLE, Scope.CYCLE, +1, digits=3, words=f"{_WORST} turn"
         ),
         Quantity(
             "omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING,
@@ -196,20 +196,20 @@ MEASURED: dict[str, Quantity] = {
             "coupler_fit_r2", "fit of P", Unit.RATIO, better=+1,
             full="R2 of a polynomial through the path of P", **_OVERALL,
         ),
-        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
-        _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
-        _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("size", over=Scope.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
+        _length("hausdorff", "Hausdorff distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("frechet", "Fréchet distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
         *(_move(name) for name in FourBar.mechanism.dimensions),
         _length(
             "worst_move", "worst move", needs=Needs.MANUFACTURING,
             full="largest move of a target within the tolerances", **_MISSED,
         ),
         Quantity(
-            "share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING,
+            "share_within_linear", "within, linear", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING,
             full="share made within the allowed error, linearised",
         ),
         Quantity(
-            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3,
+            "share_within_made", "made within", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING, digits=3,
             full="share made within the allowed error",
         ),
         *_stated("distance", digits=4),
@@ -217,19 +217,19 @@ MEASURED: dict[str, Quantity] = {
         *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
-            "cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            "cylinder_closed", "closed cylinder", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
             full="cylinder, closed length",
         ),
         _length(
-            "cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            "cylinder_stroke", "cylinder stroke", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
             full="cylinder, stroke",
         ),
         Quantity(
-            "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
+            "cylinder_angle_min", "lever angle", Unit.ANGLE, Scope.TASK, +1, Needs.CYLINDER, digits=3,
             about=_LEVER, words="worst lever angle of the cylinder", full="cylinder, worst lever angle",
         ),
         Quantity(
-            "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
+            "cylinder_force_max", "cylinder force", Unit.FORCE, Scope.TASK, -1, Needs.LOADED_CYLINDER,
             digits=4, words="peak force of the cylinder", full="cylinder, peak force",
         ),
     )
@@ -295,9 +295,9 @@ class Limit:
         return low if low == high else f"{low} to {high}"
 
 
-def place_of(name: str, over: Over) -> Quantity:
+def place_of(name: str, over: Scope) -> Quantity:
     """Where a joint is."""
-    kinds = having(name) if over is Over.DESIGN else tuple(ONE_LOOP)
+    kinds = having(name) if over is Scope.DESIGN else tuple(ONE_LOOP)
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
@@ -312,7 +312,7 @@ def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quan
     """The greatest error of an output ("max"), or its root mean square; `travels` has the keys of a slide."""
     about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
     words = "greatest structural error" if key == "max" else f"structural error{_RMS}"
-    label, task = f"{key} error", Over.TASK
+    label, task = f"{key} error", Scope.TASK
     if travels is None:
         return Quantity(name, label, Unit.ANGLE, task, -1, Needs.ROTATION, 3, about, words=words)
     return Quantity(

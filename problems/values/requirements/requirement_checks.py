@@ -10,13 +10,13 @@ from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
 
 
-def limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
+def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str:
     """What a field that limits a quantity may hold: a box, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
@@ -37,25 +37,24 @@ def limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str
     return checks.number_within(value, low, high, where)
 
 
-def areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
     """Polygons to keep out of, corners (M, 2) each."""
     if isinstance(values, Sequence) and not len(values):
         return ()
     # Here, not above: shapely takes a while to import, and few problems have areas.
     from grashof.problems.values.areas import polygons
 
-    return polygons(values, "requirements.keep_out")
+    return polygons(values, where)
 
 
-def parts(names: Sequence[str]) -> tuple[str, ...]:
+def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
     """What keeps out of them, each once."""
     wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise wrong_value("requirements.keep_out_for", names, wanted)
+        raise wrong_value(where, names, wanted)
     for index, name in enumerate(names):
         if name not in MAY_KEEP_OUT:
-            where = f"requirements.keep_out_for[{index}]"
-            raise wrong_value(where, name, f"one of {', '.join(MAY_KEEP_OUT)}")
+            raise wrong_value(f"{where}[{index}]", name, f"one of {', '.join(MAY_KEEP_OUT)}")
     return tuple(dict.fromkeys(names))
 
 

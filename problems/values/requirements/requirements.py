@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
-from grashof.problems.values.checks import GREATEST, number_within
-from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.checks import GREATEST, true_or_false, within
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
-from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
@@ -21,8 +21,8 @@ from grashof.problems.values.requirements.quantities import (
     Kind,
     Limit,
     Needs,
-    Over,
     Quantity,
+    Scope,
     between,
     limit,
     on_body,
@@ -31,6 +31,7 @@ from grashof.problems.values.requirements.quantities import (
 )
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import ReadOnly, check_fields
 
 
 class Rotatability(StrEnum):
@@ -152,7 +153,7 @@ class Requirements(ReadOnly):
     order: bool = True
     same_branch: bool = True
     transmission_min_deg: float = limit(
-        Quantity("transmission", "mu", Unit.ANGLE, Over.TASK, +1, listed=False),
+        Quantity("transmission", "mu", Unit.ANGLE, Scope.TASK, +1, listed=False),
         Kind.AT_LEAST,
         default=0.0,
         allowed=(0.0, 90.0),
@@ -176,10 +177,10 @@ class Requirements(ReadOnly):
         default=20.0,
         allowed=(1.0, 1e6),
     )
-    o2: Box | None = limit(place_of("o2", Over.DESIGN), Kind.INSIDE)
-    o4: Box | None = limit(place_of("o4", Over.DESIGN), Kind.INSIDE)
-    a: Box | None = limit(place_of("a", Over.TARGETS), Kind.INSIDE)
-    b: Box | None = limit(place_of("b", Over.TARGETS), Kind.INSIDE)
+    o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
+    o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
+    a: Box | None = limit(place_of("a", Scope.TARGETS), Kind.INSIDE)
+    b: Box | None = limit(place_of("b", Scope.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
         Kind.DIRECTION,
@@ -198,7 +199,8 @@ class Requirements(ReadOnly):
     worst_move: Limits | None = between("worst_move")
     share_within_made: Limits | None = between("share_within_made", 0.0, 1.0)
     driver_rotation_deg: Limits | None = between(
-        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_TARGETS), high=360.0
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Scope.TARGETS, about=_TARGETS),
+        high=360.0,
     )
     driver_sense: str = limit(
         Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
@@ -207,18 +209,26 @@ class Requirements(ReadOnly):
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
     output_swing_deg: Limits | None = between(
-        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING, kinds=TURNING),
+        Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=TURNING),
         0.0,
         360.0,
     )
     stroke: Limits | None = between(
-        Quantity("stroke", "stroke", Unit.LENGTH, Over.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
+        Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
     )
     time_ratio: Limits | None = between(
-        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES), 1.0, 1e6
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES), 1.0, 1e6
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Over.TASK, +1, listed=False, kinds=TURNING),
+        Quantity(
+            "mechanical_advantage",
+            _ADVANTAGE,
+            Unit.RATIO,
+            Scope.TASK,
+            +1,
+            listed=False,
+            kinds=TURNING,
+        ),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -234,25 +244,7 @@ class Requirements(ReadOnly):
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.exact, bool | None):
-            raise wrong_value("requirements.exact", self.exact, "true or false")
-        for name in ("order", "same_branch"):
-            if not isinstance(getattr(self, name), bool):
-                raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
-        for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
-            if getattr(self, name) is None and name == "rotatability":  # the task's own
-                continue
-            object.__setattr__(self, name, check.word(kind, getattr(self, name), f"requirements.{name}"))
-        for name, (low, high) in _RANGES.items():
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, number_within(value, low, high, f"requirements.{name}"))
-        for name, limited in LIMITS.items():
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, check.limits(value, limited, f"requirements.{name}"))
-        object.__setattr__(self, "keep_out", check.areas(self.keep_out))
-        object.__setattr__(self, "keep_out_for", check.parts(self.keep_out_for))
+        check_fields(self, "requirements.", **_CHECKS)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Requirements):
@@ -348,7 +340,7 @@ class Requirements(ReadOnly):
             name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
 
-    def meant(self, quantity: Quantity) -> Quantity:
+    def as_required(self, quantity: Quantity) -> Quantity:
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
         over = quantity.key == "transmission"
         return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
@@ -376,20 +368,28 @@ class Requirements(ReadOnly):
         return {} if value in (None, ANYWHERE) else LIMITS[name].ranges(value)
 
 
-_RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
-
 # What the fields limit, by field.
 LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }
+_RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
+_CHECKS: dict[str, Callable[[Any, str], Any]] = {
+    **dict.fromkeys(("exact", "order", "same_branch"), true_or_false),
+    "rotatability": partial(check.word, Rotatability),
+    "transmission_over": partial(check.word, TransmissionOver),
+    **{name: within(*limits) for name, limits in _RANGES.items()},
+    **{name: partial(check.limits, limited) for name, limited in LIMITS.items()},
+    "keep_out": check.areas,
+    "keep_out_for": check.parts,
+}
 
 _DERIVED = (
     Quantity(
-        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Over.TASK, kinds=TURNING,
+        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=TURNING,
         about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
     ),
     Quantity(
-        "structural_error_at", "worst at", Unit.ANGLE, Over.TASK, needs=Needs.OUTPUTS,
+        "structural_error_at", "worst at", Unit.ANGLE, Scope.TASK, needs=Needs.OUTPUTS,
         about="driver rotation from the first pair to the greatest structural error",
         full="driver rotation to the greatest structural error",
     ),

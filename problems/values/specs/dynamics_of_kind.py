@@ -43,7 +43,7 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for table, given in (("section", spec.section), ("strength", spec.strength)):
         for name, value in () if given is None else given.stated.items():
             count = len(kind.every_joint) if name == "pin_diameter" else len(moving)
-            if isinstance(value, tuple) and len(value) != count:  # such lists are of linkages of one loop
+            if isinstance(value, list) and len(value) != count:  # such lists are of linkages of one loop
                 entries = f"{table}.{name} has {len(value)} entries"
                 yield f"{entries}; it must be a number with mechanism {kind.word}"
 

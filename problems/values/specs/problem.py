@@ -9,20 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.checks import (
-    counted,
-    noted,
-    number_within,
-    outline,
-    plain_text,
-    positive_number,
-    refuse,
-    whole_number,
-)
-from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres, reference_torque
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
-from grashof.problems.values.dynamics.reference_torque import reference_torque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
@@ -32,7 +22,6 @@ from grashof.problems.values.linkages.mechanisms import (
     mechanisms,
     not_had,
 )
-from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
@@ -44,10 +33,11 @@ from grashof.problems.values.requirements.requirements import (
     Requirements,
     Rotatability,
 )
-from grashof.problems.values.requirements.stroke_limits import stated_size, strokes_wrong
+from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import ReadOnly, check_fields, set_fields
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
 NO_OBJECTIVE = (
@@ -85,8 +75,8 @@ class Search:
 
     def __post_init__(self) -> None:
         for name, least in (("starts", 1), ("enough", 1), ("seed", 0)):
-            object.__setattr__(self, name, whole_number(getattr(self, name), least, f"search.{name}"))
-        object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
+            set_fields(self, **{name: checks.whole_number(getattr(self, name), least, f"search.{name}")})
+        check_fields(self, "search.", effort=checks.within(*EFFORTS))
 
 
 _KINDS: dict[str, Any] = {
@@ -153,20 +143,19 @@ class Problem(ReadOnly):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
         if len(self.task) > MOST_TARGETS:
             raise ProblemError(f"the task has {len(self.task)} targets; it must have at most {MOST_TARGETS}")
-        object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
-        object.__setattr__(self, "task", grounded(self.task, self.requirements))
-        for name in ("name", "title", "source", "length_unit"):
-            plain_text(getattr(self, name), name)
-        object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
-        object.__setattr__(self, "requirements", self._met_by_all_kinds())
+        set_fields(self, requirements=self.requirements.for_task(self.task))
+        set_fields(self, task=grounded(self.task, self.requirements))
+        check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
+        set_fields(self, mechanism=mechanisms(self.mechanism))
+        set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
         if self.dynamics is not None:
-            with noted(wrong):
+            with checks.noted(wrong):
                 metres(self.length_unit)  # refuses one that is not known
-            with noted(wrong):
-                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            with checks.noted(wrong):
+                checks.positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             for word in self.mechanism:
                 wrong += misplaced(self.dynamics, ONE_LOOP[word])
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
@@ -183,12 +172,9 @@ class Problem(ReadOnly):
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
-            object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
-        refuse(wrong)
-        checked = tuple(
-            outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
-        )
-        object.__setattr__(self, "outlines", checked)
+            set_fields(self, task=self.task.sized(stated_size(self.requirements)))
+        checks.refuse(wrong)
+        set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
 
     def _met_by_all_kinds(self) -> Requirements:
         """Where files leave it open, targets are to be met if all kinds asked for can be expected to."""
@@ -229,14 +215,14 @@ class Problem(ReadOnly):
     def _asked(self) -> dict[str, Quantity]:
         """What is weighed or limited, by its key path."""
         stated = self.objective.stated.items()
-        goals = {f"objective.maximise.{name}": self.meant(GOALS[name]) for name, w in stated if w}
+        goals = {f"objective.maximise.{name}": self.as_required(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
 
-    def meant(self, quantity: Quantity) -> Quantity:
-        """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
-        meant = self.requirements.meant(quantity)
-        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if self.task.travels else meant
+    def as_required(self, quantity: Quantity) -> Quantity:
+        """The quantity by `Requirements.as_required`; a slide's structural errors are lengths."""
+        found = self.requirements.as_required(quantity)
+        return QUANTITIES[TRAVEL_ERRORS.get(found.key, found.key)] if self.task.travels else found
 
     def _not_of_these_kinds(self) -> list[str]:
         """What is weighed or limited though no kind of linkage that is asked for has it."""
@@ -300,7 +286,7 @@ class Problem(ReadOnly):
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
         """What the objective weighs, with its weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
-        return tuple((self.meant(QUANTITIES[key]), weight) for key, weight in goals)
+        return tuple((self.as_required(QUANTITIES[key]), weight) for key, weight in goals)
 
     @property
     def by_objective(self) -> bool:
@@ -334,7 +320,9 @@ class Problem(ReadOnly):
         return replace(self, task=task, requirements=wanted, objective=objective)
 
     def __repr__(self) -> str:
-        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
+        return (
+            f"<Problem {self.name}: {type(self.task).__name__} of {checks.counted(len(self.task), 'target')}>"
+        )
 
     def scale(self, quantity: Quantity) -> float:
         """What the objective counts a quantity in, so that weights are pure numbers.

@@ -16,7 +16,7 @@ from grashof.problems.values.checks import (
     positive_number,
 )
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly, set_fields
 
 LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "log10": np.log10,
@@ -86,7 +86,7 @@ class FunctionLaw(ReadOnly):
         low, high = limits(self.x, "function.x")
         if low == high:
             raise ProblemError(f"function.x is [{low:g}, {high:g}]; the two must differ")
-        object.__setattr__(self, "x", (low, high))
+        set_fields(self, x=(low, high))
         if self.travels:
             positive_number(self.output_range, "function.output_range")
         for name in ("input_range", *(() if self.travels else ("output_range",))):
@@ -107,7 +107,7 @@ class FunctionLaw(ReadOnly):
         if self.exponent is not None:
             number_within(self.exponent, -100.0, 100.0, "function.exponent")
         if self.samples is not None:
-            object.__setattr__(self, "samples", frozen_array(np.asarray(self.samples, dtype=np.float64)))
+            set_fields(self, samples=frozen_array(self.samples))
         self._refuse_undefined()
 
     @classmethod

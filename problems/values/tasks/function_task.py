@@ -9,29 +9,81 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import (
-    finite_number,
-    near_miss,
-    positive_number,
-    whole_number,
-)
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.tasks.function_law import (
     FunctionLaw,
     chebyshev_spacing,
     lobatto_with_weights,
 )
-from grashof.problems.values.tasks.function_pairs import (
-    FEWEST,
-    INPUT,
-    MOST,
-    OUTPUT,
-    OUTPUT_DEG,
-    checked_pairs,
-    finite_numbers,
-)
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.value_bases import set_fields
+
+INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
+FEWEST, MOST = 3, 100_000
+_LEAST_STEP = 1e-6  # rad, between two inputs
+_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
+
+
+def checked_pairs(
+    inputs: npt.ArrayLike, outputs: npt.ArrayLike, *, travels: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Inputs (N,) in rad that grow from 0, and outputs (N,) in rad, or length of a slide that travels."""
+    key = OUTPUT if travels else OUTPUT_DEG
+    turned, output = finite_numbers(inputs, INPUT), finite_numbers(outputs, key)
+    if len(turned) != len(output):
+        counts = (
+            checks.counted(len(turned), "angle"),
+            checks.counted(len(output), "travel" if travels else "angle"),
+        )
+        given = f"function.{INPUT} has {counts[0]}, function.{key} {counts[1]}"
+        raise ProblemError(f"{given}; it must be as many")
+    if len(turned) < FEWEST:
+        raise ProblemError(f"function has {checks.counted(len(turned), 'pair')}; it must have three or more")
+    if len(turned) > MOST:
+        raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
+    for name, first in ((INPUT, turned[0]), (key, output[0])):
+        if first != 0:
+            given = _deg(first) if name.endswith("_deg") else f"{first:.6g}"
+            raise ProblemError(f"function.{name}[0] is {given}; it must be 0, at the first pair")
+    for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
+        raise ProblemError(
+            f"function.{INPUT}[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
+            "inputs must grow (the driver may turn either way all the same)"
+        )
+    _refuse_turns(turned, INPUT)
+    if travels:
+        _refuse_travel(float(np.ptp(output)))
+        return turned, output
+    _refuse_turns(output, OUTPUT_DEG)
+    if np.ptp(output) < _LEAST_OUTPUT:
+        raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
+    return turned, output
+
+
+def finite_numbers(values: Any, key: str) -> FloatArray:
+    """A list of finite numbers under a key, as an array."""
+    return checks.finite_list(values, f"function.{key}", "lengths" if key == OUTPUT else "angles")
+
+
+def _refuse_turns(angles: FloatArray, key: str) -> None:
+    if np.ptp(angles) > TURN * (1 + 1e-12):
+        raise ProblemError(
+            f"function.{key} covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
+        )
+
+
+def _refuse_travel(travel: float) -> None:
+    if not travel > 0:
+        raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
+    if travel > checks.GREATEST:
+        raise ProblemError(f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}")
+
+
+def _deg(angle: float) -> str:
+    return f"{np.degrees(angle):.6g}"
+
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
@@ -110,13 +162,16 @@ class FunctionTask(Task):
         turned, output = checked_pairs(inputs, outputs, travels=travels)
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
-        object.__setattr__(self, "inputs", frozen_array(turned))
-        object.__setattr__(self, "outputs", frozen_array(output))
-        object.__setattr__(self, "sense", _word(sense, SENSES, "function.sense"))
-        object.__setattr__(self, "norm", _word(norm, NORMS, "function.norm"))
-        object.__setattr__(self, "law", law)
-        object.__setattr__(self, "length", positive_number(length, "function.length"))
-        object.__setattr__(self, "travels", bool(travels))
+        set_fields(
+            self,
+            inputs=frozen_array(turned),
+            outputs=frozen_array(output),
+            sense=_word(sense, SENSES, "function.sense"),
+            norm=_word(norm, NORMS, "function.norm"),
+            law=law,
+            length=checks.positive_number(length, "function.length"),
+            travels=bool(travels),
+        )
 
     @classmethod
     def of_law(
@@ -134,7 +189,7 @@ class FunctionTask(Task):
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
         else:
-            if whole_number(pairs, FEWEST, "function.pairs") > MOST:
+            if checks.whole_number(pairs, FEWEST, "function.pairs") > MOST:
                 raise ProblemError(f"function.pairs is {shown(pairs)}; it must be at most {MOST}")
             places = chebyshev_spacing(pairs)
         turned = law.input_range * places
@@ -218,7 +273,7 @@ class FunctionTask(Task):
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
         _refuse_missing(stated, "output_range", travels)
         key = "output_range" if travels else "output_range_deg"
-        ranges = [finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
+        ranges = [checks.finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
         over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
         if callable(law):
             made = FunctionLaw.of_callable(law, stated["x"], *over, travels=travels)
@@ -314,7 +369,7 @@ def _either(key: str, angles: object, travel: object) -> bool:
 def _word(value: str, words: tuple[str, ...], where: str) -> str:
     if value in words:
         return str(value)
-    meant = near_miss(value, words) if isinstance(value, str) else None
+    meant = checks.near_miss(value, words) if isinstance(value, str) else None
     raise wrong_value(where, value, " or ".join(words) + f" (did you mean {meant}?)" * bool(meant))
 
 

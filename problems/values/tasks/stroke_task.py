@@ -14,6 +14,7 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, closing_dyad
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
+from grashof.problems.values.value_bases import set_fields
 
 LEAST_SWING = 1e-3  # rad
 # Of an offset slider-crank. Up to 3 there are some in theory, whose transmission angle is below
@@ -75,8 +76,7 @@ class StrokeTask(Task):
         with noted(wrong):
             kept["time_ratio"] = _ratio(time_ratio)
         refuse(wrong)
-        for name, value in kept.items():
-            object.__setattr__(self, name, value)
+        set_fields(self, **kept)
 
     @classmethod
     def from_degrees(
@@ -135,7 +135,7 @@ class StrokeTask(Task):
     def sized(self, reference: float) -> Self:
         """The same with another length that counts as the size where the scale is free."""
         made = replace(self)
-        object.__setattr__(made, "reference", reference)
+        set_fields(made, reference=reference)
         return made
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> StrokeTask:  # noqa: ARG002

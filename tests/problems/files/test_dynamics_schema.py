@@ -8,9 +8,9 @@ from refusals import refusal, rows
 
 from grashof.problems import LinkageSpec, ProblemError, load, load_linkage_spec
 from grashof.problems.files.linkage_schema import linkage_from
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.files.toml_file import document_of
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
@@ -22,7 +22,7 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 
 BARE = 'length_unit = "m"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
 PROBLEM = 'kind = "motion"\nlength_unit = "m"\n[motion]\nposes = [[0, 0, 0], [3, 4, 9]]\n'

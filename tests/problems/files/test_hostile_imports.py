@@ -16,10 +16,9 @@ from refusals import refusal
 
 from grashof import load
 from grashof.problems import ProblemError
-from grashof.problems.files import toml_file
-from grashof.problems.files.drawing_files import outlines_of
-from grashof.problems.files.dxf_lines import dxf_drawing
-from grashof.problems.files.foreign import Budget
+from grashof.problems.files import on_disk
+from grashof.problems.files.dxf_lines import Budget, dxf_drawing
+from grashof.problems.files.named_files import outlines_of
 from grashof.problems.files.spreadsheet import rows_of
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{}</svg>'
@@ -234,7 +233,7 @@ def _repacked(content: bytes, rng: random.Random) -> bytes:
 def test_tables_of_text(tmp_path: Path) -> None:
     assert "field larger than field limit" in refused(tmp_path, "a.csv", f"x,y\n1,{'2' * 200_000}\n")
     assert refused(tmp_path, "a.csv", "\n" * 30_000) == "has more than 20000 lines; it must have at most that"
-    assert toml_file.MOST_BYTES < 10**7
+    assert on_disk.MOST_BYTES < 10**7
     assert "bytes; a CSV file must have at most that" in refused(tmp_path, "a.csv", "1,2\n" * 2_000_000)
 
 

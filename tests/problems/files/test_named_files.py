@@ -14,7 +14,7 @@ from refusals import refusal
 from same_values import check_same
 
 from grashof.problems import MotionTask, PathTask, Problem, ProblemError, load
-from grashof.problems.files.drawing_files import areas_of
+from grashof.problems.files.named_files import areas_of
 
 POSES = "x,y,angle_deg\n0,0,10\n1,,\n"
 MOTION = 'kind = "motion"\nlength_unit = "mm"\n[motion]\nposes = "{}"\n'

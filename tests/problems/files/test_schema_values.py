@@ -85,7 +85,7 @@ WRONG = {
         ("starts = 0", " is 0; it must be a whole number from 1"),
         ("workers = 2", " is unknown; the keys are starts, enough, seed, effort"),
     ],
-    "manufacturing": [("length_tolerance = 1e300", " is 1e+300; it must be at most 1e+20")],
+    "manufacturing": [("length_tolerance = 1e300", " is 1e+300; it must be from 0 to 1e+20")],
 }
 
 
@@ -243,7 +243,7 @@ def test_all_errors_are_told_a_line_each() -> None:
         "objective.maximise.torque is -1; it must be from 0 to 1e+09",
         "dynamics.masses[1] is -2; it must be a number from zero",
         "dynamics.payload is -1; it must be a number from zero",
-        "manufacturing.band is 0; it must be greater than zero",
+        "manufacturing.band is 0; it must be a number greater than zero",
         "search.starts is 0; it must be a whole number from 1",
         "search.seed is -1; it must be a whole number from 0",
         "titles is unknown; did you mean title?",

@@ -125,7 +125,6 @@ TEXTS = {
     "BARS": BARS,
     "ZERO": "it must be a number from zero",
     "MORE": "it must be a number greater than zero",
-    "LENGTH": "it must be greater than zero",
 }
 BAD_DYNAMICS = r"""
 # | dynamics has no mass;
@@ -156,14 +155,14 @@ masses = [0, 0, 0]\ninertias = [0, 0, 0] | dynamics.masses are all zero; one at 
 BAD_MANUFACTURING = r"""
 # | manufacturing.length_tolerance is missing
 band = 0.1 | manufacturing.length_tolerance is missing
-length_tolerance = 0 | manufacturing.length_tolerance is 0; <LENGTH>
-length_tolerance = -0.1 | manufacturing.length_tolerance is -0.1; <LENGTH>
+length_tolerance = 0 | manufacturing.length_tolerance is 0; <MORE>
+length_tolerance = -0.1 | manufacturing.length_tolerance is -0.1; <MORE>
 length_tolerance = '0.1' | manufacturing.length_tolerance is '0.1'; it must be a number
 length_tolerance = true | manufacturing.length_tolerance is true; it must be a number
 length_tolerance = inf | manufacturing.length_tolerance is inf; it must be a finite number
 length_tolerance = nan | manufacturing.length_tolerance is nan; it must be a finite number
-length_tolerance = 0.1\nband = 0 | manufacturing.band is 0; <LENGTH>
-length_tolerance = 0.1\nband = -2 | manufacturing.band is -2; <LENGTH>
+length_tolerance = 0.1\nband = 0 | manufacturing.band is 0; <MORE>
+length_tolerance = 0.1\nband = -2 | manufacturing.band is -2; <MORE>
 length_tolerance = 0.1\nband = [1, 2] | manufacturing.band is [1, 2]; it must be a number
 length_tolerance = 0.1\nsamples = 9 | manufacturing.samples is unknown; the keys are length_tolerance, band
 tolerance = 0.1\nlength_tolerance = 0.1 | manufacturing.tolerance is unknown; did you mean length_tolerance?

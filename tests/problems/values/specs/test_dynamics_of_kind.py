@@ -25,8 +25,7 @@ from grashof.problems.values.dynamics.load_specs import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.section import SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec
+from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
 from grashof.problems.values.linkages.mechanisms import linkage_of
