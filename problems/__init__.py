@@ -1,4 +1,4 @@
-"""What is asked: tasks, requirements, the linkage as a value, and the catalogue of problems."""
+"""Problems as values and files: tasks, requirements, linkages, and the catalogue."""
 
 from grashof.problems.files.linkage_file import (
     linkage_catalogue,

@@ -1,4 +1,4 @@
-"""Lines of a DXF drawing that others made."""
+"""Lines of a foreign DXF drawing."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE"
 
 
 class Budget:
-    """How many parts a drawing may have once what it repeats is written out.
+    """The number of parts that a drawing may have once its repetitions are expanded.
 
-    `part` is what they are, `level` what of them may contain others, in the plural: "entities", "blocks".
+    `part` names the parts, `level` those that may contain others, in the plural: "entities", "blocks".
     """
 
     def __init__(self, most: int, part: str, level: str) -> None:
@@ -54,8 +54,8 @@ class Budget:
 def dxf_polylines(text: str) -> list[FloatArray]:
     """Lines and curves of the model space as polylines (N, 2), in the units of the drawing.
 
-    Blocks are taken apart; text, dimensions and hatches are left out. `ProblemError` where it is no DXF file,
-    has no lines, or too many; or ezdxf is not installed.
+    Blocks are exploded; text, dimensions and hatches are ignored. `ProblemError` where it is not a DXF file,
+    has no lines or too many, or ezdxf is not installed.
     """
     return dxf_drawing(text.encode("utf-8", "surrogateescape"))[0]
 
@@ -92,14 +92,14 @@ def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], floa
         where = f"on the layer {shown(layer)}" if layer else "in its model space"
         raise ProblemError(f"the drawing has no lines {where}")
     if not all(np.isfinite(each).all() for each in found):
-        raise ProblemError("the drawing has places that are not finite numbers")
+        raise ProblemError("the drawing has coordinates that are not finite")
     if unit and unit not in _METRES:
         raise ProblemError(f"the drawing is in unit {unit} of DXF; it must be one of {_NAMES}, or none")
     return found, _METRES.get(unit)
 
 
 def _drawn(entities: Iterable[Any], budget: Budget, depth: int = 0) -> Iterator[Any]:
-    """Lines and curves, with those of blocks one by one: a few bytes may stand for millions."""
+    """Lines and curves, those of blocks one by one: a few bytes may expand to millions."""
     budget.enter(depth)
     for entity in entities:
         budget.spend()

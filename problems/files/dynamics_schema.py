@@ -1,4 +1,4 @@
-"""Tables of problem and linkage files: what a linkage weighs, what acts on it and what drives it."""
+"""Tables of problem and linkage files for masses, loads and drives."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ _LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
     ("speed_rpm", "gravity", "mass_per_length", "density", "masses", "inertias", "centres", "payload"),
 )
 class DynamicsTable(_Acting):
-    # The file as a whole says whether there is a section.
+    # Whether there is a section is checked with the complete file.
     beside = MappingProxyType({"*": _SECTION, **dict.fromkeys(("masses", "inertias", "centres"), _LINKS)})
 
     def value(self) -> DynamicsSpec:
@@ -216,7 +216,7 @@ _Machine = create_model(
 
 
 class MachineTables(_Machine):  # type: ignore[misc, valid-type]
-    """What problem and linkage files have in common."""
+    """Tables that problem and linkage files have in common."""
 
     def dynamics_spec(self, *kinds: Mechanism) -> DynamicsSpec | None:
         """All of it as one value, for some kinds of linkages; None where nothing is stated."""

@@ -159,7 +159,7 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) ->
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
-    """Design of a list that `grashof solve` wrote, and all that the list states of it."""
+    """Design of a list that `grashof solve` wrote, and its entry in the list."""
     from grashof.problems.files.linkage_schema import as_document, linkage_from
 
     where = f"{path}#{which}"
@@ -216,7 +216,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
 
 
 def _names(word: str, stated: Any) -> dict[str, bool]:
-    """What `Linkage.stated` has for a kind of linkage, and whether it is an angle."""
+    """Keys of `Linkage.stated` for a kind of linkage, and whether each is an angle."""
     rows = [row for row in MECHANISMS if row.word == word]
     given = set(stated) if isinstance(stated, dict) else set()
     kind = max(rows, key=lambda row: len(given & {each.name for each in row.parameters}))
@@ -263,7 +263,7 @@ def _errors(given: list[float | None]) -> tuple[float | None, ...]:
 
 
 def _rank(given: object) -> int:
-    """A rank; `ValueError` for what is none."""
+    """A rank; `ValueError` where it is not one."""
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= _LAST_RANK:
         raise ValueError
     return given

@@ -20,11 +20,11 @@ from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.specs.problem import MOST_TARGETS
 
 TABLES, DRAWINGS = (".csv", ".xlsx"), (".dxf", ".svg")
-_ENDS_MEET = 1e-6  # share of a drawing's size, of what is one place
+_ENDS_MEET = 1e-6  # share of a drawing's size within which two ends are one place
 
 
 def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
-    """What the lines of a drawing enclose, each a polygon; `ProblemError` where they enclose nothing.
+    """Polygons that the lines of a drawing enclose; `ProblemError` where they enclose nothing.
 
     In `name` ``machine.dxf#KEEP_OUT`` are the lines of a layer, of an SVG those of a group; a drawing that
     states its own unit is converted to that of the problem, `length_unit`.
@@ -85,7 +85,7 @@ def poses_of(name: str, folder: Path) -> dict[str, Any]:
     """``poses``, as a problem file has them, and ``timing_deg`` where a column has it.
 
     The columns are x, y and angle_deg; empty cells leave parts of a pose free. `ProblemError` where there are
-    others, or what is no number, a line each.
+    others, or cells that are not numbers, a line each.
     """
     rows, timing = _table(name, folder, ("x", "y", "angle_deg"))
     return {"poses": each_checked(rows, name, _pose, ": row {}", 1), **timing}
@@ -146,7 +146,7 @@ def _body(name: str, folder: Path, unit: str) -> dict[str, Any]:
     return {"body": areas[0]}
 
 
-# By table and key; what is read may be keys of the same table besides.
+# By table and key; a file may give further keys of the same table.
 FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
     ("motion", "poses"): (TABLES, lambda name, folder, _: poses_of(name, folder)),
     ("path", "points"): (TABLES, lambda name, folder, _: points_of(name, folder)),
@@ -163,10 +163,10 @@ FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
 
 
 def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """A copy of a parsed problem file with what it names in place of the names.
+    """A copy of a parsed problem file with the content of the files that it names.
 
-    Names are relative to a folder; without it none may be given. `ProblemError` has what a file lacks, after
-    the key that names it, a line each.
+    Names are relative to a folder; without it they are refused. `ProblemError` has a line for each error of
+    a file, after the key that names it.
     """
     found, wrong = dict(document), list[str]()
     unit = document.get("length_unit", "")
@@ -190,7 +190,7 @@ def _filled(
     read: Read,
     unit: Any,
 ) -> dict[str, Any]:
-    """A table with what a file has in place of its name."""
+    """A table with the content of a file in place of its name."""
     if Path(name.partition("#")[0]).suffix.lower() not in endings:
         raise ProblemError(f"{where} is {shown(name)}; it must be a list, or a file {' or '.join(endings)}")
     if folder is None:

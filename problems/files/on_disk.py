@@ -17,7 +17,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from grashof.problems.values.checks import near_miss
+from grashof.problems.values.checks import hint
 from grashof.problems.values.errors import ProblemError, shown
 
 MOST_BYTES = 4 * 2**20  # of files that people write or draw
@@ -43,9 +43,8 @@ class Catalogue:
         return self._files[name].read_text(encoding="utf-8")
 
     def hint(self, name: str) -> str:
-        """What could be meant by a name that is not there."""
-        meant = near_miss(name, self.names)
-        return f"did you mean {meant}?" if meant else f"the catalogue has {', '.join(self.names)}"
+        """The likely name in place of one that is not there."""
+        return hint(name, self.names, f"the catalogue has {', '.join(self.names)}")
 
     @property
     def _files(self) -> dict[str, Traversable]:
@@ -64,17 +63,17 @@ def exists(text: str) -> bool:
     return bool(text) and os.path.exists(text)  # noqa: PTH110
 
 
-def file_text(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> str:
-    """Text of a file that a user named; `ProblemError` states why it cannot be read, a hint what is meant."""
+def file_text(path: Path, wanted: str, suggestion: str = "", most: int = MOST_BYTES) -> str:
+    """Text of a file that a user named; `ProblemError` states why it cannot be read, with a suggestion."""
     try:
         # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
-        return file_bytes(path, wanted, hint, most).decode("utf-8-sig")
+        return file_bytes(path, wanted, suggestion, most).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
 
 
-def file_bytes(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) -> bytes:
-    """Content of a plain file that a user named, of so many bytes at most, likewise."""
+def file_bytes(path: Path, wanted: str, suggestion: str = "", most: int = MOST_BYTES) -> bytes:
+    """Content of a plain file of at most `most` bytes, likewise."""
     content = b""
     try:
         mode = path.stat().st_mode
@@ -82,7 +81,7 @@ def file_bytes(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) 
             with path.open("rb") as file:
                 content = file.read(most + 1)
     except FileNotFoundError:
-        raise ProblemError(f"{path}: there is no such file{hint and '; '}{hint}") from None
+        raise ProblemError(f"{path}: there is no such file{suggestion and '; '}{suggestion}") from None
     except OSError as error:
         raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:  # no name of a file, such as one with a null character
@@ -97,7 +96,7 @@ def file_bytes(path: Path, wanted: str, hint: str = "", most: int = MOST_BYTES) 
 
 @contextmanager
 def read_by_others(wanted: str) -> Iterator[None]:
-    """What a library raises on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
+    """Errors of a library on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -110,7 +109,7 @@ def read_by_others(wanted: str) -> Iterator[None]:
 
 
 def document_of(text: str, file_name: str) -> dict[str, Any]:
-    """What TOML states; `ProblemError` where it is none."""
+    """The document of a TOML text; `ProblemError` where it is not TOML."""
     try:
         return tomllib.loads(text)
     # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
@@ -120,7 +119,7 @@ def document_of(text: str, file_name: str) -> dict[str, Any]:
 
 
 PACKAGES = ("grashof", "casadi", "numpy", "scipy")  # whose versions may change a digit
-WRITING = ".writing-"  # how names of files begin that are not whole yet
+WRITING = ".writing-"  # beginning of the names of incomplete files
 
 
 @cache
@@ -130,9 +129,9 @@ def versions() -> dict[str, str]:
 
 
 def write_whole(path: Path, content: Mapping[str, Any] | str) -> None:
-    """A file, JSON or text, that is there whole or not at all, whenever the machine stops.
+    """Write a file, JSON or text, that is complete or absent even if the machine stops.
 
-    `OSError` where the disk is full or the folder is lost; nothing is left of the file then.
+    `OSError` where the disk is full or the folder is lost; no part of the file is left then.
     """
     beside = path.with_name(f"{WRITING}{os.getpid()}-{path.name}")
     try:

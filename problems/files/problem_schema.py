@@ -1,7 +1,4 @@
-"""The problem file's structure: which keys there are and of what type.
-
-The value types check what the values mean; both kinds of error leave as one `ProblemError`.
-"""
+"""The structure of problem files: their keys and types; the value types check the values."""
 
 from __future__ import annotations
 
@@ -54,7 +51,7 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
-    """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
+    """Contradictions between tables, which stay unreported while a table has errors of its own."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
     for other in TASKS if kind in [*TASKS] else ():  # a file may state a table as its kind
         if other != kind and other in document:
@@ -96,18 +93,19 @@ Place = Annotated[
 _AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg file"
 
 
-def _several(given: Any) -> Any:
-    """Polygons; a single one, which is no list of them, is refused in one line."""
-    if isinstance(given, list) and given and all(_is_corner(each) for each in given):
-        raise PydanticCustomError(tables.WRONG, "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]")
-    return given
+def _is_polygon(given: Any) -> bool:
+    """Whether a value is a single polygon, which is refused in one line, and not a list of them."""
+    return isinstance(given, list) and bool(given) and all(_is_corner(each) for each in given)
 
 
 def _is_corner(given: Any) -> bool:
     return isinstance(given, list) and len(given) == 2 and all(isinstance(x, int | float) for x in given)
 
 
-Areas = Annotated[list[Corners], tables.listed(_AREAS), BeforeValidator(_several)]
+_SEVERAL = tables.unless(
+    lambda given: not _is_polygon(given), "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]"
+)
+Areas = Annotated[list[Corners], tables.listed(_AREAS), BeforeValidator(_SEVERAL)]
 Parts = Annotated[
     list[str], tables.listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")
 ]
@@ -169,7 +167,7 @@ Maximise = Annotated[
 
 
 class ObjectiveTable(tables.Table):
-    """What makes one design better than another.
+    """The criterion that ranks designs.
 
     Parameters
     ----------
@@ -194,7 +192,7 @@ class CylinderTable(tables.SpecTable):
 
 
 class DriverTable(tables.Table):
-    """What drives the linkage in place of a crank.
+    """The drive of the linkage in place of a crank.
 
     Parameters
     ----------
@@ -227,7 +225,7 @@ Mechanism = Annotated[
 
 
 class _Heading(tables.Table):
-    """What is asked; the keys of a file come in this order.
+    """The complete problem; the keys of a file come in this order.
 
     Parameters
     ----------
@@ -238,7 +236,7 @@ class _Heading(tables.Table):
     source : str
         Where the problem is from, for people.
     length_unit : str
-        Unit of all lengths: mm, cm, m, in or ft where forces are asked for, otherwise any word.
+        Unit of all lengths: mm, cm, m, in or ft where there are forces, otherwise any word.
     """
 
     kind: Annotated[str, tables.one_of(*TASKS)]
@@ -277,7 +275,7 @@ class ProblemFile(MachineTables, _Task):
         return task
 
     def _requirements(self) -> Requirements:
-        """As they are stated; a cylinder turns nothing fully, so that any linkage will do by default."""
+        """As stated; a cylinder turns nothing fully, so that with one the default rotatability is any."""
         wanted: Requirements = self.requirements.value()
         if self.driver is not None and not wanted.same_branch:
             raise ProblemError("requirements.same_branch is false; it must be true with driver.cylinder")

@@ -23,7 +23,7 @@ def rows_of(name: str, folder: Path) -> list[list[str]]:
     """The rows of a table, .csv or .xlsx, that are not empty.
 
     Of a workbook ``points.xlsx#Sheet`` is a sheet, the first one by default. `ProblemError` where it cannot
-    be read, is no workbook or has no such sheet; or openpyxl is not installed.
+    be read, is not a workbook, has no such sheet, or openpyxl is not installed.
     """
     file, _, sheet = name.partition("#")
     path = folder / file
@@ -32,7 +32,7 @@ def rows_of(name: str, folder: Path) -> list[list[str]]:
 
 
 def csv_rows(path: Path, wanted: str) -> list[list[str]]:
-    """All rows of a CSV file, stripped cells; `ProblemError` where it is not what is wanted."""
+    """All rows of a CSV file, cells stripped; `ProblemError` where it is not `wanted`."""
     text = StringIO(file_text(path, wanted), newline="")
     with located_in(str(path)), read_by_others(wanted):
         lines = list(islice(csv.reader(text), MOST_LINES + 1))
@@ -81,8 +81,8 @@ Cell = TypeVar("Cell", float, float | None)
 def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
     """The rows of a CSV file whose first line names its columns.
 
-    `kinds` are the tables that it may be, each by the names that each column may have. `ProblemError` where
-    it cannot be read, has other columns, or what is no number; a line each.
+    `kinds` are the possible tables, each by the possible names of its columns. `ProblemError` where
+    it cannot be read, has other columns, or has cells that are not numbers, a line each.
     """
     lines = rows_of(path.name, path.parent)
     given = [name.strip().casefold() for name in lines[0]] if lines else []

@@ -106,7 +106,7 @@ Outlines = Annotated[
 
 
 class SceneTable(Table):
-    """What is drawn with the designs and limits nothing.
+    """The scene, which is drawn with the designs and does not limit them.
 
     Parameters
     ----------

@@ -56,14 +56,7 @@ class TableValue:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """The keys with their values, as a file has them; those at their defaults are left out.
-
-        Examples
-        --------
-        >>> from grashof.problems.values.dynamics.motor import MotorSpec
-        >>> MotorSpec(gear_ratio=30).stated
-        {'gear_ratio': 30.0}
-        """
+        """The keys with their values, as a file has them; those at their defaults are left out."""
         found = {}
         for each in fields(self):  # type: ignore[arg-type]
             value, default = getattr(self, each.name), None if self.keeps_defaults else each.default

@@ -1,4 +1,4 @@
-"""What the links weigh, how fast the driver turns, where gravity points, and what else acts."""
+"""Dynamics: masses of the links, speed of the driver, gravity, loads."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ DYNAMICS_KEYS = (
 
 @dataclass(frozen=True, slots=True)
 class DynamicsSpec(TableValue):
-    """Masses, speed, gravity and what else acts, of a problem or of one linkage; kg, s and its length unit.
+    """Masses, speed, gravity and loads, of a problem or of one linkage; kg, s and its length unit.
 
     Forces are in N, moments in N m, stiffness in N/m, whatever the length unit.
 
@@ -64,7 +64,7 @@ class DynamicsSpec(TableValue):
         Carried at P, as a point.
     speed_rpm : float
         Of the driver; 1 rad/s by default. Of a linkage counter-clockwise; of a problem greater than
-        zero, in the sense that the task asks for.
+        zero, in the sense that the task requires.
     gravity : two floats, m/s^2
         In metres whatever the length unit; none by default.
     loads : tuple of LoadSpec
@@ -145,7 +145,7 @@ class DynamicsSpec(TableValue):
 
     @property
     def tables(self) -> dict[str, Any]:
-        """The tables of a file that state it, by their names, and lists of tables."""
+        """The tables, and lists of tables, of a file that states it, by name."""
         own = {key: getattr(self, key) for key in DYNAMICS_KEYS if getattr(self, key) is not None}
         return {
             "dynamics": own,
@@ -175,7 +175,7 @@ class DynamicsSpec(TableValue):
         return self.has_masses or any(given) or self.friction is not None
 
     def too_short(self, duration: float, where: str) -> list[str]:
-        """What is wrong with loads over time in a motion of a duration (s), which `where` explains."""
+        """Errors of loads over time that do not cover a duration (s), which `where` explains."""
         return [
             f"loads[{index}] covers {load.values[0][0]:g} to {load.values[-1][0]:g} s; "
             f"it must cover 0 to {duration:.6g} s, {where}"
@@ -186,7 +186,7 @@ class DynamicsSpec(TableValue):
 
     @property
     def turn_time(self) -> float:
-        """What a turn of the driver takes, s: at its mean speed, or as the motor's table has it."""
+        """Duration of a turn of the driver, s: at its mean speed, or from the motor's table."""
         if self.motor is not None and self.motor.values is not None:
             return self.motor.values[-1][0] - self.motor.values[0][0]
         return 60 / abs(self.speed_rpm) if self.speed_rpm else np.inf
@@ -198,7 +198,7 @@ class DynamicsSpec(TableValue):
 
 
 def reference_torque(spec: DynamicsSpec, task_size: float, metre: float) -> float:
-    """What `Problem.reference_torque` states, N m, from the size of the task and its unit in metres."""
+    """`Problem.reference_torque`, N m, from the size of the task and its unit in metres."""
     size = task_size * metre
     mass = (spec.mass_per_length or 0.0) * task_size + sum(spec.masses or ()) + spec.payload
     mass += sum(weight.mass for weight in spec.counterweights)
@@ -226,7 +226,7 @@ def _each(values: Sequence[float], where: str) -> tuple[float, ...]:
         raise wrong_value(where, values, "a number for each moving link")
     given = tuple(values)
     if len(given) not in _MOVING:
-        return given  # of no linkage: `misplaced` tells how many there must be
+        return given  # of no linkage: `misplaced` reports how many are needed
     return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(given))
 
 

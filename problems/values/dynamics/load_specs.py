@@ -1,6 +1,6 @@
-"""What acts on a linkage besides weight and drive: loads, springs, dampers, friction.
+"""Loads, springs, dampers, counterweights and friction of a linkage.
 
-Which links, joints and angles there are depends on the kind of linkage: `misplaced` checks that.
+`misplaced` checks that the kind of linkage has these links, joints and angles.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 Pair = tuple[float, float]
-TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a whole turn
+TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a full turn
 OVER = (*TURNING, "travel", "time")
 # The joints by the links that they join: of linkages of one loop, and of any; how many a linkage may have.
 JOINTS = tuple(joint.links for joint in MECHANISMS[0].every_joint)
@@ -75,7 +75,7 @@ class LoadSpec(TableValue):
         Instead of both: (place, fx, fy) or (place, moment), places rising, in deg, length or s. Between
         rows the load follows a curve through them that rises and falls as they do.
     over : str
-        What the places are: "theta2", "theta4", of a six-bar "theta6" (deg, a whole turn), "travel" (length:
+        The places: "theta2", "theta4", of a six-bar "theta6" (deg, a full turn), "travel" (length:
         of a slide, see `FrictionSpec`) or "time" (s from the start).
     frame : str
         Axes of the force: "global", or "link", with which it turns.
@@ -126,9 +126,9 @@ class SpringSpec(TableValue):
     between : pair of Place
         Its two ends.
     stiffness : float, N/m
-        Force for each metre that it is longer than its free length.
+        Force for each metre beyond its free length.
     free_length : float, length
-        Where it is slack.
+        Length at which it is slack.
     """
 
     between: tuple[Place, Place]
@@ -233,7 +233,7 @@ class FrictionSpec(TableValue):
         Coefficient of friction of the slide, for the force across it: of a slider on the ground, of the
         rod of an inverted slider-crank in its block.
     slide_length : float, length
-        Of the guide, that its moment presses on at both ends; by default `slide_mu` leaves the moment out.
+        Of the guide, whose ends bear the moment; by default the friction of `slide_mu` ignores the moment.
     slide_viscous : float, N s/m
         Force for each m/s along the slide.
     slide_force : float, N
@@ -278,7 +278,7 @@ def _link(link: object, where: str) -> object:
 def _one_or_each(given: object, name: str) -> tuple[float, ...]:
     if isinstance(given, Sequence) and not isinstance(given, str):
         if len(given) not in (1, *_COUNTS):
-            return tuple(given)  # of no linkage: `misplaced` tells what it must be
+            return tuple(given)  # of no linkage: `misplaced` reports how many are needed
         each = tuple(from_zero(value, name) for value in given)
         return each[:1] if len(each) <= len(JOINTS) and len(set(each)) == 1 else each
     return (from_zero(given, name),)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""What drives a linkage: how the driver's speed varies, and the gear and motor before it."""
+"""The drive of a linkage: speed profile, gear and motor."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ def _check_shape(names: Sequence[str]) -> None:
 
 def _checked(name: str, value: OneOrEach) -> OneOrEach:
     where = f"section.{name}"
-    # The mean is no more than the greatest; area and inertia are powers of lengths.
+    # The greatest shear stress is at least the mean; area and inertia are powers of lengths.
     least = 1.0 if name == "shear_factor" else LEAST ** _POWERS.get(name, 1)
     return one_or_each(value, LINKS, where, least, GREATEST ** _POWERS.get(name, 1))
 
@@ -185,7 +185,7 @@ class StrengthSpec(TableValue):
     pin_shear_strength : float, Pa, optional
         Of the pins; yield_stress / sqrt(3) by default.
     bearing_strength : float, Pa, optional
-        Pressure that pins and links stand; yield_stress by default.
+        Bearing pressure that pins and links withstand; yield_stress by default.
     pin_thickness : float or three floats, length, optional
         Of links 2, 3 and 4 where a pin goes through; the height of the section by default.
     double_shear : bool

@@ -1,4 +1,4 @@
-"""A cylinder as driver: within which limits it may be, and one that a design has."""
+"""A cylinder as driver: its limits in a problem, and the cylinder of a design."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every kind of linkage is as a value: parameters, links, lengths; all else goes through these rows."""
+"""The base of all kinds of linkages as values: parameters, links and lengths by the rows of a mechanism."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Linkage(Displayed):
 
     __slots__ = ()
 
-    mechanism: Mechanism  # its kind; files, tables, drawings and plates go through the rows of it
+    mechanism: Mechanism  # its kind; files, tables, drawings and plates loop over its rows
 
     o2: FloatArray
     r2: FloatArray
@@ -75,7 +75,7 @@ class Linkage(Displayed):
 
     @property
     def choices(self) -> dict[str, Any]:
-        """Arguments that are no arrays and choose the kind; none of a linkage of one loop."""
+        """Arguments besides arrays, which choose the kind; empty for a linkage of one loop."""
         return {}
 
     @property
@@ -160,7 +160,7 @@ class Linkage(Displayed):
 
 
 def by_kind(linkages: Sequence[Linkage]) -> list[list[int]]:
-    """Where in a sequence the linkages of each kind are, which `Linkage.stacked` makes a batch."""
+    """Indices of the linkages of each kind in a sequence, for `Linkage.stacked`."""
     found: dict[Mechanism, list[int]] = {}
     for index, linkage in enumerate(linkages):
         found.setdefault(linkage.mechanism, []).append(index)

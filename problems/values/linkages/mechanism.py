@@ -21,7 +21,7 @@ _ENDINGS = {"place": ("_x", "_y"), "station": ("_u", "_v"), "arm": ("_u", "_v"),
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One of the parameters that a linkage is given by.
+    """One of the parameters that define a linkage.
 
     A place is x and y; a station the same of a point on a link that is the ground, as u and v; an arm u and v
     in the frame of a link; a distance may be negative or zero; angles are in rad, in files and tables in deg.
@@ -52,11 +52,7 @@ class Parameter:
         return tuple((self.column or self.name) + ending for ending in _ENDINGS.get(self.kind, ("",)))
 
     def array(self, value: npt.ArrayLike) -> FloatArray:
-        """A value of the parameter as an array.
-
-        `ProblemError` where it is not a number, not finite, not a pair, not a length, not a sign, or over 100
-        turns.
-        """
+        """A value as an array, checked by kind: finite, a pair, a length, a sign, at most 100 turns."""
         try:
             array = np.asarray(value, dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
@@ -141,7 +137,7 @@ class Joint:
 
 
 class LoopNames(NamedTuple):
-    """What belongs to the loop of a dyad, by its names on linkages.
+    """Names, on linkages, of the parts of the loop of a dyad.
 
     The dyad and the numbers of its links; points C, D and E; the lengths of its bars, from C and from D;
     offset and direction of its slide, empty where it has none; its assembly.
@@ -192,7 +188,7 @@ class Mechanism:
 
     @cached_property
     def loops(self) -> tuple[LoopNames, ...]:
-        """Names of what each dyad adds."""
+        """Names of the parts that each dyad adds."""
         found = []
         for index, (dyad, points) in enumerate(zip(self.dyads, LOOP_POINTS, strict=False)):
             ending, links = "_2" if index else "", (2 * index + 3, 2 * index + 4)
@@ -224,7 +220,7 @@ class Mechanism:
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
-        """What its linkages are given by, in the order of constructors and tables."""
+        """Parameters of its linkages, in the order of constructors and tables."""
         pivots, sizes = [Parameter("o2", "place")], [Parameter("r2", "length")]
         for loop in self.loops:
             if loop is not self.loops[0]:
@@ -252,7 +248,7 @@ class Mechanism:
 
     @cached_property
     def dimensions(self) -> tuple[str, ...]:
-        """What is made, and may come out inexactly; u and v are those of the coupler point."""
+        """Dimensions subject to tolerances; u and v are those of the coupler point."""
         offsets = (row.name for row in self.parameters if row.kind == "distance")
         arms = (column for row in self.parameters if row.name in ("c", "d") for column in row.columns)
         return (*self.lengths, *offsets, *arms, "u", "v")
@@ -275,7 +271,7 @@ class Mechanism:
 
     @cached_property
     def ground(self) -> tuple[str, ...]:
-        """Points that stand still."""
+        """Fixed points."""
         return self.links[0].points
 
     @cached_property
@@ -315,5 +311,5 @@ MECHANISMS = (
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (2, 1))), carries=5),
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (4, 1))), carries=5),
 )
-# Kinds of one loop by their words: problems may ask for these. The first is meant where none is named.
+# Kinds of one loop by their words: those that problems may name. The first is the default.
 ONE_LOOP = {row.word: row for row in MECHANISMS if len(row.dyads) == 1}

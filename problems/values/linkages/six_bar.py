@@ -133,11 +133,7 @@ class SixBar(Linkage):
 
 
 def six_bar(hosts: Sequence[int], *, slides: bool = False, point_link: int = 5) -> Mechanism:
-    """The six-bar whose `hosts` carry C and D and whose `point_link` carries P.
-
-    Where it `slides`, link 6 is a slider. `ProblemError` where there is no such six-bar, or P is on none of
-    its moving links.
-    """
+    """The six-bar whose `hosts` carry C and D and whose `point_link` carries P; link 6 may be a slider."""
     rows = [row for row in _SIX_BARS if row.dyads[1].slides == slides]
     if not 2 <= point_link <= 6 or isinstance(point_link, bool):
         raise wrong_value("point_link", point_link, "the number of a moving link, 2 to 6")

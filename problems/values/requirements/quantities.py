@@ -36,11 +36,11 @@ class Scope(StrEnum):
     DESIGN = "the design"
     TARGETS = "the targets"
     TASK = "the task motion, from the first target to the last"
-    CYCLE = "the whole turn"
+    CYCLE = "the full turn"
 
 
 class Needs(Enum):
-    """What the problem has to state for a quantity to have a value."""
+    """The part of the problem on which a quantity depends."""
 
     NOTHING = "nothing"
     DYNAMICS = "dynamics"
@@ -66,9 +66,9 @@ class Quantity:
     better: int = 0  # +1 where more is better, -1 where less is, 0 for neither
     needs: Needs = Needs.NOTHING
     digits: int = 0  # significant ones of the largest value in a table; 0 where it is listed in files only
-    about: str = ""  # what it is, where its label does not show it
-    listed: bool = True  # whether it is a column; what has several parts, such as a place, is not
-    words: str = ""  # what it is called in a sentence, where that is not its label
+    about: str = ""  # a description, where the label is not enough
+    listed: bool = True  # whether it is a column; a place, which has several parts, is not
+    words: str = ""  # its name in a sentence, where that is not its label
     short: str = ""  # heading where there is little room, where that is not its label
     kinds: tuple[str, ...] = tuple(ONE_LOOP)  # of linkages that have it
     named: str = ""  # its name in candidates.csv, where that is not its key
@@ -85,11 +85,11 @@ class Quantity:
 
     @property
     def deviates(self) -> bool:
-        """Whether it is a length or an angle by which something is missed: none at all is best."""
+        """Whether it is a deviation, a length or an angle, of which zero is best."""
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
-# What the lengths and places that a linkage is stated by are called, by their columns.
+# Names of the lengths and places that state a linkage, by column.
 _STATED = {
     "o2_x": "O2, x",
     "o2_y": "O2, y",
@@ -114,7 +114,7 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
 
 
 def _stated(kind: str, digits: int = 0) -> list[Quantity]:
-    """The columns of such parameters."""
+    """Quantities of the columns of these parameters."""
     rows = [row for row in PARAMETERS if row.kind == kind]
     return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
 
@@ -250,7 +250,7 @@ class Kind(Enum):
 
     @property
     def is_angle(self) -> bool:
-        """Whether it limits a direction, which counts alike by whole turns."""
+        """Whether it limits a direction, which is unique only up to full turns."""
         return self in (Kind.EQUAL, Kind.DIRECTION)
 
 
@@ -260,9 +260,9 @@ class Limit:
 
     quantity: Quantity
     kind: Kind
-    allowed: tuple[float, float]  # least and greatest number that may be asked for, as files state it
+    allowed: tuple[float, float]  # least and greatest value in files
     usual: tuple[float, float] | None = None  # limits where none are given, in sizes of the task
-    words: Mapping[str, Limits] = field(default_factory=dict)  # what each word allows
+    words: Mapping[str, Limits] = field(default_factory=dict)  # the range that each word allows
 
     @property
     def widest(self) -> str:
@@ -270,7 +270,7 @@ class Limit:
         return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
-        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by ""."""
+        """The ranges that a value of the field allows, angles in rad: by axis of a box, else by ""."""
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
         if self.kind is Kind.WORD:
@@ -296,13 +296,13 @@ class Limit:
 
 
 def place_of(name: str, over: Scope) -> Quantity:
-    """Where a joint is."""
+    """The place of a joint."""
     kinds = having(name) if over is Scope.DESIGN else tuple(ONE_LOOP)
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
 def on_body(name: str) -> Quantity:
-    """Where a joint sits on the body that is guided."""
+    """The place of a joint on the guided body."""
     words = f"place of {name.upper()} on the body"
     kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
     return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
@@ -310,7 +310,7 @@ def on_body(name: str) -> Quantity:
 
 def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quantity:
     """The greatest error of an output ("max"), or its root mean square; `travels` has the keys of a slide."""
-    about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
+    about, name = "output minus the wanted output, over the full range", f"structural_error_{key}"
     words = "greatest structural error" if key == "max" else f"structural error{_RMS}"
     label, task = f"{key} error", Scope.TASK
     if travels is None:

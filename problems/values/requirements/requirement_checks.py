@@ -17,7 +17,7 @@ MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
 
 
 def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str:
-    """What a field that limits a quantity may hold: a box, a pair, an angle, a number or a word."""
+    """A checked limit of a quantity: a box, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise wrong_value(where, value, "a Box")
@@ -48,7 +48,7 @@ def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
 
 
 def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
-    """What keeps out of them, each once."""
+    """The parts that keep out of areas, each once."""
     wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
         raise wrong_value(where, names, wanted)

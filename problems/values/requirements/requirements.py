@@ -35,7 +35,7 @@ from grashof.problems.values.value_bases import ReadOnly, check_fields
 
 
 class Rotatability(StrEnum):
-    """What the driver must be able to do."""
+    """The rotation that the driver must be capable of."""
 
     FULL_CRANK = "full-crank"
     CRANK_ROCKER = "crank-rocker"
@@ -61,9 +61,9 @@ TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("m
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Requirements(ReadOnly):
-    """What a design must satisfy besides doing the task.
+    """The conditions that a design must satisfy besides performing the task.
 
-    Lengths are in the problem's unit; None means the default, which excludes only the absurd
+    Lengths are in the problem's unit; None means the default, which excludes only absurd designs
     and is taken from the size of the task (see `resolved`).
 
     Parameters
@@ -74,7 +74,7 @@ class Requirements(ReadOnly):
     tolerance : float
         A design is exact when its largest error is at most ``tolerance * size``.
     error_factor : float, optional
-        Least squares: the objective decides among designs of up to so many times the least error found.
+        Least squares: the objective decides among designs with up to this multiple of the least error.
     rotatability : Rotatability, optional
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
         covers the task). By default full-crank, of functions any.
@@ -88,7 +88,7 @@ class Requirements(ReadOnly):
     transmission_min_deg : float, deg
         Least min(mu, pi - mu) over `transmission_over`.
     transmission_over : TransmissionOver
-        task (the motion from first to last target) or cycle (the whole turn).
+        task (the motion from first to last target) or cycle (the full turn).
     link_length : tuple of float, optional
         (lo, hi) for all four links; r1, r2, r3, r4 override it for single ones.
     link_ratio_max : float
@@ -129,7 +129,7 @@ class Requirements(ReadOnly):
         (lo, hi) for the same of a function whose output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
-        steadily; of a driver that does not turn fully there is none.
+        steadily; undefined for a driver that does not turn fully.
     mechanical_advantage_min : float, optional
         Least ``|omega2 / omega4|`` over the task motion.
     cylinder_angle_min_deg : float, deg, optional
@@ -141,7 +141,7 @@ class Requirements(ReadOnly):
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}
-        What keeps out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
+        Parts that keep out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
         AP, BP), or the outline of the body; all but o2 and o4 over the motion from first to last target.
     """
 
@@ -270,7 +270,7 @@ class Requirements(ReadOnly):
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
 
     def contradictions(self, task: Task) -> list[str]:
-        """What these requirements and a task do not agree on, a line each."""
+        """Contradictions between these requirements and a task, a line each."""
         wrong = []
         if task.zones is not None and self.exact:
             wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
@@ -335,7 +335,7 @@ class Requirements(ReadOnly):
 
     @property
     def limited(self) -> dict[str, Limit]:
-        """What is limited, by field: the fields that are stated."""
+        """The limits that are stated, by field."""
         return {
             name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
@@ -363,12 +363,12 @@ class Requirements(ReadOnly):
         return np.pi if key == "slide_angle" and self.offset is None else TURN
 
     def ranges(self, name: str) -> dict[str, Limits]:
-        """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
+        """The ranges that a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
         return {} if value in (None, ANYWHERE) else LIMITS[name].ranges(value)
 
 
-# What the fields limit, by field.
+# The limits, by field.
 LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
 }

@@ -14,16 +14,16 @@ from grashof.problems.values.tasks.task import Task
 
 
 def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quantity]) -> list[str]:
-    """What is asked, by its key path, or limited though it means nothing for the task."""
+    """Goals and limits, by key path, that do not apply to the task, a line each."""
     kind = task.kind
     wrong = [
-        f"{where} means nothing for a {kind}; leave it out"
+        f"{where} does not apply to a {kind}; remove it"
         for where, quantity in asked.items()
         if quantity.key in task.without
     ]
     if wanted.keep_out:
         wrong += [
-            f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
+            f"requirements.keep_out_for has {part}, which does not apply to a {kind}; remove it"
             for part in wanted.keep_out_for
             if part in task.without
         ]
@@ -37,9 +37,9 @@ def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quanti
 
 
 def no_output(task: Task) -> dict[Needs, str]:
-    """What is missing where a structural error is asked for, in words."""
+    """The missing output when a structural error is required, in words."""
     if not task.has_output.any():
-        none = f'{task.kind} asks for no output; kind = "function" does'
+        none = f'{task.kind} states no output; kind = "function" does'
         return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
     return {
         Needs.ROTATION: "function has an output that slides, not one that turns",
@@ -48,7 +48,7 @@ def no_output(task: Task) -> dict[Needs, str]:
 
 
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
-    """Kinds of linkages whose output does not move as a function asks for."""
+    """Kinds of linkages whose output does not move as the function requires, a line each."""
     if not task.has_output.any():
         return []
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
@@ -57,13 +57,13 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
         return []
     key = f"output{'' if task.law is None else '_range'}{unit}"
     return [
-        f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not put out; "
+        f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not generate; "
         f"it goes with {' and '.join(suited)}"
     ]
 
 
 def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
-    """What a cylinder cannot do, where one is the driver."""
+    """Contradictions between a cylinder as driver and the task or requirements, a line each."""
     wrong = []
     if task.no_cylinder:
         wrong.append(f"driver.cylinder does not go with {task.kind}, {task.no_cylinder}")
@@ -78,7 +78,7 @@ def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
 
 
 def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
-    """What a stroke, the kinds of linkages and the requirements do not agree on, a line each."""
+    """Contradictions between a stroke, the kinds of linkages and the requirements, a line each."""
     wrong = [line for kind in kinds if (line := task.impossible(kind))]
     if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
         wrong.append(
@@ -96,7 +96,7 @@ def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> lis
 
 
 def _too_small(task: Task, wanted: Requirements) -> list[str]:
-    """That B has no room for its stroke, where a slide is asked for."""
+    """The error of a box of B that is too small for the stroke, if it is."""
     if task.stroke is None or wanted.b is None:
         return []
     wide, tall = wanted.b.x[1] - wanted.b.x[0], wanted.b.y[1] - wanted.b.y[0]
@@ -113,7 +113,7 @@ def stated_size(wanted: Requirements) -> float:
             return lengths[1]
     if wanted.o2 is not None and wanted.o4 is not None:
         apart = [
-            (sum(four) - sum(two)) / 2  # no number where a box is open
+            (sum(four) - sum(two)) / 2  # NaN where a box is open
             for two, four in zip(*map(astuple, (wanted.o2, wanted.o4)), strict=True)
         ]
         if LEAST < (distance := math.hypot(*apart)) < GREATEST:

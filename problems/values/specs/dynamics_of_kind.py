@@ -1,15 +1,16 @@
-"""What of some dynamics does not go with a kind of linkage: links, joints or slides that it has not."""
+"""Dynamics that do not fit a kind of linkage: links, joints or slides that it does not have."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from grashof.problems.values.checks import counted
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
 
-# What a slide has instead of each key of `FrictionSpec`.
+# Keys of a slide in place of those of a pin.
 _INSTEAD = {
     "coulomb": "slide_mu",
     "pin_radius": "slide_mu",
@@ -20,7 +21,7 @@ _WORDS = {3: "three", 4: "four", 5: "five", 7: "seven"}
 
 
 def misplaced(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
-    """What of some dynamics does not go with a kind of linkage, a line each."""
+    """Errors of dynamics that do not fit a kind of linkage, a line each."""
     slides = (*_loads(spec, kind), *_torsion_springs(spec, kind), *_friction(spec, kind))
     return [*without_place(spec, kind), *slides]
 
@@ -35,8 +36,7 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for name in ("masses", "inertias"):
         given = getattr(spec, name)
         if given is not None and len(given) != len(moving):
-            entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
-            yield f"dynamics.{name} has {entries}; it must have {len(moving)} numbers"
+            yield f"dynamics.{name} has {counted(len(given), 'entry')}; it must have {len(moving)} numbers"
     if spec.centres is not None and len(spec.centres) != len(moving):
         places = f"{_WORDS[len(moving)]} places [u, v], of links {_listed(moving, 'and')}"
         yield str(wrong_value("dynamics.centres", spec.centres, places))
@@ -49,7 +49,7 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 
 
 def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
-    """Of what acts on moving links, and between any two."""
+    """Loads and counterweights on moving links; springs and dampers between any two."""
     held = [(f"loads[{i}]", each.link, 2) for i, each in enumerate(spec.loads)]
     held += [(f"counterweights[{i}]", each.link, 2) for i, each in enumerate(spec.counterweights)]
     springs, dampers = ([each.between for each in acting] for acting in (spec.springs, spec.dampers))
@@ -70,7 +70,7 @@ def _angles(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 
 
 def _over(kind: Mechanism, but: str = "") -> list[str]:
-    """What loads may be over: angles of links that there are, and whatever is no angle."""
+    """What loads may be over: angles of existing links, travel and time."""
     angles = [f"theta{link.number}" for link in kind.links]
     return [word for word in OVER if (word in angles or word not in TURNING) and word != but]
 

@@ -1,4 +1,4 @@
-"""A problem: the task, the requirements, what is best, and how hard to search."""
+"""A problem: the task, the requirements, the objective, and the effort of the search."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ EFFORTS = (0.2, 10_000.0)
 MOST_TARGETS = 10_000
 # Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
 SMALLEST = Objective(transmission=1.0, compactness=0.05)
-ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
+ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # defined by link 4, which has to turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +60,11 @@ class Search:
     starts : int
         Most Ipopt solves.
     enough : int
-        Stop between batches once so many distinct designs are verified.
+        Stop between batches once this many distinct designs are verified.
     seed : int
         Random seed.
     effort : float
-        How long to look for better designs before giving up, 0.2 to 10 000: the rounds of a search with
+        How long to look for better designs before stopping, 0.2 to 10 000: the rounds of a search with
         1 come first and unchanged.
     """
 
@@ -101,7 +101,7 @@ def _named(kind: Any) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Problem(ReadOnly):
-    """All that is asked, as a problem file states it.
+    """A complete problem, as a problem file states it.
 
     Parameters
     ----------
@@ -166,7 +166,9 @@ class Problem(ReadOnly):
                 )
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
-        wrong += self._undecided()
+        wrong += self.requirements.contradictions(self.task)
+        if self.objective != Objective() and not self.by_objective:
+            wrong.append(NO_OBJECTIVE)
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
@@ -177,7 +179,7 @@ class Problem(ReadOnly):
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
 
     def _met_by_all_kinds(self) -> Requirements:
-        """Where files leave it open, targets are to be met if all kinds asked for can be expected to."""
+        """The requirements, exact by default only if all the kinds can be expected to meet every target."""
         fewest = min(freedoms(kind) for kind in self.mechanism)
         exact = self.task.exact_for(fewest)
         if self.requirements.exact is not None or exact == self.task.exact_by_default:
@@ -185,8 +187,10 @@ class Problem(ReadOnly):
         return replace(self.requirements, exact=exact)
 
     def _without_value(self) -> list[str]:
-        """What is weighed or limited though the problem does not state what it takes."""
-        asked = self._asked
+        """Quantities weighed or limited without the parts of the problem that they need, a line each."""
+        asked = self._weighed_or_limited
+        needed = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        absent = [name for name, given in needed.items() if given is None]
         missing = {
             Needs.DYNAMICS: "dynamics is missing",
             Needs.MANUFACTURING: "manufacturing is missing",
@@ -194,7 +198,7 @@ class Problem(ReadOnly):
             Needs.LEAST_SQUARES: "requirements.exact = false is missing",
             Needs.ANGLES: f"{self.task.kind} has no angles",
             Needs.CYLINDER: "driver.cylinder is missing",
-            Needs.LOADED_CYLINDER: self._unloaded,
+            Needs.LOADED_CYLINDER: f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} missing",
             **task_limits.no_output(self.task),
         }
         wrong = [
@@ -212,8 +216,8 @@ class Problem(ReadOnly):
         return wrong
 
     @property
-    def _asked(self) -> dict[str, Quantity]:
-        """What is weighed or limited, by its key path."""
+    def _weighed_or_limited(self) -> dict[str, Quantity]:
+        """Quantities that are weighed or limited, by key path."""
         stated = self.objective.stated.items()
         goals = {f"objective.maximise.{name}": self.as_required(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
@@ -225,8 +229,8 @@ class Problem(ReadOnly):
         return QUANTITIES[TRAVEL_ERRORS.get(found.key, found.key)] if self.task.travels else found
 
     def _not_of_these_kinds(self) -> list[str]:
-        """What is weighed or limited though no kind of linkage that is asked for has it."""
-        having = {where: quantity.kinds for where, quantity in self._asked.items()}
+        """Quantities weighed or limited that none of the kinds of linkage has, a line each."""
+        having = {where: quantity.kinds for where, quantity in self._weighed_or_limited.items()}
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
@@ -236,7 +240,7 @@ class Problem(ReadOnly):
         ]
 
     def for_kind(self, kind: str) -> Problem:
-        """The same for one kind of linkage alone, without the limits and goals that it has not.
+        """The same for one kind of linkage alone, without limits and goals that do not apply to it.
 
         By default inverted slider-cranks are searched for a small size, too.
 
@@ -249,8 +253,8 @@ class Problem(ReadOnly):
         True
         """
         usual = Requirements()
-        lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
-        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
+        others = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
+        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in others})
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
@@ -264,27 +268,13 @@ class Problem(ReadOnly):
         return self.requirements.period(key) if self.task.has_position.any() else TURN
 
     def states(self, needs: Needs) -> bool:
-        """Whether it states what a quantity needs to have a value."""
+        """Whether it states the parts that a quantity needs to have a value."""
         stated = _STATED.get(needs)
         return stated is None or stated(self)
 
     @property
-    def _unloaded(self) -> str:
-        """What a cylinder's force lacks, in words."""
-        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
-        missing = [name for name, given in lacks.items() if given is None]
-        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
-
-    def _undecided(self) -> list[str]:
-        """What is contradictory about the task and the requirements, and about what decides."""
-        wrong = self.requirements.contradictions(self.task)
-        if self.objective != Objective() and not self.by_objective:
-            wrong.append(NO_OBJECTIVE)
-        return wrong
-
-    @property
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
-        """What the objective weighs, with its weights; the transmission angle over the motion required."""
+        """Quantities of the objective and their weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
         return tuple((self.as_required(QUANTITIES[key]), weight) for key, weight in goals)
 
@@ -312,7 +302,7 @@ class Problem(ReadOnly):
         return np.where([task.has_position, task.has_angle], radii, np.inf)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
-        """The same problem with no target to be missed, by least squares unless it states otherwise."""
+        """The same problem without zones, by least squares unless `exact` states otherwise."""
         task = self.task.without_zones() if self.task.zones is not None else self.task
         tight = min(self.requirements.tolerance, Requirements().tolerance)
         wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)
@@ -325,7 +315,7 @@ class Problem(ReadOnly):
         )
 
     def scale(self, quantity: Quantity) -> float:
-        """What the objective counts a quantity in, so that weights are pure numbers.
+        """The unit in which the objective counts a quantity, so that weights are pure numbers.
 
         Lengths and areas in sizes of the task, angles in 90 deg, velocities by a point one size from O2 on
         a driver at the problem's speed (1 rad/s without dynamics), torques and forces in `reference_torque`,
@@ -348,10 +338,10 @@ class Problem(ReadOnly):
 
     @property
     def reference_torque(self) -> float:
-        """What the objective counts the torque in, N m; it depends on the problem alone.
+        """The torque that the objective counts torques in, N m; it depends on the problem alone.
 
         M S (g + omega2^2 S): the mass of links, payload and counterweights, held and turned at a radius
-        of the task's size S. `mass_per_length` and `density` count as one bar of length S. To it come the
+        of the task's size S. `mass_per_length` and `density` count as one bar of length S. Added are the
         greatest moments, the greatest forces at a radius of S, springs and dampers stretched by S (and
         omega2 S), or turned by 1 rad (and at omega2), and friction. 1 where nothing acts.
 
@@ -366,7 +356,7 @@ class Problem(ReadOnly):
         return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
-# Whether a problem states what quantities need to have a value; any problem what is not here.
+# Whether a problem states what a quantity needs; other needs are always met.
 _STATED: dict[Needs, Callable[[Problem], bool]] = {
     Needs.DYNAMICS: lambda problem: problem.dynamics is not None,
     Needs.MANUFACTURING: lambda problem: problem.manufacturing is not None,

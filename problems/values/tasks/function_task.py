@@ -87,7 +87,7 @@ def _deg(angle: float) -> str:
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
-LAW_PAIRS = 41  # of a law that is fitted over its whole range
+LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT = 5
 _SLIDING = 8  # freedoms of slider kinds
 
@@ -110,12 +110,12 @@ class FunctionTask(Task):
     sense : {"given", "either"}
         Either: the opposite output will do, too.
     norm : {"rms", "max"}
-        What is made least where pairs are not met exactly: the root mean square of the errors at the pairs
+        The error to minimise where pairs are not met exactly: the root mean square of the errors at the pairs
         (of a law over its range), or the structural error, greatest over the range.
     length : float, length
-        Usual length of the ground, that others are compared with; a problem takes it from its requirements.
+        Usual length of the ground, for comparison; a problem takes it from its requirements.
     law : FunctionLaw, optional
-        That the pairs are of; between pairs without one the wanted output is the cubic spline through them.
+        The law of the pairs; without one the wanted output is the cubic spline through them.
     travels : bool
         The output is the travel of a slide.
 
@@ -177,13 +177,13 @@ class FunctionTask(Task):
     def of_law(
         cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms"
     ) -> FunctionTask:
-        """The task of a law over its whole range.
+        """The task of a law over its full range.
 
         Parameters
         ----------
         law : FunctionLaw
         pairs : int, optional
-            So many, by Chebyshev spacing; by default as many as fit the whole range.
+            Number of pairs, at Chebyshev spacing; by default as many as fit the full range.
         sense, norm : str
         """
         if pairs is None:
@@ -292,7 +292,7 @@ class FunctionTask(Task):
 
     @property
     def closed(self) -> bool:  # type: ignore[override]
-        """The range is what is asked, not a whole turn."""
+        """False: the task is a range, not a full turn."""
         return False
 
     @property
@@ -301,7 +301,7 @@ class FunctionTask(Task):
 
     @property
     def positions(self) -> FloatArray:
-        """None is asked for, shape (N, 2)."""
+        """Free, shape (N, 2)."""
         return np.full((len(self), 2), np.nan)
 
     @property
@@ -313,22 +313,19 @@ class FunctionTask(Task):
 
     @property
     def angle_length(self) -> float:
-        """Angles count as they are."""
+        """1: angles are not converted to lengths."""
         return 1.0
 
     @property
     def size(self) -> float:
-        """The whole travel of a slide; lengths of a rotation are free but for a scale.
-
-        That is r1, as limits or else (0, 0) and (1, 0) place the ground.
-        """
+        """The full travel of a slide; of a rotation, whose scale is free, the usual length of the ground."""
         if not self.travels:
             return self.length
         return float(np.ptp(self.outputs) if self.law is None else self.law.output_range)
 
     @property
     def output_unit(self) -> float:
-        """What errors of the output count in: 1 rad, or the whole travel."""
+        """The unit of output errors: 1 rad, or the full travel."""
         return self.size if self.travels else 1.0
 
     @property
@@ -342,13 +339,13 @@ class FunctionTask(Task):
 
     @property
     def returns(self) -> bool:
-        """A range is not a cycle."""
+        """False: a range is not a cycle."""
         return False
 
     def exact_for(self, freedoms: int) -> bool:
-        """Whether every pair is met: up to five, since the starts and three lengths are free.
+        """Whether every pair can be met: up to five, since the starts and three lengths are free.
 
-        Of an inverted slider-crank, whose output is a rotation too, one length less is.
+        An inverted slider-crank, whose output is also a rotation, has one free length less.
         """
         return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
 
@@ -359,7 +356,7 @@ class FunctionTask(Task):
 
 
 def _either(key: str, angles: object, travel: object) -> bool:
-    """Whether the output is given as travel; not as both."""
+    """Whether the output is given as travel; `ProblemError` if it is given as rotation, too."""
     if angles is not None and travel is not None:
         both = f"function.{key}_deg does not go with function.{key}"
         raise ProblemError(f"{both}; an output turns or slides, give one of them")

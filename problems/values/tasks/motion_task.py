@@ -187,9 +187,8 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
     if isinstance(pose, Mapping):
         for key in pose:
             if key not in ("x", "y", "angle"):
-                meant = checks.near_miss(str(key), ("x", "y", "angle"))
-                hint = f"did you mean {meant}?" if meant else "the keys are x, y, angle"
-                raise ProblemError(f"{where}.{shown_key(key)} is unknown; {hint}")
+                keys = checks.hint(str(key), ("x", "y", "angle"), "the keys are x, y, angle")
+                raise ProblemError(f"{where}.{shown_key(key)} is unknown; {keys}")
         x, y, angle = (
             checks.finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
             for key in ("x", "y", "angle")

@@ -99,7 +99,7 @@ class StrokeTask(Task):
 
     @property
     def size(self) -> float:
-        """The stroke of a slide; otherwise what its limits make it (`sized`), or 1."""
+        """The stroke of a slide; otherwise a length from the requirements (`sized`), or 1."""
         return self.reference if self.stroke is None else self.stroke
 
     @property
@@ -109,17 +109,17 @@ class StrokeTask(Task):
 
     @property
     def scale_free(self) -> bool:
-        """Whether linkages of any size do it."""
+        """Whether linkages of any size perform it."""
         return self.stroke is None
 
     @property
     def limits_size(self) -> bool:
-        """Not that of a slide: the longer its rod, the better, as far as limits go."""
+        """False for a slide, whose rod is better the longer it is, within limits."""
         return self.stroke is None
 
     @property
     def returns(self) -> bool:
-        """No: the last limit position is the other one."""
+        """False: the last target is the other limit position."""
         return False
 
     @property
@@ -139,11 +139,11 @@ class StrokeTask(Task):
         return made
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> StrokeTask:  # noqa: ARG002
-        """The same: neither limit position is one without the other."""
+        """The task itself: neither limit position exists without the other."""
         return self
 
     def impossible(self, mechanism: str) -> str:
-        """Why a kind of linkage cannot do it, in one line; empty where it may.
+        """Why a kind of linkage cannot perform it, in one line; empty if it may.
 
         Examples
         --------
@@ -170,7 +170,7 @@ def _for_slide(task: StrokeTask) -> str:
 def _for_block(task: StrokeTask) -> str:
     if task.swing is None:
         return _no_slide(INVERTED)
-    # In both limit positions the crank stands square to the rod.
+    # In both limit positions the crank is perpendicular to the rod.
     ratio = (np.pi + task.swing) / (np.pi - task.swing)
     if abs(task.time_ratio - ratio) <= _SAME_RATIO * ratio:
         return ""
@@ -192,7 +192,7 @@ def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
     return f"stroke.time_ratio is {task.time_ratio:.6g}; it must be less than {most:.6g} for {whose}"
 
 
-# Why a kind of linkage cannot do a stroke, or nothing where it may.
+# Why a kind of linkage cannot perform a stroke; empty if it may.
 _IMPOSSIBLE: Mapping[DyadKind, Callable[[StrokeTask], str]] = {
     DyadKind.RRR: _for_rocker,
     DyadKind.RRP: _for_slide,

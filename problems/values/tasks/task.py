@@ -1,4 +1,4 @@
-"""Tasks: what a linkage is asked to do, one table of targets however they are stated."""
+"""Tasks: the table of targets that a linkage has to meet, however they are stated."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Task(ReadOnly, ABC):
     kind: ClassVar[str]  # its table in problem files
     target: ClassVar[str]  # what a target is called in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
-    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that mean nothing for it
-    no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty where one can
+    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that do not apply to it
+    no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty if it can
     in_degrees: ClassVar[tuple[str, ...]] = ("angle_within", "timing")  # fields that files have in degrees
 
     timing: FloatArray | None
@@ -89,12 +89,12 @@ class Task(ReadOnly, ABC):
 
     @property
     def error_unit(self) -> float:
-        """What errors of designs are counted in."""
+        """The unit of errors of designs."""
         return self.size
 
     @property
     def scale_free(self) -> bool:
-        """Whether linkages of any size do it, so that the size is no measure of theirs."""
+        """Whether linkages of any size perform the task, so that its size does not limit theirs."""
         return False
 
     @property
@@ -148,12 +148,12 @@ class Task(ReadOnly, ABC):
 
     @property
     def usual_margin(self) -> float:
-        """Of full rotation, where requirements do not state one."""
+        """Margin of full rotation where requirements do not state one."""
         return USUAL_MARGIN
 
     @property
     def limits_size(self) -> bool:
-        """Whether nobody builds linkages many times its size; functions have none to compare with."""
+        """Whether its size limits that of linkages; a function has none to compare with."""
         return not self.has_output.any()
 
     @property
@@ -201,12 +201,12 @@ class Task(ReadOnly, ABC):
         return self.exact_for(9)
 
     def exact_for(self, freedoms: int) -> bool:
-        """Whether linkages with so many free dimensions that meet every target can be expected.
+        """Whether linkages with this many free dimensions can be expected to meet every target.
 
         As long as the equations, two for a position and one for an angle, are not more than the
         unknowns: nine of a four-bar, eight of slider kinds, how the body sits on its coupler, and a
         driver angle for every target, or one where they are timed. So for four-bars up to nine points,
-        five timed ones, five whole poses (Burmester), three timed ones.
+        five timed ones, five complete poses (Burmester), three timed ones.
         """
         equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
         unknowns = freedoms + self.has_angle.any() + (1 if self.is_timed else len(self))
@@ -222,32 +222,32 @@ class Task(ReadOnly, ABC):
 
     @property
     def sense(self) -> str:
-        """Whether the opposite output will do, too: "given" or "either"."""
+        """Whether the opposite output is accepted, too: "given" or "either"."""
         return "given"
 
     @property
     def norm(self) -> str:
-        """What is made least where outputs are not met exactly: "rms" or "max"."""
+        """The error to minimise where outputs are not met exactly: "rms" or "max"."""
         return "rms"
 
     @property
     def law(self) -> FunctionLaw | None:
-        """That the outputs are of; between outputs without one the cubic spline is wanted."""
+        """The law of the outputs; without one the cubic spline through them is wanted."""
         return None
 
     @property
     def swing(self) -> float | None:
-        """Of link 4 between its limit positions, rad; None where none is asked for."""
+        """Swing of link 4 between its limit positions, rad; None unless the task states it."""
         return None
 
     @property
     def stroke(self) -> float | None:
-        """Of a slide between its limit positions, length; None where none is asked for."""
+        """Stroke of a slide between its limit positions, length; None unless the task states it."""
         return None
 
     @property
     def time_ratio(self) -> float:
-        """Time of the slow stroke over that of the quick one; NaN where it is free."""
+        """Time of the slow stroke over that of the quick one; NaN where free."""
         return float("nan")
 
     @property
@@ -256,12 +256,12 @@ class Task(ReadOnly, ABC):
         return not np.isnan(self.time_ratio)
 
     def impossible(self, mechanism: str) -> str:  # noqa: ARG002
-        """Why a kind of linkage cannot do it, in one line; empty where it may."""
+        """Why a kind of linkage cannot perform it, in one line; empty if it may."""
         return ""
 
     @property
     def output_unit(self) -> float:
-        """What errors of the output count in: 1 rad, or a travel."""
+        """The unit of output errors: 1 rad, or a travel."""
         return 1.0
 
     @property
@@ -271,7 +271,7 @@ class Task(ReadOnly, ABC):
 
     @property
     def output_words(self) -> str:
-        """What the output is called."""
+        """The name of the output in a sentence."""
         return "travel of the slide" if self.travels else "output rotation"
 
     @property
@@ -293,7 +293,7 @@ class Task(ReadOnly, ABC):
 
     @property
     def fits_range(self) -> bool:
-        """Whether the targets stand for the whole range of a law, from its first x to its last."""
+        """Whether the targets sample the full range of a law, from its first x to its last."""
         return self.law is not None and abs(self.driver_turns[-1] - self.law.input_range) < 1e-9
 
     @property
@@ -306,7 +306,7 @@ class Task(ReadOnly, ABC):
 
     @property
     def beyond(self) -> tuple[float, float]:
-        """Driver rotation of what is asked before the first target and after the last, rad."""
+        """Driver rotation within the range before the first target and after the last, rad."""
         if self.law is None:
             return 0.0, 0.0
         low, high = self.span
@@ -341,11 +341,11 @@ class Task(ReadOnly, ABC):
 
 
 def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
-    """What some of the targets have in columns, by name; None where a task has no such column."""
+    """Columns of some of the targets, by name; None where the task has no such column."""
     columns = {name: getattr(task, name) for name in names}
     return {name: None if column is None else column[index] for name, column in columns.items()}
 
 
 def row_of(table: Mapping[type, _Row], task: Task) -> _Row:
-    """The row of a table that is for the kind of a task, or for the nearest class that it is made from."""
+    """The row of a table for the type of a task, or for its nearest base class."""
     return next(table[kind] for kind in type(task).__mro__ if kind in table)

@@ -64,9 +64,9 @@ TEXTS = {
 }
 BAD = r"""
 <INPUT>output = [0, 3.1, 9, 20] |
-    function.output is a travel, which mechanism four-bar does not put out; it goes with slider-crank
+    function.output is a travel, which mechanism four-bar does not generate; it goes with slider-crank
 mechanism = ["slider-crank", "inverted-slider-crank"]\n<INPUT>output = [0, 3.1, 9, 20] |
-    function.output is a travel, which mechanism inverted-slider-crank does not put out;
+    function.output is a travel, which mechanism inverted-slider-crank does not generate;
     it goes with slider-crank
 <SLIDER><PAIRS>output = [0, 1, 2, 3] | function.output_deg does not go with function.output;
     an output turns or slides, give one of them
@@ -91,15 +91,15 @@ mechanism = "four-bar"\n<PAIRS>[requirements]\nstructural_error_max = [0, 1] |
 <PAIRS>input_dg = [0, 1, 2] | function.input_dg is unknown; did you mean input_deg?
 <PAIRS>pairs = 5 | function.pairs goes with function.law only
 <PAIRS>[requirements]\ncoupler_arms = [1, 2] |
-    requirements.coupler_arms means nothing for a function; leave it out
+    requirements.coupler_arms does not apply to a function; remove it
 <PAIRS>[requirements]\na_on_body = [0, 0] | function has no angles; requirements.a_on_body needs it
 <PAIRS>[requirements]\norder = false | requirements.order is false; it must be true for a function
 <PAIRS>[requirements]\nkeep_out = [[[0, 0], [1, 0], [1, 1]]]\nkeep_out_for = ["p"] |
-    requirements.keep_out_for has p, which means nothing for a function; leave it out
+    requirements.keep_out_for has p, which does not apply to a function; remove it
 <PAIRS>[objective]\nmaximise = "coupler_fit_r2" |
-    objective.maximise.coupler_fit_r2 means nothing for a function; leave it out
+    objective.maximise.coupler_fit_r2 does not apply to a function; remove it
 mechanism = ["four-bar", "slider-crank"]\n<PAIRS> |
-    function.output_deg is a rotation, which mechanism slider-crank does not put out;
+    function.output_deg is a rotation, which mechanism slider-crank does not generate;
     it goes with four-bar and inverted-slider-crank
 <PAIRS>[driver]\ncylinder = {} | driver.cylinder does not go with function, whose driver is link 2
 """
@@ -117,5 +117,5 @@ def test_the_table_of_another_task_does_not_belong() -> None:
 
 def test_a_path_has_no_structural_error() -> None:
     document = {"kind": "path", "path": {"points": [[0, 0], [1, 0], [2, 1]]}}
-    with pytest.raises(ProblemError, match=r"path asks for no output; kind = \"function\" does"):
+    with pytest.raises(ProblemError, match=r"path states no output; kind = \"function\" does"):
         problem_from({**document, "requirements": {"structural_error_max_deg": [0, 1]}}, "a")
