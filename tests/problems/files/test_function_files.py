@@ -24,13 +24,6 @@ LAW = {**RANGES, "law": "power", "exponent": 1.5}
         {**RANGES, "law": "sampled", "sampled": [0.0, 1.0, 3.0, 4.0, 6.0]},
         {**TRAVEL, "norm": "max"},
         {"law": "exp", "x": [0, 1], "input_range_deg": 60, "output_range": 80.0},
-        {
-            "law": "sampled",
-            "x": [0, 1],
-            "sampled": [0, 1, 3, 4.0],
-            "input_range_deg": 60,
-            "output_range": 1e-3,
-        },
     ],
 )
 def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
@@ -82,13 +75,10 @@ mechanism = "four-bar"\n<PAIRS>[requirements]\nstructural_error_max = [0, 1] |
 <SLIDER><INPUT>output = [0, 1, 2] |
     function.input_deg has 4 angles, function.output 3 travels; it must be as many
 <SLIDER><INPUT>output = [0, 0, 0, 0] | function.output does not move; the slide must travel
-<SLIDER><INPUT>output = [1, 2, 3, 4] | function.output[0] is 1; it must be 0, at the first pair
-<SLIDER><INPUT>output = 3 | function.output is 3; it must be a list of lengths
 <SLIDER><LAW>output_range = -8 | function.output_range is -8; it must be a number greater than zero
 <SLIDER><LAW> | function.output_range_deg is missing
 [function] | function.input_deg is missing\nfunction.output_deg is missing
 <PAIRS>law = "sin" | function.input_deg does not go with function.law; give pairs or a law
-<PAIRS>input_dg = [0, 1, 2] | function.input_dg is unknown; did you mean input_deg?
 <PAIRS>pairs = 5 | function.pairs goes with function.law only
 <PAIRS>[requirements]\ncoupler_arms = [1, 2] |
     requirements.coupler_arms does not apply to a function; remove it

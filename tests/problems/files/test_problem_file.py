@@ -22,9 +22,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def refused(problem: str | os.PathLike[str]) -> str:
-    told = refusal(load, problem)
-    assert "\n" not in told
-    return told
+    said = refusal(load, problem)
+    assert "\n" not in said
+    return said
 
 
 @pytest.mark.parametrize("name", catalogue())
@@ -102,13 +102,10 @@ NOWHERE = "there is no such file;"
     ("name", "said"),
     [
         ("lugage", f"'lugage' {NEITHER} did you mean luggage?"),
-        ("zzzz", f"'zzzz' {NEITHER} the catalogue has {', '.join(catalogue())}"),
         ("", f"'' {NEITHER} *"),
         ("lugage.toml", f"lugage.toml: {NOWHERE} did you mean luggage?"),
-        ("./zzzz.toml", f"zzzz.toml: {NOWHERE} the catalogue*"),
         ("no/such/folder", f"no/such/folder: {NOWHERE} *"),
         ("sub", "sub: is a folder; it must be a problem file"),
-        ("odd.toml", "odd.toml: is a folder; it must be a problem file"),
         ("mine.toml/luggage.toml", "mine.toml/luggage.toml: *"),
         ("latin.toml", "latin.toml: is not UTF-8 text, at byte 12"),
         ("a\0b.toml", r"'a\x00b.toml': cannot be read: embedded null*"),
@@ -119,7 +116,6 @@ NOWHERE = "there is no such file;"
 )
 def test_what_is_no_problem_file_is_said(folder: Path, name: str, said: str) -> None:
     (folder / "sub").mkdir()
-    (folder / "odd.toml").mkdir()
     (folder / "mine.toml").write_text(GOOD, encoding="utf-8")
     (folder / "latin.toml").write_bytes('title = "Gelände"'.encode("latin-1"))
     assert fnmatchcase(refused(name).replace(os.sep, "/"), said.replace("luggage?", "luggage[?]"))
@@ -137,9 +133,7 @@ def test_file_without_leave_to_read(folder: Path) -> None:
     ("text", "expected"),
     [
         ('kind = "motion"\nposes = [1,,2]', "is not TOML: Invalid value (at line 2, column 12)"),
-        ("kind = motion", "is not TOML: Invalid value (at line 1, column 8)"),
         ("a = 1\na = 2\n", "is not TOML: a key or table is given twice (at line 2, column 6)"),
-        ("seed = " + "9" * 5000, "is not TOML: Exceeds the limit"),
         ("a = " + "[" * 100_000, "is not TOML: "),
     ],
 )
