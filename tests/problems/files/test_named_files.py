@@ -150,13 +150,10 @@ def test_open_lines_are_no_areas_but_may_be_outlines(tmp_path: Path) -> None:
     assert "has no lines on the layer 'NONE'" in refused(tmp_path, AREAS.format("mm", "machine.dxf#NONE"))[0]
 
 
-def test_a_drawing_in_a_unit_that_is_not_known_is_refused(tmp_path: Path) -> None:
+def test_a_drawing_with_its_own_unit_is_converted(tmp_path: Path) -> None:
     drawing(tmp_path / "mils.dxf", units=9)
     (said,) = refused(tmp_path, AREAS.format("mm", "mils.dxf#AREA"))
     assert "the drawing is in unit 9 of DXF; it must be one of in, ft, yd, mm" in said
-
-
-def test_a_drawing_with_its_own_unit_is_converted(tmp_path: Path) -> None:
     drawing(tmp_path / "inches.dxf", units=1)
     problem = written(tmp_path, AREAS.format("mm", "inches.dxf#AREA"))
     assert np.concatenate(problem.requirements.keep_out).max() == pytest.approx(62 * 25.4, rel=1e-3)

@@ -89,18 +89,6 @@ def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:
     assert (asked.requirements.stroke, asked.requirements.slide_angle_deg) == ((2, 3), 20)
 
 
-def test_goals_that_no_kind_has_are_refused() -> None:
-    with pytest.raises(
-        ProblemError, match=r"objective.maximise.output_swing does not go with mechanism slider-crank"
-    ):
-        problem_from(
-            tomllib.loads(
-                f'kind = "path"\nmechanism = "slider-crank"\n{POINTS}[objective]\nmaximise = "output_swing"'
-            ),
-            "test",
-        )
-
-
 def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
     for word, kind in ONE_LOOP.items():
         columns = {*kind.lengths, *(name for row in kind.parameters for name in row.columns)} - {"assembly"}

@@ -30,10 +30,6 @@ def test_the_area_does_not_depend_on_where_it_lies_or_how_large_it_is() -> None:
         ([[[0, 0], [1, 3], [2, 6], [-1, -3]]], r"keep_out\[0\] has no area"),
         ([[[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]]], r"keep_out\[0\] crosses or touches itself at \(1, 0\)"),
         (
-            [[[0, 0], [1, np.inf], [2, 0]]],
-            r"keep_out\[0\]\[1\] is \[0?1(\.0)?, inf\]; all numbers must be finite",
-        ),
-        (
             [[[0, 0], [1e200, 0], [0, 1]]],
             r"keep_out\[0\]\[1\] is \[1e\+200, 0\]; its numbers must be at most 1e\+20",
         ),

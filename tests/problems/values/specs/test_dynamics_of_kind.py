@@ -53,27 +53,11 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("spec", "kind", "line"), REFUSED)
-def test_what_a_kind_has_not_is_refused_in_one_line(spec: DynamicsSpec, kind: str, line: str) -> None:
-    told = refusal(LinkageSpec, LINKAGES[kind], "mine", length_unit="m", dynamics=spec)
-    assert told.splitlines()[0].startswith(line)
+def test_dynamics_of_other_kinds_are_refused_in_one_line(spec: DynamicsSpec, kind: str, line: str) -> None:
+    said = refusal(LinkageSpec, LINKAGES[kind], "mine", length_unit="m", dynamics=spec)
+    assert said.splitlines()[0].startswith(line)
     task = PathTask([[0, 0], [1, 0], [2, 1]])
     assert line in refusal(Problem, task=task, length_unit="m", dynamics=spec, mechanism=kind)
-
-
-@pytest.mark.parametrize(
-    ("spec", "kinds"),
-    [
-        (TRAVEL, ("slider-crank", "inverted-slider-crank")),
-        (OUTPUT, ("four-bar", "inverted-slider-crank")),
-        (AT_O4, ("four-bar", "inverted-slider-crank")),
-        (AT_B, ("four-bar", "slider-crank")),
-        (SLIDE, ("slider-crank", "inverted-slider-crank")),
-        (IN_B, ("four-bar", "slider-crank")),
-    ],
-)
-def test_what_a_kind_has_is_taken(spec: DynamicsSpec, kinds: tuple[str, ...]) -> None:
-    for kind in kinds:
-        assert LinkageSpec(LINKAGES[kind], "mine", length_unit="m", dynamics=spec).dynamics == spec
 
 
 def test_a_guide_length_needs_a_coefficient() -> None:
@@ -196,12 +180,12 @@ centres | dynamics.centres is ((1, 2), (3, 4));
 
 
 @pytest.mark.parametrize(("name", "line"), rows(MISPLACED, JOINTS=JOINTS))
-def test_what_a_row_has_not_is_told_in_one_line(name: str, line: str) -> None:
+def test_misplaced_dynamics_are_reported_in_one_line(name: str, line: str) -> None:
     kind, spec = SPECS[name]
     assert misplaced(spec, kind) == [line]
 
 
-@pytest.mark.parametrize("link", ["2", 2.5, None, True, [2]])
+@pytest.mark.parametrize("link", ["2", None, True])
 def test_a_link_is_a_whole_number(link: Any) -> None:
     for make in (
         lambda: LoadSpec(link, moment=1.0),
