@@ -128,14 +128,16 @@ _MODES: dict[str, Any] = {
 }
 
 
-def _type_of(name: str) -> Any:
-    """Type of a key of ``[requirements]``: by what it limits, or as a mode."""
-    return _BY_KIND.get(LIMITS[name].kind, float) if name in LIMITS else _MODES.get(name, float)
+# The type of each key of ``[requirements]``: by its limit, or as a mode.
+_TYPES = {
+    each.name: _BY_KIND.get(LIMITS[each.name].kind, float)
+    if each.name in LIMITS
+    else _MODES.get(each.name, float)
+    for each in fields(Requirements)
+}
 
 
-@tables.keys_of(
-    Requirements, {each.name: (_type_of(each.name) | None, None) for each in fields(Requirements)}
-)
+@tables.keys_of(Requirements, {name: (given | None, None) for name, given in _TYPES.items()})
 class RequirementsTable(tables.SpecTable):
     beside = tables.EACH
 

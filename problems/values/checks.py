@@ -305,6 +305,11 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun[:-1]}ies" if noun.endswith(("ly", "ry")) else f"{number} {noun}s"
 
 
+def with_article(noun: str) -> str:
+    """A noun with its article: a slider-crank, an engine."""
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
+
+
 def near_miss(word: str, words: Sequence[str]) -> str | None:
     """The one of `words` of which `word` may be a misspelling, if any."""
     by_folded = {name.casefold(): name for name in words}

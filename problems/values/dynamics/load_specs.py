@@ -259,11 +259,6 @@ class FrictionSpec(TableValue):
             raise ProblemError(f"{absent} is missing; coulomb and pin_radius are needed together")
 
     @property
-    def of_slide(self) -> bool:
-        """Whether it states friction of a slide."""
-        return any(getattr(self, name) for name in SLIDE_KEYS)
-
-    @property
     def radius(self) -> tuple[float, ...]:
         """Of the friction circles: moment for each unit of a joint's force, length."""
         return tuple(np.multiply(self.coulomb, self.pin_radius).tolist())

@@ -18,15 +18,7 @@ _ROUNDING = 1e-9  # share: where pivots are given, both axes have the same lengt
 
 @dataclass(frozen=True, slots=True)
 class FunctionGround:
-    """The ground line of a function generator: O2 = (0, 0), O4 = (1, 0) unless limits say otherwise.
-
-    Examples
-    --------
-    >>> from grashof.problems import Box, Requirements
-    >>> ground = FunctionGround.of(Requirements(o2=Box((0, 0), (0, 0)), o4=Box((0, 0), (200, 300))))
-    >>> round(float(np.degrees(ground.theta1)), 9), ground.length, ground.placed(250.0)
-    (90.0, 200.0, ((0.0, 0.0), (0.0, 250.0)))
-    """
+    """The ground line of a function generator: O2 = (0, 0), O4 = (1, 0) unless limits require another."""
 
     theta1: float  # rad, direction O2->O4
     lengths: (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from grashof.problems.values.checks import counted
+from grashof.problems.values.checks import counted, with_article
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
 from grashof.problems.values.errors import wrong_value
@@ -94,16 +94,16 @@ def _loads(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for index, load in enumerate(spec.loads):
         where, instead = f"loads[{index}].over is '{load.over}'", _listed(_over(kind, but=load.over), "or")
         if load.over == "travel" and not kind.slides:
-            yield f"{where}; {_named(kind)} has no slide, so it must be {instead}"
+            yield f"{where}; {with_article(kind.word)} has no slide, so it must be {instead}"
         if load.over in fixed:
-            yield f"{where}; the slider of {_named(kind)} does not turn, so it must be {instead}"
+            yield f"{where}; the slider of {with_article(kind.word)} does not turn, so it must be {instead}"
 
 
 def _torsion_springs(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for index, spring in enumerate(spec.torsion_springs):
         if spring.between in kind.slides:
             given = f"torsion_springs[{index}].between is {list(spring.between)}"
-            yield f"{given}; {_named(kind)} has a slide there, so it must be at a pin"
+            yield f"{given}; {with_article(kind.word)} has a slide there, so it must be at a pin"
 
 
 def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
@@ -113,18 +113,15 @@ def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     if not kind.slides:
         for key in SLIDE_KEYS:
             if getattr(friction, key):
-                yield f"friction.{key} is {getattr(friction, key):g}; {_named(kind)} has no slide"
+                yield f"friction.{key} is {getattr(friction, key):g}; {with_article(kind.word)} has no slide"
         return
     slide, joint = next((i, joint) for i, joint in enumerate(kind.every_joint) if joint.slides)
     for key, instead in _INSTEAD.items():
         each = getattr(friction, key)
         if len(each) == len(kind.every_joint) and each[slide]:
             where = f"friction.{key}[{slide}] is {each[slide]:g}, in {joint.name}"
-            yield f"{where}; {_named(kind)} has a slide there, so it must be 0 ({instead} is for slides)"
-
-
-def _named(kind: Mechanism) -> str:
-    return f"{'an' if kind.word[0] in 'aeiou' else 'a'} {kind.word}"
+            why = f"{with_article(kind.word)} has a slide there"
+            yield f"{where}; {why}, so it must be 0 ({instead} is for slides)"
 
 
 def _listed(words: Sequence[object], last: str) -> str:

@@ -160,10 +160,10 @@ class FunctionLaw(ReadOnly):
         low, high = self.x
         ends = self.value(np.array([low, high]))
         values = self.value(low + (high - low) * np.asarray(turned) / self.input_range)
-        whole = self.value(np.linspace(low, high, _DENSE))
-        forward = np.sign(ends[1] - ends[0]) or np.sign(whole[np.argmax(np.abs(whole - ends[0]))] - ends[0])
+        dense = self.value(np.linspace(low, high, _DENSE))
+        forward = np.sign(ends[1] - ends[0]) or np.sign(dense[np.argmax(np.abs(dense - ends[0]))] - ends[0])
         # A monotone law spans its ends exactly; samples of another one are a little within its extremes.
-        spread = max(abs(ends[1] - ends[0]), float(np.ptp(whole)))
+        spread = max(abs(ends[1] - ends[0]), float(np.ptp(dense)))
         rotated: FloatArray = forward * self.output_range * (values - ends[0]) / spread
         return rotated
 

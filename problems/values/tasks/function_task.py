@@ -17,6 +17,7 @@ from grashof.problems.values.tasks.function_law import (
     chebyshev_spacing,
     lobatto_with_weights,
 )
+from grashof.problems.values.tasks.target_checks import deg_text
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
@@ -33,28 +34,31 @@ def checked_pairs(
     key = OUTPUT if travels else OUTPUT_DEG
     turned, output = finite_numbers(inputs, INPUT), finite_numbers(outputs, key)
     if len(turned) != len(output):
-        counts = (
-            checks.counted(len(turned), "angle"),
-            checks.counted(len(output), "travel" if travels else "angle"),
-        )
-        given = f"function.{INPUT} has {counts[0]}, function.{key} {counts[1]}"
-        raise ProblemError(f"{given}; it must be as many")
+        angles = checks.counted(len(turned), "angle")
+        others = checks.counted(len(output), "travel" if travels else "angle")
+        raise ProblemError(f"function.{INPUT} has {angles}, function.{key} {others}; it must be as many")
     if len(turned) < FEWEST:
         raise ProblemError(f"function has {checks.counted(len(turned), 'pair')}; it must have three or more")
     if len(turned) > MOST:
         raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
     for name, first in ((INPUT, turned[0]), (key, output[0])):
         if first != 0:
-            given = _deg(first) if name.endswith("_deg") else f"{first:.6g}"
+            given = deg_text(first) if name.endswith("_deg") else f"{first:.6g}"
             raise ProblemError(f"function.{name}[0] is {given}; it must be 0, at the first pair")
     for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
         raise ProblemError(
-            f"function.{INPUT}[{index}] is {_deg(turned[index])} after {_deg(turned[index - 1])}; "
+            f"function.{INPUT}[{index}] is {deg_text(turned[index])} after {deg_text(turned[index - 1])}; "
             "inputs must grow (the driver may turn either way all the same)"
         )
     _refuse_turns(turned, INPUT)
     if travels:
-        _refuse_travel(float(np.ptp(output)))
+        travel = float(np.ptp(output))
+        if not travel > 0:
+            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
+        if travel > checks.GREATEST:
+            raise ProblemError(
+                f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}"
+            )
         return turned, output
     _refuse_turns(output, OUTPUT_DEG)
     if np.ptp(output) < _LEAST_OUTPUT:
@@ -70,19 +74,8 @@ def finite_numbers(values: Any, key: str) -> FloatArray:
 def _refuse_turns(angles: FloatArray, key: str) -> None:
     if np.ptp(angles) > TURN * (1 + 1e-12):
         raise ProblemError(
-            f"function.{key} covers {_deg(np.ptp(angles))} deg; it must be at most one turn, 360"
+            f"function.{key} covers {deg_text(np.ptp(angles))} deg; it must be at most one turn, 360"
         )
-
-
-def _refuse_travel(travel: float) -> None:
-    if not travel > 0:
-        raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
-    if travel > checks.GREATEST:
-        raise ProblemError(f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}")
-
-
-def _deg(angle: float) -> str:
-    return f"{np.degrees(angle):.6g}"
 
 
 SENSES = ("given", "either")

@@ -53,15 +53,15 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
     if len(timing) != count:
         raise ProblemError(f"{where} has {counted(len(timing), 'angle')} for {count} {target}s")
     if timing[0] != 0:
-        raise ProblemError(f"{where}[0] is {_degrees(timing[0])}; it must be 0, at the first {target}")
+        raise ProblemError(f"{where}[0] is {deg_text(timing[0])}; it must be 0, at the first {target}")
     sense = np.sign(timing[1])
     for index in np.flatnonzero(sense * np.diff(timing) <= 0) + 1:
         raise ProblemError(
-            f"{where}[{index}] is {_degrees(timing[index])} after {_degrees(timing[index - 1])}; "
+            f"{where}[{index}] is {deg_text(timing[index])} after {deg_text(timing[index - 1])}; "
             "the angles must only grow, or only fall"
         )
     if abs(timing[-1]) > TURN * (1 + 1e-12):
-        last = f"{where}[{count - 1}] is {_degrees(timing[-1])}"
+        last = f"{where}[{count - 1}] is {deg_text(timing[-1])}"
         raise ProblemError(f"{last}; it must be at most one turn, 360")
     return frozen_array(timing)
 
@@ -71,5 +71,6 @@ def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
     return finite_list(values, f"{kind}.timing_deg", "angles")
 
 
-def _degrees(angle: float) -> str:
+def deg_text(angle: float) -> str:
+    """An angle (rad) in degrees, as messages show it."""
     return f"{np.degrees(angle):.6g}"

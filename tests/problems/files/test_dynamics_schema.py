@@ -1,4 +1,4 @@
-"""Loads, springs, friction, motor and sections in files: what they state, and what is wrong with them."""
+"""Loads, springs, friction, motor and sections in files: their values and errors."""
 
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -132,7 +132,7 @@ def test_a_table_is_read_beside_its_file(tmp_path: Path, head: str) -> None:
         dynamics = load_it(path).dynamics  # type: ignore[operator]
         assert dynamics is not None
         assert dynamics.loads == (expected,)
-        assert "load.csv" not in str(dynamics.tables)  # what is written on needs no other file
+        assert "load.csv" not in str(dynamics.tables)  # written again, it needs no other file
 
 
 def test_a_measured_profile_is_read(tmp_path: Path) -> None:
@@ -171,7 +171,6 @@ def test_linkage_and_problem_files_of_slider_cranks_state_the_same_and_come_back
     values = ((80, -4000, 0), (120, -900, 0), (160, -100, 0))
     assert spec.loads == (LoadSpec(4, values=values, over="travel"),)
     assert spec.friction == friction
-    assert friction.of_slide
     head = 'kind = "path"\nmechanism = "slider-crank"\nlength_unit = "mm"\n[path]\n'
     text = head + "points = [[0, 0], [30, 10], [60, 0]]\n" + OF_ENGINE
     problem = problem_of(text, "mine.toml", "mine")
@@ -226,7 +225,7 @@ BAD = r"""
 
 
 @pytest.mark.parametrize(("text", "expected"), rows(BAD, LOAD=LOAD))
-def test_what_is_wrong_is_one_clear_line(text: str, expected: str) -> None:
+def test_errors_are_one_clear_line(text: str, expected: str) -> None:
     for said in (refusal(linkage, text), refusal(problem_of, PROBLEM + text, "mine.toml", "mine")):
         line = said.removeprefix("mine.toml: ")
         assert line.startswith(expected)
@@ -258,7 +257,7 @@ TABLES = [
 
 
 @pytest.mark.parametrize(("content", "expected"), TABLES)
-def test_what_is_wrong_with_a_table_names_it(tmp_path: Path, content: str, expected: str) -> None:
+def test_errors_of_a_csv_file_name_it(tmp_path: Path, content: str, expected: str) -> None:
     (tmp_path / "rod.csv").write_text(content, encoding="utf-8")
     said = refusal(linkage, LOAD + 'table = "rod.csv"', tmp_path)
     assert said.startswith(f"loads[0].table: {tmp_path / 'rod.csv'}: {expected}")

@@ -26,7 +26,7 @@ LAW = {**RANGES, "law": "power", "exponent": 1.5}
         {"law": "exp", "x": [0, 1], "input_range_deg": 60, "output_range": 80.0},
     ],
 )
-def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
+def test_functions_come_back(table: dict[str, Any]) -> None:
     slides = "output" in table or "output_range" in table
     errors = [f"structural_error_{key}{'' if slides else '_deg'}" for key in ("max", "rms")]
     document: dict[str, Any] = {"kind": "function", "function": table}
@@ -48,7 +48,7 @@ def test_what_is_written_comes_back(table: dict[str, Any]) -> None:
         assert [goal.column for goal, _ in problem.goals][-1:] != ["structural_error_max_deg"]
 
 
-# Files of pairs, of laws and of travels, and what is added below them or above.
+# Files of pairs, of laws and of travels, and lines added below or above.
 TEXTS = {
     "PAIRS": "[function]\ninput_deg = [0, 20, 45, 90]\noutput_deg = [0, 12, 31, 80]\n",
     "LAW": '[function]\nlaw = "exp"\nx = [0, 1]\ninput_range_deg = 9\n',

@@ -27,7 +27,7 @@ LINE = '<path d="M 0 0 L 3 4"/>'
 
 
 def refused(folder: Path, name: str, content: bytes | str) -> str:
-    """What is said of a file; one line."""
+    """The one line with which a file is refused."""
     (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     read = rows_of if name.endswith(("xlsx", "csv")) else lambda *at: outlines_of(*at, "")
     line = refusal(read, name, folder)

@@ -1,4 +1,4 @@
-"""Linkage files: the catalogue, what a file may say, and what is refused by name."""
+"""Linkage files: the catalogue, valid files, and errors by name."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         ("kind = 'motion'", "is a problem; solve it, then name a design: mine-designs/candidates.json#1"),
     ],
 )  # fmt: skip
-def test_what_a_file_may_not_say(tmp_path: Path, text: str, message: str) -> None:
+def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
     answer = refusal(load_linkage, written(tmp_path, text))
     assert message in answer
     assert answer.startswith(str(tmp_path))
@@ -127,7 +127,7 @@ def test_speed_and_gravity_need_no_masses(tmp_path: Path) -> None:
         assert spec.dynamics == expected
 
 
-def test_a_name_that_is_none() -> None:
+def test_unknown_names() -> None:
     for name, message in [
         ("pumpjak", "did you mean pumpjack?"),
         (
@@ -191,7 +191,7 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
 
 
 def edited(**changes: Any) -> str:
-    """The list with its design, or what stands beside the designs, changed by hand."""
+    """The list with its design, or an entry beside the designs, changed by hand."""
     content = json.loads(listed())
     for key, value in changes.items():
         (content if key in ("title", "length_unit", "dynamics") else content["designs"][0])[key] = value
@@ -306,7 +306,7 @@ def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: 
 
 
 @pytest.mark.parametrize("writer", ["9\n9" * 50, 5, "x" * 5000, "\x1b[31m"])
-def test_whatever_wrote_a_list_is_reported_in_one_line(tmp_path: Path, writer: Any) -> None:
+def test_any_writer_of_a_list_is_reported_in_one_line(tmp_path: Path, writer: Any) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(json.dumps(json.loads(listed()) | {"grashof": writer, "problem_toml": 5}))
     said = refusal(load_linkage_spec, f"{path}#3").removeprefix(str(path))

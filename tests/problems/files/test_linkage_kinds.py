@@ -1,4 +1,4 @@
-"""Linkage files and lists of every kind: what they state comes back, what other kinds have is refused."""
+"""Linkage files and lists of every kind come back; keys of other kinds are refused."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def message(folder: Path, text: str) -> list[str]:
     return [line.removeprefix(f"{path}: ") for line in refusal(load_linkage, path).splitlines()]
 
 
-def test_what_is_not_said_is_usual(tmp_path: Path) -> None:
+def test_absent_keys_have_their_defaults(tmp_path: Path) -> None:
     assert load_linkage(written(tmp_path, SLIDER)) == SliderCrank((0, 0), 1, 4)
     assert load_linkage(written(tmp_path, INVERTED)) == InvertedSliderCrank((0, 0), (2, 0), 1)
     plain = 'mechanism = "four-bar"\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n'
@@ -83,7 +83,7 @@ def test_what_is_not_said_is_usual(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("row", "point_link"), EVERY, ids=named)
-def test_what_a_file_says_is_what_it_states(tmp_path: Path, row: Mechanism, point_link: int) -> None:
+def test_a_file_gives_the_linkage_that_it_states(tmp_path: Path, row: Mechanism, point_link: int) -> None:
     wanted = any_linkage(row, point_link)
     found = load_linkage(written(tmp_path, text_of(wanted)))
     assert type(found) is type(wanted)
@@ -122,7 +122,7 @@ mechanism = "slider-crank"\nr2 = -1\nr3 = 4\nr1 = 2\nassembly = 0 |
 @pytest.mark.parametrize(
     ("text", "lines"), rows(BAD, SLIDER=SLIDER, INVERTED=INVERTED, KINDS=KINDS, BOTH=BOTH, SLIDES=SLIDES)
 )
-def test_what_a_file_may_not_say(tmp_path: Path, text: str, lines: str) -> None:
+def test_bad_files_are_refused(tmp_path: Path, text: str, lines: str) -> None:
     assert message(tmp_path, text) == lines.splitlines()
 
 
@@ -184,7 +184,7 @@ def test_lists_changed_by_hand(tmp_path: Path, linkage: Linkage, changes: dict[s
 
 
 @pytest.mark.parametrize("absent", ["hosts", "r6", "point_link", "assembly_2"])
-def test_a_list_without_a_part_of_a_six_bar_says_what_belongs_there(tmp_path: Path, absent: str) -> None:
+def test_a_list_without_a_part_of_a_six_bar_is_refused(tmp_path: Path, absent: str) -> None:
     path, content = tmp_path / "candidates.json", json.loads(listed(LEG))
     del content["designs"][0]["linkage"][absent]
     path.write_text(json.dumps(content))

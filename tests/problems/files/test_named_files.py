@@ -93,7 +93,7 @@ def test_a_bad_table_is_refused_in_a_line(tmp_path: Path, table: str, said: str)
     assert said in lines[0]
 
 
-def test_names_that_are_no_such_files(tmp_path: Path) -> None:
+def test_bad_names_of_files(tmp_path: Path) -> None:
     assert refused(tmp_path, MOTION.format("poses.json")) == [
         "task.toml: motion.poses is 'poses.json'; it must be a list, or a file .csv or .xlsx"
     ]
@@ -138,7 +138,7 @@ def test_areas_of_a_layer(tmp_path: Path, unit: str, factor: float) -> None:
     np.testing.assert_allclose(box.max(axis=0), [62, 10], atol=0.07)
 
 
-def test_open_lines_are_no_areas_but_may_be_outlines(tmp_path: Path) -> None:
+def test_open_lines_may_be_outlines_but_not_areas(tmp_path: Path) -> None:
     drawing(tmp_path / "machine.dxf")
     assert refused(tmp_path, AREAS.format("mm", "machine.dxf")) == [
         "task.toml: requirements.keep_out: machine.dxf: "
@@ -180,7 +180,7 @@ def test_areas_of_an_svg(tmp_path: Path, size: str, unit: str, factor: float) ->
     assert arch.bounds == pytest.approx((50, -30, 70, -12.5), abs=0.1)
 
 
-def test_svg_that_is_none_and_open_lines(tmp_path: Path) -> None:
+def test_bad_svg_files_and_open_lines(tmp_path: Path) -> None:
     assert "is not an SVG file" in refused(tmp_path, AREAS.format("mm", "a.svg"), a__svg="no")[0]
     said = refused(tmp_path, AREAS.format("mm", "b.svg"), b__svg=SVG.format(size=""))
     assert "b.svg: the line that begins at" in said[0]

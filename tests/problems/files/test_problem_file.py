@@ -28,7 +28,7 @@ def refused(problem: str | os.PathLike[str]) -> str:
 
 
 @pytest.mark.parametrize("name", catalogue())
-def test_every_problem_of_the_catalogue_loads_and_says_what_it_is(name: str) -> None:
+def test_every_problem_of_the_catalogue_loads_with_title_and_source(name: str) -> None:
     problem = load(name)
     assert problem.name == name
     assert problem.title
@@ -44,7 +44,7 @@ def test_the_catalogue_is_sorted_and_is_the_folder() -> None:
     assert "luggage" in catalogue()
 
 
-def test_the_luggage_problem_is_the_one_asked_for() -> None:
+def test_the_luggage_problem_is_that_of_the_report() -> None:
     luggage = load("luggage")
     assert luggage.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
     assert luggage.requirements.rotatability is Rotatability.FULL_CRANK
@@ -114,7 +114,7 @@ NOWHERE = "there is no such file;"
     ],
     ids=lambda text: text[:30],
 )
-def test_what_is_no_problem_file_is_said(folder: Path, name: str, said: str) -> None:
+def test_names_of_other_files_are_refused(folder: Path, name: str, said: str) -> None:
     (folder / "sub").mkdir()
     (folder / "mine.toml").write_text(GOOD, encoding="utf-8")
     (folder / "latin.toml").write_bytes('title = "Gelände"'.encode("latin-1"))
@@ -122,7 +122,7 @@ def test_what_is_no_problem_file_is_said(folder: Path, name: str, said: str) -> 
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads everything")
-def test_file_without_leave_to_read(folder: Path) -> None:
+def test_a_file_without_permission(folder: Path) -> None:
     path = folder / "locked.toml"
     path.write_text(GOOD, encoding="utf-8")
     path.chmod(0)
@@ -149,7 +149,7 @@ def test_errors_inside_a_file_begin_with_its_name(folder: Path) -> None:
     assert refused("empty.toml") == "empty.toml: kind is missing"
 
 
-def test_importing_the_package_does_not_load_what_only_files_need() -> None:
+def test_importing_the_package_loads_no_libraries_for_files() -> None:
     code = "import sys, grashof.problems; print(sorted({'pydantic', 'casadi', 'shapely'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

@@ -1,4 +1,4 @@
-"""Kinds of linkages in problem files: which are asked for, and what belongs to which."""
+"""Kinds of linkages in problem files, and the limits and goals of each."""
 
 import tomllib
 from dataclasses import replace
@@ -28,7 +28,7 @@ def message(mechanism: str, requirements: str = "") -> str:
 
 
 @pytest.mark.parametrize(
-    ("given", "meant"),
+    ("given", "expected"),
     [
         ("", ("four-bar",)),
         ('"four-bar"', ("four-bar",)),
@@ -37,14 +37,14 @@ def message(mechanism: str, requirements: str = "") -> str:
         ('["slider-crank", "four-bar"]', ("slider-crank", "four-bar")),
     ],
 )
-def test_the_kinds_that_are_asked_for_come_back(given: str, meant: tuple[str, ...]) -> None:
-    asked = problem(given)
-    assert asked.mechanism == meant
-    again = problem_of(problem_toml(asked), "here", "test")
-    assert again.mechanism == meant
+def test_kinds_come_back(given: str, expected: tuple[str, ...]) -> None:
+    made = problem(given)
+    assert made.mechanism == expected
+    again = problem_of(problem_toml(made), "here", "test")
+    assert again.mechanism == expected
 
 
-def test_a_problem_for_four_bars_is_written_as_ever() -> None:
+def test_four_bars_are_not_written() -> None:
     assert "mechanism" not in problem_toml(Problem(task=TASK))
 
 
@@ -82,11 +82,11 @@ def test_requirements_that_no_kind_has_are_refused(given: str, requirements: str
 
 
 def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:
-    asked = problem(
+    made = problem(
         '["four-bar", "slider-crank"]', "r4 = [1, 2]\noffset = [-1, 1]\nstroke = [2, 3]\nslide_angle_deg = 20"
     )
-    assert (asked.requirements.r4, asked.requirements.offset) == ((1, 2), (-1, 1))
-    assert (asked.requirements.stroke, asked.requirements.slide_angle_deg) == ((2, 3), 20)
+    assert (made.requirements.r4, made.requirements.offset) == ((1, 2), (-1, 1))
+    assert (made.requirements.stroke, made.requirements.slide_angle_deg) == ((2, 3), 20)
 
 
 def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
@@ -97,7 +97,7 @@ def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
         assert all(word in listed[name].kinds for name in columns)
 
 
-def test_python_may_say_it_with_a_word() -> None:
+def test_a_kind_may_be_a_single_word_in_python() -> None:
     assert Problem(task=TASK, mechanism="slider-crank").mechanism == ("slider-crank",)  # type: ignore[arg-type]
     with pytest.raises(ProblemError, match=r"requirements.offset does not go with mechanism four-bar"):
         Problem(task=TASK, requirements=Requirements(offset=(0, 1)))

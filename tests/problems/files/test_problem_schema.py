@@ -72,7 +72,7 @@ seed = 4
 effort = 2.5
 """
 
-# Limits of what takes masses, tolerances or a whole turn.
+# Limits that need masses, tolerances or a full turn.
 EVERY_LIMIT = f"""{MOTION}
 closed = true
 [requirements]
@@ -255,7 +255,7 @@ base = { x = [3, 1] } | driver.cylinder.base.x is [3, 1]; it must be [lo, hi] wi
 
 
 @pytest.mark.parametrize(("text", "line"), rows(BAD_CYLINDERS))
-def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) -> None:
+def test_impossible_cylinders_are_refused_in_a_line(text: str, line: str) -> None:
     assert message(f"{MOTION}[driver]\ncylinder = {{ {text} }}\n") == line
 
 
@@ -272,7 +272,7 @@ closed = true\n<DRIVEN> | motion.closed is true; it must be false with driver.cy
 
 
 @pytest.mark.parametrize(("text", "said"), rows(NOT_BY_CYLINDERS, DRIVEN="[driver]\ncylinder = {}\n"))
-def test_what_a_cylinder_cannot_do_is_refused_in_a_line(text: str, said: str) -> None:
+def test_impossible_tasks_of_a_cylinder_are_refused_in_a_line(text: str, said: str) -> None:
     assert message(MOTION + text) == said
 
 

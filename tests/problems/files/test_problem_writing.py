@@ -67,7 +67,7 @@ def test_everything_that_python_can_state_comes_back() -> None:
         (Requirements(exact=False), Objective()),
     ],
 )
-def test_what_decides_comes_back(requirements: Requirements, objective: Objective) -> None:
+def test_objectives_come_back(requirements: Requirements, objective: Objective) -> None:
     task = PathTask([[0, 0], [1, 0], [3, 3]])
     made = Problem(name="here", task=task, requirements=requirements, objective=objective)
     check_same(again(made), made)

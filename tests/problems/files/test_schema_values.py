@@ -1,11 +1,11 @@
-"""Problem files with wrong structure, unknown keys or senseless values: one line names the key."""
+"""Problem files with wrong structure, unknown keys or invalid values: one line names the key."""
 
 import pytest
 from refusals import MOTION, POSES, message, problem, rows
 
 from grashof.problems.files.problem_writing import problem_toml
 
-# By table: a line of it, and what is said behind its key.
+# By table: a line of it, and the message after its key.
 WRONG = {
     "motion": [
         ("angle_length = '1'", " is '1'; it must be a number"),
@@ -103,7 +103,7 @@ kinds = "motion"\n[motion]\n<POSES> | kinds is unknown; did you mean kind?\nkind
 
 
 @pytest.mark.parametrize(("text", "expected"), rows(OTHERS, MOTION=MOTION, POSES=POSES))
-def test_what_is_wrong_with_a_file(text: str, expected: str) -> None:
+def test_bad_files(text: str, expected: str) -> None:
     assert message(text) == expected
 
 

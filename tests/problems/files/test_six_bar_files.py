@@ -1,4 +1,4 @@
-"""Linkage files and lists of six-bars: what they state comes back, and what is wrong is one clear line."""
+"""Linkage files and lists of six-bars come back; errors are one clear line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def refused(text: str, word: str = "stephenson-3") -> list[str]:
     return refusal(read, text, word).splitlines()
 
 
-def test_what_is_not_said_is_usual() -> None:
+def test_absent_keys_have_their_defaults() -> None:
     assert read(FOUR_BAR + DYAD).linkage == PLAIN
     slider = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=3, slide_angle_2=0, hosts=(3, 1))
     assert read(FOUR_BAR + SLIDE).linkage == slider
@@ -128,7 +128,7 @@ stephenson-3 | <FOUR_BAR>[dyad]\nkind = "RRP"\nc = [5, 1]\nr5 = 3\nr6 = 2\nd = [
 
 
 @pytest.mark.parametrize(("word", "text", "lines"), rows(BAD, **TEXTS))
-def test_what_a_file_may_not_say(word: str, text: str, lines: str) -> None:
+def test_bad_files_are_refused(word: str, text: str, lines: str) -> None:
     assert refused(text, word) == lines.splitlines()
 
 
@@ -157,7 +157,7 @@ viscous = [1, 2, 3, 4, 5, 6, 7]
 """
 
 
-def test_what_acts_on_every_link_is_read(tmp_path: Path) -> None:
+def test_loads_on_every_link_are_read(tmp_path: Path) -> None:
     (tmp_path / "load.csv").write_text("theta6_deg,moment_nm\n0,1\n90,2\n360,1\n", encoding="utf-8")
     head = 'mechanism = "stephenson-3"\nlength_unit = "m"\n'
     (tmp_path / "mine.toml").write_text(head + FOUR_BAR + DYAD + ACTING, encoding="utf-8")

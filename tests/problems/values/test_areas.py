@@ -1,4 +1,4 @@
-"""Areas kept out: what polygons are, and what they are together."""
+"""Areas to keep out of: polygons, and their union."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def test_the_area_does_not_depend_on_where_it_lies_or_how_large_it_is() -> None:
         (7, r"keep_out is 7; it must be a list of polygons"),
     ],
 )
-def test_what_is_no_polygon(values: object, said: str) -> None:
+def test_bad_polygons(values: object, said: str) -> None:
     with pytest.raises(ProblemError, match=said):
         polygons(values, "keep_out")  # type: ignore[arg-type]
 

@@ -74,13 +74,13 @@ REFUSED: list[tuple[Any, Any, str]] = [
 ]
 
 
-@pytest.mark.parametrize(("check", "value", "meant"), REFUSED)
-def test_what_is_no_such_number_is_refused(check: Any, value: Any, meant: str) -> None:
-    with pytest.raises(ProblemError, match=rf"^here is .*; it must be {meant}$"):
+@pytest.mark.parametrize(("check", "value", "expected"), REFUSED)
+def test_bad_numbers_are_refused(check: Any, value: Any, expected: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^here is .*; it must be {expected}$"):
         check(value, "here")
 
 
-def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
+def test_number_within_includes_its_ends() -> None:
     assert number_within(0, 0, 90, "here") == 0
     assert number_within(90, 0, 90, "here") == 90
     with pytest.raises(ProblemError, match=r"^here is 90.000000001; it must be from 0 to 90$"):
@@ -99,17 +99,17 @@ def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
         ((-1, 1), r"here is \[-1, 1\]; lo must be at least 0"),
     ],
 )
-def test_limits_say_what_is_wrong(pair: tuple[float, float], message: str) -> None:
+def test_bad_limits_are_named(pair: tuple[float, float], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
         limits(pair, "here", least=0.0)
 
 
 @pytest.mark.parametrize(
-    ("word", "meant"),
+    ("word", "expected"),
     [("lugage", "luggage"), ("LUGGAGE", "luggage"), ("R1", "r1"), ("wheelbarrow", None), ("", None)],
 )
-def test_near_miss(word: str, meant: str | None) -> None:
-    assert near_miss(word, ["luggage", "r1"]) == meant
+def test_near_miss(word: str, expected: str | None) -> None:
+    assert near_miss(word, ["luggage", "r1"]) == expected
 
 
 def test_counted() -> None:
@@ -117,7 +117,7 @@ def test_counted() -> None:
 
 
 @pytest.mark.parametrize("character", ["\x00", "\x9b", "\ud800", "\uffff"])
-def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
+def test_control_characters_are_refused_or_replaced(character: str) -> None:
     with pytest.raises(
         ProblemError, match=rf"^title has control character U\+{ord(character):04X}; it must be"
     ):

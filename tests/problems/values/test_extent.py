@@ -60,7 +60,7 @@ def test_corners_are_a_convex_polygon_that_holds_all_points() -> None:
 
 
 @pytest.mark.slow
-def test_span_of_as_many_points_as_no_memory_holds_the_pairs_of() -> None:
+def test_span_of_very_many_points() -> None:
     points = np.random.default_rng(0).uniform(-0.7, 0.7, (200_000, 2))
     points[[77, 777]] = [[-3, -4], [3, 4]]
     assert span(points) == 10

@@ -1,4 +1,4 @@
-"""What may be said of cross-sections, strengths and pumping units: defaults, and what is refused."""
+"""Cross-sections, strengths and pumping units: defaults and errors."""
 
 import pickle
 import tomllib
@@ -68,7 +68,7 @@ TURNS = [[0, 9e3], [180, 2e4], [360, 9e3]]
         ({"values": TURNS, "over": "theta2"}, "over is 'theta2'; it must be crank or position"),
     ],
 )
-def test_what_is_refused_of_a_pumping_unit(given: dict[str, Any], message: str) -> None:
+def test_bad_pumping_units(given: dict[str, Any], message: str) -> None:
     line = refusal(PumpingUnitSpec, **given)
     assert message in line
     assert "\n" not in line
@@ -85,7 +85,7 @@ def test_what_is_refused_of_a_pumping_unit(given: dict[str, Any], message: str) 
         PumpingUnitSpec(well="left", rating=1e5, values=TURNS),
     ],
 )
-def test_what_is_stated_gives_the_same_again(spec: SectionSpec | StrengthSpec | PumpingUnitSpec) -> None:
+def test_stated_keys_give_the_same_value(spec: SectionSpec | StrengthSpec | PumpingUnitSpec) -> None:
     assert type(spec)(**spec.stated) == spec == pickle.loads(pickle.dumps(spec))
     assert None not in spec.stated.values()
     hash(spec)

@@ -64,7 +64,7 @@ def test_numbers_are_kept_as_floats() -> None:
     assert repr(requirements.transmission_min_deg) == "15.0"
 
 
-def test_a_box_is_open_where_nothing_is_said() -> None:
+def test_a_box_is_open_by_default() -> None:
     assert Box(x=(0, 1)) == Box((0.0, 1.0), (-math.inf, math.inf))
     assert Box(y=(-math.inf, 3)).y == (-math.inf, 3.0)
     assert Box((2, 2), (3, 3)).x == (2.0, 2.0)

@@ -76,7 +76,7 @@ def linkage_of_row(row: Mechanism) -> Linkage:
 
 
 def everywhere(row: Mechanism, more: int = 0) -> DynamicsSpec:
-    """Something of each sort on each link and in each joint, and on so many links more."""
+    """Something of each sort on each link and in each joint, and on `more` further links."""
     moving = range(2, len(row.links) + 1 + more)
     ends = [(Place(1), Place(link, (0.1, 0.2))) for link in moving]
     fixed = [f"theta{second}" for first, second in row.slides if first == 1]

@@ -1,4 +1,4 @@
-"""Objective, search and the whole problem."""
+"""The complete problem, and its search."""
 
 from typing import Any
 

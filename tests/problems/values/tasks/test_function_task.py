@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from refusals import refusal
 
-from grashof.problems import FunctionLaw, FunctionTask, Problem, Requirements, Rotatability
-from grashof.problems.values.requirements.function_ground import grounded
+from grashof.problems import Box, FunctionLaw, FunctionTask, Problem, Requirements, Rotatability
+from grashof.problems.values.requirements.function_ground import FunctionGround, grounded
 from grashof.problems.values.tasks.function_law import LAWS, chebyshev_spacing, lobatto_with_weights
 
 RANGES: dict[str, Any] = {"input_range_deg": 60, "output_range_deg": 90}
@@ -62,6 +62,12 @@ def test_the_wanted_output_passes_through_all_pairs(count: int) -> None:
     task = FunctionTask(inputs, outputs)
     assert np.abs(task.output(task.inputs) - outputs).max() < 1e-12
     assert task.exact_by_default == (count <= 5)
+
+
+def test_the_ground_is_placed_within_its_limits() -> None:
+    ground = FunctionGround.of(Requirements(o2=Box((0, 0), (0, 0)), o4=Box((0, 0), (200, 300))))
+    assert (np.degrees(ground.theta1), ground.length) == (90.0, 200.0)
+    assert ground.placed(250.0) == ((0.0, 0.0), (0.0, 250.0))
 
 
 def test_a_travel_may_have_any_size() -> None:

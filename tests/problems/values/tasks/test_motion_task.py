@@ -7,7 +7,7 @@ import pytest
 
 from grashof.problems import MotionTask, PathTask, ProblemError, Requirements
 
-WHOLE, PLACE, TURNED = "whole", "place", "turned"
+COMPLETE, PLACE, TURNED = "complete", "place", "turned"
 MIXED: list[Any] = [[5, 4, 0], {"x": 3, "y": 4}, {"angle": -5}, {"x": 1, "y": 0, "angle": 365}]
 
 
@@ -44,20 +44,20 @@ def test_the_size_is_that_of_the_positions_given() -> None:
 @pytest.mark.parametrize(
     ("kinds", "exact"),
     [
-        ([WHOLE] * 2, True),
-        ([WHOLE] * 5, True),
-        ([WHOLE] * 6, False),
+        ([COMPLETE] * 2, True),
+        ([COMPLETE] * 5, True),
+        ([COMPLETE] * 6, False),
         ([PLACE] * 9, True),
         ([PLACE] * 10, False),
         ([TURNED] * 14 + [PLACE], True),  # angles take no more than the driver angles give
-        ([WHOLE] * 4 + [PLACE] * 2, True),
-        ([WHOLE] * 4 + [PLACE] * 3, False),
-        ([WHOLE] * 3 + [PLACE] * 4, True),
-        ([WHOLE] * 3 + [PLACE] * 5, False),
-        ([WHOLE] + [PLACE] * 8, True),
-        ([WHOLE] + [PLACE] * 9, False),
-        ([WHOLE] * 5 + [TURNED], True),
-        ([WHOLE] * 5 + [PLACE], False),
+        ([COMPLETE] * 4 + [PLACE] * 2, True),
+        ([COMPLETE] * 4 + [PLACE] * 3, False),
+        ([COMPLETE] * 3 + [PLACE] * 4, True),
+        ([COMPLETE] * 3 + [PLACE] * 5, False),
+        ([COMPLETE] + [PLACE] * 8, True),
+        ([COMPLETE] + [PLACE] * 9, False),
+        ([COMPLETE] * 5 + [TURNED], True),
+        ([COMPLETE] * 5 + [PLACE], False),
     ],
 )
 def test_exact_as_long_as_unknowns_are_enough(kinds: list[str], exact: bool) -> None:

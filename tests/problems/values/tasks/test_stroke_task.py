@@ -1,4 +1,4 @@
-"""Stroke tasks: what can be asked for, and what is refused in a line."""
+"""Stroke tasks: their properties, and impossible ones, which are refused in a line."""
 
 import re
 from dataclasses import replace
@@ -43,7 +43,7 @@ def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) 
     assert task.size == 1.0
 
 
-def test_what_is_not_replaced_stays() -> None:
+def test_replaced_strokes_keep_the_rest() -> None:
     task = StrokeTask(swing=1.0, time_ratio=1.5).sized(7.0)
     assert replace(task).swing == 1.0
     assert task.without_zones().time_ratio == 1.5
@@ -63,7 +63,7 @@ def test_what_is_not_replaced_stays() -> None:
         ({"swing_deg": 80, "time_ratio": 0.9}, "stroke.time_ratio is 0.9; it must be at least 1, .*"),
     ],
 )
-def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: str) -> None:
+def test_impossible_strokes_are_refused_in_a_line(stated: dict[str, Any], message: str) -> None:
     with pytest.raises(ProblemError, match=f"^{message}$"):
         StrokeTask.from_degrees(**stated)
 
@@ -87,7 +87,9 @@ def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: st
         ({"swing_deg": 80}, "slider-crank", "stroke.swing_deg is of a rocker; .*"),
     ],
 )
-def test_what_a_kind_of_linkage_cannot_do(stated: dict[str, Any], mechanism: str, message: str) -> None:
+def test_impossible_strokes_of_a_kind_of_linkage(
+    stated: dict[str, Any], mechanism: str, message: str
+) -> None:
     assert re.fullmatch(message, StrokeTask.from_degrees(**stated).impossible(mechanism))
 
 
@@ -106,7 +108,7 @@ def test_requirements_that_do_not_apply(wanted: dict[str, Any], message: str) ->
         Problem(task=task, requirements=Requirements(**wanted))
 
 
-def test_a_great_tolerance_is_no_zone() -> None:
+def test_a_large_tolerance_is_not_a_zone() -> None:
     task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
     problem = Problem(task=task, requirements=Requirements(tolerance=0.01))
     assert problem.zones is None
