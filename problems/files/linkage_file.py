@@ -17,7 +17,6 @@ from grashof.problems.files.on_disk import (
     document_of,
     exists,
     file_text,
-    looks_like_path,
 )
 from grashof.problems.files.problem_file import catalogue, problem_of
 from grashof.problems.values import checks
@@ -79,17 +78,9 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         raise ProblemError(f"{text}: is a table; name the design as {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; name one of them, such as {text}#1")
-    if isinstance(linkage, str) and not looks_like_path(text):
-        if text in _LINKAGES.names:
-            return _parsed(_LINKAGES.text(text), f"{text}.toml", text)
-        if not exists(text):
-            if text in catalogue():
-                raise ProblemError(_problem_given(text, text))
-            raise ProblemError(
-                f"{shown(text)} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
-            )
-    path = Path(linkage)
-    return _parsed(file_text(path, "a linkage file"), str(path), checks.readable(path.stem), path.parent)
+    if isinstance(linkage, str) and text in catalogue() and not exists(text):
+        raise ProblemError(_problem_given(text, text))
+    return _parsed(*_LINKAGES.read(linkage))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -145,7 +136,7 @@ def _problem_given(given: str, name: str) -> str:
     return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
 
 
-def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) -> LinkageSpec:
+def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> LinkageSpec:
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.files.linkage_schema import linkage_from
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from grashof.problems.files.on_disk import file_bytes
 from grashof.problems.files.spreadsheet import number_rows, numbers_wanted, rows_of
 from grashof.problems.files.svg_lines import svg_drawing
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import bounded, each_checked, located, noted, refuse
+from grashof.problems.values.checks import bounded, each_checked, located_in, noted, refuse
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.specs.problem import MOST_TARGETS
@@ -171,37 +170,20 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
     found, wrong = dict(document), list[str]()
     unit = document.get("length_unit", "")
     for (table, key), (endings, read) in FILES.items():
-        stated = found.get(table)
+        stated, where = found.get(table), f"{table}.{key}"
         name = stated.get(key) if isinstance(stated, dict) else None
         if not isinstance(name, str) or not isinstance(stated, dict):
             continue
         with noted(wrong):
-            found[table] = _filled(stated, f"{table}.{key}", name, endings, folder, read, unit)
+            if Path(name.partition("#")[0]).suffix.lower() not in endings:
+                allowed = f"it must be a list, or a file {' or '.join(endings)}"
+                raise ProblemError(f"{where} is {shown(name)}; {allowed}")
+            if folder is None:
+                raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
+            with located_in(where):
+                keys = read(name, folder, unit if isinstance(unit, str) else "")
+                for other in (other for other in keys if other in stated and other != key):
+                    raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
+            found[table] = stated | keys
     refuse(wrong)
     return found
-
-
-def _filled(
-    stated: dict[str, Any],
-    where: str,
-    name: str,
-    endings: tuple[str, ...],
-    folder: Path | None,
-    read: Read,
-    unit: Any,
-) -> dict[str, Any]:
-    """A table with the content of a file in place of its name."""
-    if Path(name.partition("#")[0]).suffix.lower() not in endings:
-        raise ProblemError(f"{where} is {shown(name)}; it must be a list, or a file {' or '.join(endings)}")
-    if folder is None:
-        raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
-    try:
-        keys = read(name, folder, unit if isinstance(unit, str) else "")
-    except ProblemError as error:
-        raise located(error, where) from None
-    filled = copy(stated)
-    for key, value in keys.items():
-        if key in stated and not where.endswith(f".{key}"):
-            raise ProblemError(f"{where}: {name} has {key}, which is given besides; give one of them")
-        filled[key] = value
-    return filled

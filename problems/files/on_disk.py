@@ -17,7 +17,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from grashof.problems.values.checks import hint
+from grashof.problems.values.checks import hint, readable
 from grashof.problems.values.errors import ProblemError, shown
 
 MOST_BYTES = 4 * 2**20  # of files that people write or draw
@@ -45,6 +45,19 @@ class Catalogue:
     def hint(self, name: str) -> str:
         """The likely name in place of one that is not there."""
         return hint(name, self.names, f"the catalogue has {', '.join(self.names)}")
+
+    def read(self, given: str | os.PathLike[str]) -> tuple[str, str, str, Path | None]:
+        """Text, file name, name and folder of an entry, or of the file of a path; entries have no folder."""
+        name = os.fspath(given)
+        if isinstance(given, str) and not looks_like_path(name):
+            if name in self.names:
+                return self.text(name), f"{name}.toml", name, None
+            if not exists(name):
+                neither = f"{shown(name)} is neither a {self.what} of the catalogue nor a file"
+                raise ProblemError(f"{neither}; {self.hint(name)}")
+        path = Path(given)
+        text = file_text(path, f"a {self.what} file", self.hint(path.stem))
+        return text, str(path), readable(path.stem), path.parent
 
     @property
     def _files(self) -> dict[str, Traversable]:

@@ -32,7 +32,7 @@ from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
-from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
+from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
@@ -93,22 +93,16 @@ Place = Annotated[
 _AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg file"
 
 
-def _is_polygon(given: Any) -> bool:
-    """Whether a value is a single polygon, which is refused in one line, and not a list of them."""
-    return isinstance(given, list) and bool(given) and all(_is_corner(each) for each in given)
-
-
 def _is_corner(given: Any) -> bool:
     return isinstance(given, list) and len(given) == 2 and all(isinstance(x, int | float) for x in given)
 
 
 _SEVERAL = tables.unless(
-    lambda given: not _is_polygon(given), "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]"
+    lambda given: not (isinstance(given, list) and given and all(map(_is_corner, given))),
+    "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]",  # a single one is refused in one line
 )
 Areas = Annotated[list[Corners], tables.listed(_AREAS), BeforeValidator(_SEVERAL)]
-Parts = Annotated[
-    list[str], tables.listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")
-]
+Parts = Annotated[list[str], tables.listed(KEPT_OUT)]
 Direction = Annotated[
     Annotated[float, Tag(tables.NUMBER)] | Annotated[Pair, Tag(tables.LIST)],
     tables.either("a number or [lo, hi]"),
@@ -129,7 +123,7 @@ _MODES: dict[str, Any] = {
 
 
 # The type of each key of ``[requirements]``: by its limit, or as a mode.
-_TYPES = {
+_TYPES: dict[str, Any] = {
     each.name: _BY_KIND.get(LIMITS[each.name].kind, float)
     if each.name in LIMITS
     else _MODES.get(each.name, float)

@@ -25,7 +25,7 @@ from pydantic import (
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from grashof.problems.values.checks import hint, plain_text
-from grashof.problems.values.errors import ProblemError, shown, shown_key
+from grashof.problems.values.errors import ProblemError, listing, shown, shown_key
 
 # Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
@@ -135,7 +135,7 @@ def of_length(count: int, wanted: str) -> AfterValidator:
 
 def one_of(*words: str) -> AfterValidator:
     """Validator of a word: one of those given."""
-    return AfterValidator(unless(words.__contains__, f"{', '.join(words[:-1])} or {words[-1]}"))
+    return AfterValidator(unless(words.__contains__, listing(words)))
 
 
 def tag(value: object) -> str | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import reprlib
+from collections.abc import Sequence
 
 
 class GrashofError(Exception):
@@ -18,6 +19,12 @@ class ProblemError(GrashofError, ValueError):
 def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
     """The error of a wrong value, with the values allowed."""
     return ProblemError(f"{where} is {shown(value)}; it must be {wanted}")
+
+
+def listing(words: Sequence[object], last: str = "or") -> str:
+    """Words in a sentence: a, b or c."""
+    *most, end = map(str, words)
+    return f"{', '.join(most)} {last} {end}"
 
 
 def shown(value: object) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from grashof.problems.values.checks import each_checked, hint, refuse
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Parameter
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
@@ -27,8 +27,7 @@ DIMENSIONS: tuple[str, ...] = (
     "u",
     "v",
 )
-_ANY = f"{', '.join(list(ONE_LOOP)[:-1])} or {list(ONE_LOOP)[-1]}"
-ANY_KINDS = f"{_ANY}, or a list of these"
+ANY_KINDS = f"{listing(list(ONE_LOOP))}, or a list of these"
 
 
 # What makes them in Python, and describes their parameters; six-bars are `SixBar`.
@@ -121,5 +120,5 @@ def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = tuple(
     """A word for a kind of linkages, checked: one of those of problems, or of others."""
     if isinstance(word, str) and word in among:
         return word
-    known = hint(word, among, f"it must be {', '.join(among[:-1])} or {among[-1]}")
+    known = hint(word, among, f"it must be {listing(among)}")
     raise ProblemError(f"{where} is {shown(word)}; {known}")

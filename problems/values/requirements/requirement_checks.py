@@ -9,11 +9,12 @@ from typing import Any, cast
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
-from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
+KEPT_OUT = f"a list of {listing(MAY_KEEP_OUT, 'and')}"
 
 
 def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str:
@@ -49,9 +50,8 @@ def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
 
 def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
     """The parts that keep out of areas, each once."""
-    wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise wrong_value(where, names, wanted)
+        raise wrong_value(where, names, KEPT_OUT)
     for index, name in enumerate(names):
         if name not in MAY_KEEP_OUT:
             raise wrong_value(f"{where}[{index}]", name, f"one of {', '.join(MAY_KEEP_OUT)}")

@@ -8,7 +8,7 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Needs, Quantity
+from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 
@@ -34,17 +34,6 @@ def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quanti
             if not getattr(wanted, name)
         ]
     return wrong
-
-
-def no_output(task: Task) -> dict[Needs, str]:
-    """The missing output when a structural error is required, in words."""
-    if not task.has_output.any():
-        none = f'{task.kind} states no output; kind = "function" does'
-        return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
-    return {
-        Needs.ROTATION: "function has an output that slides, not one that turns",
-        Needs.TRAVEL: "function has an output that turns, not one that slides",
-    }
 
 
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from grashof.problems.values.checks import counted, with_article
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
-from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
 
 # Keys of a slide in place of those of a pin.
@@ -38,7 +38,7 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
         if given is not None and len(given) != len(moving):
             yield f"dynamics.{name} has {counted(len(given), 'entry')}; it must have {len(moving)} numbers"
     if spec.centres is not None and len(spec.centres) != len(moving):
-        places = f"{_WORDS[len(moving)]} places [u, v], of links {_listed(moving, 'and')}"
+        places = f"{_WORDS[len(moving)]} places [u, v], of links {listing(moving, 'and')}"
         yield str(wrong_value("dynamics.centres", spec.centres, places))
     for table, given in (("section", spec.section), ("strength", spec.strength)):
         for name, value in () if given is None else given.stated.items():
@@ -59,14 +59,14 @@ def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for where, number, least in held:
         allowed = [link.number for link in kind.links if link.number >= least]
         if number not in allowed:
-            yield str(wrong_value(f"{where}.link", number, _listed(allowed, "or")))
+            yield str(wrong_value(f"{where}.link", number, listing(allowed)))
 
 
 def _angles(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     words = _over(kind)
     for index, load in enumerate(spec.loads):
         if load.over not in words:
-            yield str(wrong_value(f"loads[{index}].over", load.over, _listed(words, "or")))
+            yield str(wrong_value(f"loads[{index}].over", load.over, listing(words)))
 
 
 def _over(kind: Mechanism, but: str = "") -> list[str]:
@@ -80,7 +80,7 @@ def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for index, spring in enumerate(spec.torsion_springs):
         pairs = [list(joint.links) for joint in joints]
         if list(spring.between) not in pairs:
-            wanted = f"two links of a joint: {_listed(pairs, 'or')}"
+            wanted = f"two links of a joint: {listing(pairs, 'or')}"
             yield str(wrong_value(f"torsion_springs[{index}].between", list(spring.between), wanted))
     for key in _INSTEAD if spec.friction is not None else ():
         each = getattr(spec.friction, key)
@@ -92,7 +92,7 @@ def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 def _loads(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     fixed = [f"theta{second}" for first, second in kind.slides if first == 1]
     for index, load in enumerate(spec.loads):
-        where, instead = f"loads[{index}].over is '{load.over}'", _listed(_over(kind, but=load.over), "or")
+        where, instead = f"loads[{index}].over is '{load.over}'", listing(_over(kind, but=load.over))
         if load.over == "travel" and not kind.slides:
             yield f"{where}; {with_article(kind.word)} has no slide, so it must be {instead}"
         if load.over in fixed:
@@ -122,8 +122,3 @@ def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
             where = f"friction.{key}[{slide}] is {each[slide]:g}, in {joint.name}"
             why = f"{with_article(kind.word)} has a slide there"
             yield f"{where}; {why}, so it must be 0 ({instead} is for slides)"
-
-
-def _listed(words: Sequence[object], last: str) -> str:
-    *most, end = map(str, words)
-    return f"{', '.join(most)} {last} {end}"

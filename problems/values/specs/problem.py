@@ -189,23 +189,15 @@ class Problem(ReadOnly):
     def _without_value(self) -> list[str]:
         """Quantities weighed or limited without the parts of the problem that they need, a line each."""
         asked = self._weighed_or_limited
-        needed = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
-        absent = [name for name, given in needed.items() if given is None]
-        missing = {
-            Needs.DYNAMICS: "dynamics is missing",
-            Needs.MANUFACTURING: "manufacturing is missing",
-            Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
-            Needs.LEAST_SQUARES: "requirements.exact = false is missing",
-            Needs.ANGLES: f"{self.task.kind} has no angles",
-            Needs.CYLINDER: "driver.cylinder is missing",
-            Needs.LOADED_CYLINDER: f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} missing",
-            **task_limits.no_output(self.task),
-        }
-        wrong = [
-            f"{missing[quantity.needs]}; {where} needs it"
-            for where, quantity in asked.items()
-            if not self.states(quantity.needs)
-        ]
+        given = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        absent = [name for name, value in given.items() if value is None]
+        both = f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} missing"
+        wrong = []
+        for where, quantity in asked.items():
+            if not self.states(quantity.needs):
+                without = quantity.needs in _OUTPUTS and not self.task.has_output.any()
+                line = _NO_OUTPUT if without else _NEEDED[quantity.needs][1]
+                wrong.append(f"{line.format(kind=self.task.kind, both=both)}; {where} needs it")
         wrong += task_limits.without_meaning(self.task, self.requirements, asked)
         if not self.requirements.same_branch:
             wrong += [
@@ -269,8 +261,7 @@ class Problem(ReadOnly):
 
     def states(self, needs: Needs) -> bool:
         """Whether it states the parts that a quantity needs to have a value."""
-        stated = _STATED.get(needs)
-        return stated is None or stated(self)
+        return needs not in _NEEDED or _NEEDED[needs][0](self)
 
     @property
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
@@ -356,16 +347,30 @@ class Problem(ReadOnly):
         return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
-# Whether a problem states what a quantity needs; other needs are always met.
-_STATED: dict[Needs, Callable[[Problem], bool]] = {
-    Needs.DYNAMICS: lambda problem: problem.dynamics is not None,
-    Needs.MANUFACTURING: lambda problem: problem.manufacturing is not None,
-    Needs.CLOSED: lambda problem: problem.task.closed,
-    Needs.LEAST_SQUARES: lambda problem: not problem.requirements.is_exact(problem.task),
-    Needs.ANGLES: lambda problem: bool(problem.task.has_angle.any()),
-    Needs.CYLINDER: lambda problem: problem.driver is not None,
-    Needs.LOADED_CYLINDER: lambda problem: problem.driver is not None and problem.dynamics is not None,
-    Needs.OUTPUTS: lambda problem: bool(problem.task.has_output.any()),
-    Needs.ROTATION: lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
-    Needs.TRAVEL: lambda problem: problem.task.travels,
+_NO_OUTPUT = '{kind} states no output; kind = "function" does'
+_OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
+# Whether a problem states what a quantity needs, and the error where it does not; other needs are always met.
+_NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
+    Needs.DYNAMICS: (lambda problem: problem.dynamics is not None, "dynamics is missing"),
+    Needs.MANUFACTURING: (lambda problem: problem.manufacturing is not None, "manufacturing is missing"),
+    Needs.CLOSED: (lambda problem: problem.task.closed, "{kind}.closed is false; it must be true"),
+    Needs.LEAST_SQUARES: (
+        lambda problem: not problem.requirements.is_exact(problem.task),
+        "requirements.exact = false is missing",
+    ),
+    Needs.ANGLES: (lambda problem: bool(problem.task.has_angle.any()), "{kind} has no angles"),
+    Needs.CYLINDER: (lambda problem: problem.driver is not None, "driver.cylinder is missing"),
+    Needs.LOADED_CYLINDER: (
+        lambda problem: problem.driver is not None and problem.dynamics is not None,
+        "{both}",
+    ),
+    Needs.OUTPUTS: (lambda problem: bool(problem.task.has_output.any()), _NO_OUTPUT),
+    Needs.ROTATION: (
+        lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
+        "function has an output that slides, not one that turns",
+    ),
+    Needs.TRAVEL: (
+        lambda problem: problem.task.travels,
+        "function has an output that turns, not one that slides",
+    ),
 }

@@ -170,7 +170,7 @@ def limiting(key: str, low: float, high: float) -> Any:
     return SimpleNamespace(
         limited={key: limit},
         ranges=lambda name: {"": (low, high)},
-        meant=lambda quantity: quantity,
+        as_required=lambda quantity: quantity,
         same_branch=True,
     )
 

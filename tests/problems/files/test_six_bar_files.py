@@ -71,7 +71,6 @@ watt-1 | <PINS>hosts = [3, 1] |
 stephenson-3 | <PINS>hosts = [1, 3] | dyad.hosts is [1, 3]; it must be [3, 1] with mechanism stephenson-3
 watt-2 | <PINS>hosts = 4 | dyad.hosts is 4; it must be two numbers of links
 watt-2 | <PINS>hosts = [4, true] | dyad.hosts[1] is true; it must be a whole number
-stephenson-3 | <PINS>assembly = 2 | dyad.assembly is 2; it must be +1 or -1
 stephenson-3 | <PINS>offset = 1 | dyad.offset does not go with kind RRR; only RRP has it
 stephenson-3 | <PINS>slide_angle_deg = 1 | dyad.slide_angle_deg does not go with kind RRR; only RRP has it
 stephenson-3 | <PINS>r4 = 3 | dyad.r4 is unknown; did you mean r4?
@@ -81,10 +80,6 @@ stephenson-3 | <BLOCK>r6 = 1 | dyad.r6 does not go with kind RRP; only RRR has i
 stephenson-3 | <BLOCK>slide_angle_deg = 36001 | dyad.slide_angle_deg is 36001; it must be from -36000 to 36000
 stephenson-3 | <FOUR_BAR> | dyad is missing
 four-bar | <PINS> | dyad does not go with mechanism four-bar; <ONLY>
-slider-crank | r2 = 1\nr3 = 4\n<DYAD> | dyad does not go with mechanism slider-crank; <ONLY>
-four-bar | <FOUR_BAR>point_link = 3 | point_link does not go with mechanism four-bar; <ONLY>
-stephenson-2 | <PINS> | mechanism is 'stephenson-2'; did you mean stephenson-3?
-watt-1 | <FOUR_BAR>dyad = 3 | dyad is 3; it must be a table
 watt-1 | <BLOCK> | dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism watt-1
 stephenson-1 | <BLOCK>hosts = [2, 4] |
     dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism stephenson-1
@@ -104,8 +99,6 @@ stephenson-3 | <PINS>[pumping_unit]\nrod_load = 2 |
     pumping_unit does not go with mechanism stephenson-3; only four-bar has it
 stephenson-3 | <FOUR_BAR>point_link = 1\n<DYAD> |
     point_link is 1; it must be the number of a moving link, 2 to 6
-stephenson-3 | o4 = [4, 0]\nr2 = 1\nr3 = 4\n<DYAD> | r4 is missing
-stephenson-3 | r2 = 1\nr3 = 4\nr4 = 3\n<DYAD> | o4 is missing; give it, or r1 with ground_angle_deg
 stephenson-3 | o4 = [0, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n<DYAD> |
     o4 is where o2 is; the ground pivots must be distinct
 stephenson-3 | <PINS>[dynamics]\nmasses = [1, 2, 3]\ninertias = [1, 2, 3, 4, 5] |
