@@ -37,7 +37,7 @@ _ROD_LOADS: dict[str, _Kinds] = {
 _MOTION = (("time", "time_s"), ("angle", "angle_deg"))
 
 
-class _Acting(SpecTable):
+class _Nested(SpecTable):
     """A table of numbers, lists and places, which become tuples."""
 
     @classmethod
@@ -47,7 +47,7 @@ class _Acting(SpecTable):
         return tuple(cls.argument(each) for each in given) if isinstance(given, list) else given
 
 
-class _FromFile(_Acting):
+class _FromFile(_Nested):
     """A table whose `values` may be in a CSV file beside it; its columns depend on what they are over."""
 
     columns: ClassVar[Mapping[str, _Kinds]]
@@ -119,7 +119,7 @@ class PumpingUnitTable(_FromFile):
         "values": Annotated[list[list[float]], listed("rows [time in s, angle in deg]")],
     },
 )
-class MotorTable(_Acting):
+class MotorTable(_Nested):
     """The drive of link 2.
 
     Parameters
@@ -147,7 +147,7 @@ class MotorTable(_Acting):
 
 
 @keys_of(load_specs.Place, {"at": _POINT})
-class PlaceTable(_Acting):
+class PlaceTable(_Nested):
     suggested = False
 
 
@@ -165,7 +165,7 @@ _LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
     },
     ("speed_rpm", "gravity", "mass_per_length", "density", "masses", "inertias", "centres", "payload"),
 )
-class DynamicsTable(_Acting):
+class DynamicsTable(_Nested):
     # Whether there is a section is checked with the complete file.
     beside = MappingProxyType({"*": _SECTION, **dict.fromkeys(("masses", "inertias", "centres"), _LINKS)})
 
@@ -204,14 +204,14 @@ _Machine = create_model(
     __base__=Table,
     dynamics=_one(DynamicsTable),
     loads=_some(LoadTable),
-    springs=_some(spec_table(load_specs.SpringSpec, _Acting, {"between": _BETWEEN})),
-    dampers=_some(spec_table(load_specs.DamperSpec, _Acting, {"between": _BETWEEN})),
-    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, _Acting, {"between": _JOINT})),
-    counterweights=_some(spec_table(load_specs.CounterweightSpec, _Acting, {"at": _POINT})),
-    friction=_one(spec_table(load_specs.FrictionSpec, _Acting, _ONE_OR_EACH)),
+    springs=_some(spec_table(load_specs.SpringSpec, _Nested, {"between": _BETWEEN})),
+    dampers=_some(spec_table(load_specs.DamperSpec, _Nested, {"between": _BETWEEN})),
+    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, _Nested, {"between": _JOINT})),
+    counterweights=_some(spec_table(load_specs.CounterweightSpec, _Nested, {"at": _POINT})),
+    friction=_one(spec_table(load_specs.FrictionSpec, _Nested, _ONE_OR_EACH)),
     motor=_one(MotorTable),
-    section=_one(spec_table(SectionSpec, _Acting)),
-    strength=_one(spec_table(StrengthSpec, _Acting)),
+    section=_one(spec_table(SectionSpec, _Nested)),
+    strength=_one(spec_table(StrengthSpec, _Nested)),
 )
 
 
@@ -225,7 +225,7 @@ class MachineTables(_Machine):  # type: ignore[misc, valid-type]
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
         spec = DynamicsSpec(
-            **own, **{name: _Acting.argument(getattr(self, name)) for name in names if name != "dynamics"}
+            **own, **{name: _Nested.argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
         refuse([line for kind in kinds for line in without_place(spec, kind)])
         return spec

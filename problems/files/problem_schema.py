@@ -243,10 +243,10 @@ class _Heading(tables.Table):
 
 
 _tables: dict[str, Any] = {kind: (table | None, None) for kind, table in TASKS.items()}
-_Stated = create_model("_Stated", __base__=_Heading, **_tables)
+_WithTask = create_model("_WithTask", __base__=_Heading, **_tables)
 
 
-class _Task(_Stated):  # type: ignore[misc, valid-type]
+class _Task(_WithTask):  # type: ignore[misc, valid-type]
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None

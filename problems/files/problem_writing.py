@@ -24,8 +24,8 @@ def problem_toml(problem: Problem) -> str:
     Angles are in degrees: those that a file stated come back to the last bit, others to rounding.
     """
     kinds = problem.mechanism
-    asked = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
-    head = {"kind": problem.task.kind, **asked, **{key: getattr(problem, key) for key in _WORDS}}
+    kind = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
+    head = {"kind": problem.task.kind, **kind, **{key: getattr(problem, key) for key in _WORDS}}
     lines = [f"{key} = {_value(value)}" for key, value in head.items()]
     for name, given in _tables(problem):
         heading = f"[[{name}]]" if isinstance(given, list) else f"[{name}]"

@@ -99,10 +99,10 @@ def without_noise(length: float, linkage: Linkage) -> float:
     return 0.0 if abs(length) < NOISE * float(linkage.lengths.max()) else length
 
 
-def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
+def not_had(what: str, given: Sequence[str], kinds: Sequence[str]) -> str:
     """The error of a key or quantity that only other kinds of linkages have."""
     ending = "has it" if len(kinds) == 1 else "have it"
-    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+    return f"{what} does not go with mechanism {' and '.join(given)}; only {' and '.join(kinds)} {ending}"
 
 
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:

@@ -13,12 +13,12 @@ from grashof.problems.values.requirements.requirements import Requirements, Rota
 from grashof.problems.values.tasks.task import Task
 
 
-def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quantity]) -> list[str]:
+def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantity]) -> list[str]:
     """Goals and limits, by key path, that do not apply to the task, a line each."""
     kind = task.kind
     wrong = [
         f"{where} does not apply to a {kind}; remove it"
-        for where, quantity in asked.items()
+        for where, quantity in used.items()
         if quantity.key in task.without
     ]
     if wanted.keep_out:

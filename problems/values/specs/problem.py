@@ -188,21 +188,21 @@ class Problem(ReadOnly):
 
     def _without_value(self) -> list[str]:
         """Quantities weighed or limited without the parts of the problem that they need, a line each."""
-        asked = self._weighed_or_limited
+        used = self._weighed_or_limited
         given = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
         absent = [name for name, value in given.items() if value is None]
         both = f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} missing"
         wrong = []
-        for where, quantity in asked.items():
+        for where, quantity in used.items():
             if not self.states(quantity.needs):
                 without = quantity.needs in _OUTPUTS and not self.task.has_output.any()
                 line = _NO_OUTPUT if without else _NEEDED[quantity.needs][1]
                 wrong.append(f"{line.format(kind=self.task.kind, both=both)}; {where} needs it")
-        wrong += task_limits.without_meaning(self.task, self.requirements, asked)
+        wrong += task_limits.without_meaning(self.task, self.requirements, used)
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
-                for where, quantity in asked.items()
+                for where, quantity in used.items()
                 if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
             ]
         return wrong
