@@ -178,14 +178,14 @@ class TorsionSpringSpec(TableValue):
     free_angle_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        pair = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
-        if len(pair) == 2 and pair[0] == pair[1]:
-            raise ProblemError(f"between joins link {pair[0]} to itself; it must be two links of a joint")
+        links = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
+        if len(links) == 2 and links[0] == links[1]:
+            raise ProblemError(f"between joins link {links[0]} to itself; it must be two links of a joint")
         free = bounded(self.free_angle_deg, "free_angle_deg")
-        turned = pair[::-1] in _ANY_JOINTS
+        turned = links[::-1] in _ANY_JOINTS
         set_fields(
             self,
-            between=pair[::-1] if turned else pair,
+            between=links[::-1] if turned else links,
             stiffness=from_zero(self.stiffness, "stiffness"),
             free_angle_deg=-free if turned else free,
         )

@@ -12,16 +12,8 @@ from grashof.problems.files.linkage_schema import linkage_from
 from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_writing import problem_toml
+from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.dynamics.load_specs import (
-    CounterweightSpec,
-    DamperSpec,
-    FrictionSpec,
-    LoadSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.strength import SectionSpec
 
@@ -93,16 +85,18 @@ EXPECTED = DynamicsSpec(
     speed_rpm=20,
     gravity=(0, -9.81),
     loads=(
-        LoadSpec(4, (4.5, 0), force=(0, -1000)),
-        LoadSpec(3, moment=12),
-        LoadSpec(3, values=((0, 1, 2), (180, 3, 4), (360, 1, 2)), over="theta4", frame="link"),
-        LoadSpec(2, values=((0, 5), (10, 6)), over="time"),
+        load_specs.LoadSpec(4, (4.5, 0), force=(0, -1000)),
+        load_specs.LoadSpec(3, moment=12),
+        load_specs.LoadSpec(3, values=((0, 1, 2), (180, 3, 4), (360, 1, 2)), over="theta4", frame="link"),
+        load_specs.LoadSpec(2, values=((0, 5), (10, 6)), over="time"),
     ),
-    springs=(SpringSpec((Place(1, (0, 2)), Place(4, (1, 0))), 500, 1.2),),
-    dampers=(DamperSpec((Place(2), Place(4, (1, 0))), 5),),
-    torsion_springs=(TorsionSpringSpec((3, 4), 7, -30),),  # of 4 less 3, where the file has 3 less 4
-    counterweights=(CounterweightSpec(2, 900, (-1, 0)),),
-    friction=FrictionSpec(0.1, (0.05, 0.05, 0.05, 0.1), viscous=2),
+    springs=(load_specs.SpringSpec((load_specs.Place(1, (0, 2)), load_specs.Place(4, (1, 0))), 500, 1.2),),
+    dampers=(load_specs.DamperSpec((load_specs.Place(2), load_specs.Place(4, (1, 0))), 5),),
+    torsion_springs=(
+        load_specs.TorsionSpringSpec((3, 4), 7, -30),
+    ),  # of 4 less 3, where the file has 3 less 4
+    counterweights=(load_specs.CounterweightSpec(2, 900, (-1, 0)),),
+    friction=load_specs.FrictionSpec(0.1, (0.05, 0.05, 0.05, 0.1), viscous=2),
     motor=MotorSpec("trapezoid", 0.25, gear_ratio=30, gear_efficiency=0.9, inertia=0.02),
     section=SectionSpec(0.2, 0.1),
 )
@@ -125,7 +119,7 @@ def test_a_table_is_read_beside_its_file(tmp_path: Path, head: str) -> None:
     (tmp_path / "rods").mkdir()
     (tmp_path / "rods" / "load.csv").write_text(f"{head}\n0,0,-9\n\n90, 0,-20\n360,0,-9\n", encoding="utf-8")
     text = '[[loads]]\nlink = 4\nat = [2, 0]\ntable = "rods/load.csv"\n'
-    expected = LoadSpec(4, (2, 0), values=((0, 0, -9), (90, 0, -20), (360, 0, -9)))
+    expected = load_specs.LoadSpec(4, (2, 0), values=((0, 0, -9), (90, 0, -20), (360, 0, -9)))
     for name, content, load_it in (("l", BARE, load_linkage_spec), ("p", PROBLEM, load)):
         path = tmp_path / f"{name}.toml"
         path.write_text(content + text, encoding="utf-8")
@@ -165,11 +159,11 @@ slide_force = 5
 
 
 def test_linkage_and_problem_files_of_slider_cranks_state_the_same_and_come_back() -> None:
-    friction = FrictionSpec(slide_mu=0.08, slide_length=60, slide_viscous=2, slide_force=5)
+    friction = load_specs.FrictionSpec(slide_mu=0.08, slide_length=60, slide_viscous=2, slide_force=5)
     spec = linkage_from(document_of(ENGINE + OF_ENGINE, "mine"), "mine").dynamics
     assert spec is not None
     values = ((80, -4000, 0), (120, -900, 0), (160, -100, 0))
-    assert spec.loads == (LoadSpec(4, values=values, over="travel"),)
+    assert spec.loads == (load_specs.LoadSpec(4, values=values, over="travel"),)
     assert spec.friction == friction
     head = 'kind = "path"\nmechanism = "slider-crank"\nlength_unit = "mm"\n[path]\n'
     text = head + "points = [[0, 0], [30, 10], [60, 0]]\n" + OF_ENGINE

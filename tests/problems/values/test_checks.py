@@ -6,19 +6,8 @@ import numpy as np
 import pytest
 
 from grashof.problems import ProblemError
+from grashof.problems.values import checks
 from grashof.problems.values.arrays import frozen_array
-from grashof.problems.values.checks import (
-    counted,
-    finite_number,
-    finite_rows,
-    limits,
-    near_miss,
-    number_within,
-    plain_text,
-    positive_number,
-    readable,
-    whole_number,
-)
 
 
 def test_frozen_array_is_a_read_only_copy() -> None:
@@ -33,9 +22,9 @@ def test_frozen_array_is_a_read_only_copy() -> None:
 
 def test_finite_rows_keeps_the_rows() -> None:
     mixed: Any = [(1, 2), np.array([3.0, 4.0])]
-    rows = finite_rows(mixed, 2, "here", "a point")
+    rows = checks.finite_rows(mixed, 2, "here", "a point")
     assert rows.tolist() == [[1, 2], [3, 4]]
-    assert finite_rows([], 3, "here", "a point").shape == (0, 3)
+    assert checks.finite_rows([], 3, "here", "a point").shape == (0, 3)
 
 
 @pytest.mark.parametrize(
@@ -53,23 +42,23 @@ def test_finite_rows_keeps_the_rows() -> None:
 )
 def test_finite_rows_names_the_row(rows: Any, message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}"):
-        finite_rows(rows, 2, "here", "a point")
+        checks.finite_rows(rows, 2, "here", "a point")
 
 
 @pytest.mark.parametrize("value", [3, np.float64(3), np.int64(3)])
 def test_finite_number_takes_every_kind_of_number(value: float) -> None:
-    assert finite_number(value, "here") == positive_number(value, "here") == 3.0
+    assert checks.finite_number(value, "here") == checks.positive_number(value, "here") == 3.0
 
 
 def from_one(value: Any, name: str) -> int:
-    return whole_number(value, 1, name)
+    return checks.whole_number(value, 1, name)
 
 
 FINITE = [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400]
 POSITIVE, WHOLE = [0, -1.5, float("nan")], [0, -1, 1.0, True, "1", None]
 REFUSED: list[tuple[Any, Any, str]] = [
-    *((finite_number, value, "a finite number") for value in FINITE),
-    *((positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
+    *((checks.finite_number, value, "a finite number") for value in FINITE),
+    *((checks.positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
     *((from_one, value, "a whole number from 1") for value in WHOLE),
 ]
 
@@ -81,10 +70,10 @@ def test_bad_numbers_are_refused(check: Any, value: Any, expected: str) -> None:
 
 
 def test_number_within_includes_its_ends() -> None:
-    assert number_within(0, 0, 90, "here") == 0
-    assert number_within(90, 0, 90, "here") == 90
+    assert checks.number_within(0, 0, 90, "here") == 0
+    assert checks.number_within(90, 0, 90, "here") == 90
     with pytest.raises(ProblemError, match=r"^here is 90.000000001; it must be from 0 to 90$"):
-        number_within(90.000000001, 0, 90, "here")
+        checks.number_within(90.000000001, 0, 90, "here")
 
 
 @pytest.mark.parametrize(
@@ -101,7 +90,7 @@ def test_number_within_includes_its_ends() -> None:
 )
 def test_bad_limits_are_named(pair: tuple[float, float], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
-        limits(pair, "here", least=0.0)
+        checks.limits(pair, "here", least=0.0)
 
 
 @pytest.mark.parametrize(
@@ -109,11 +98,11 @@ def test_bad_limits_are_named(pair: tuple[float, float], message: str) -> None:
     [("lugage", "luggage"), ("LUGGAGE", "luggage"), ("R1", "r1"), ("wheelbarrow", None), ("", None)],
 )
 def test_near_miss(word: str, expected: str | None) -> None:
-    assert near_miss(word, ["luggage", "r1"]) == expected
+    assert checks.near_miss(word, ["luggage", "r1"]) == expected
 
 
 def test_counted() -> None:
-    assert [counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
+    assert [checks.counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
 
 
 @pytest.mark.parametrize("character", ["\x00", "\x9b", "\ud800", "\uffff"])
@@ -121,10 +110,10 @@ def test_control_characters_are_refused_or_replaced(character: str) -> None:
     with pytest.raises(
         ProblemError, match=rf"^title has control character U\+{ord(character):04X}; it must be"
     ):
-        plain_text(f"a{character}b", "title")
-    assert readable(f"a{character}b") == "a?b"
+        checks.plain_text(f"a{character}b", "title")
+    assert checks.readable(f"a{character}b") == "a?b"
 
 
 def test_text_of_all_languages_is_plain() -> None:
     for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
-        assert plain_text(text, "title") == readable(text) == text
+        assert checks.plain_text(text, "title") == checks.readable(text) == text
