@@ -31,8 +31,6 @@ def message(mechanism: str, requirements: str = "") -> str:
     ("given", "expected"),
     [
         ("", ("four-bar",)),
-        ('"four-bar"', ("four-bar",)),
-        ('"slider-crank"', ("slider-crank",)),
         ('["inverted-slider-crank"]', ("inverted-slider-crank",)),
         ('["slider-crank", "four-bar"]', ("slider-crank", "four-bar")),
     ],

@@ -53,6 +53,8 @@ KEEP_OUT = r"""
     requirements.keep_out[1] has no area: its corners lie on a straight line
 [[[0, 0], [2, 2], [2, 0], [0, 2]]] |
     requirements.keep_out[0] crosses or touches itself at (1, 1); it must be a simple polygon
+[[[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]]] |
+    requirements.keep_out[0] crosses or touches itself at (1, 0); it must be a simple polygon
 [[[0, 0], [1, nan], [1, 1]]] | requirements.keep_out[0][1] is [1.0, nan]; all numbers must be finite
 [[[0, 0], [1, 1]], [[0, 0], [2, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]] |
     requirements.keep_out[0] has 2 distinct corners; it must have three or more\n
@@ -136,13 +138,9 @@ def test_a_stroke_is_read() -> None:
     ("stroke", "messages"),
     [
         ({"swing_deg": 200, "time_ratio": 0.5}, ["stroke.swing_deg is 200; ", "stroke.time_ratio is 0.5; "]),
-        ({"swing_deg": 80, "stroke": 1, "time_ratio": 1.1}, ["stroke has both swing_deg and stroke; "]),
-        ({"time_ratio": 1.1}, ["stroke has neither swing_deg nor stroke; "]),
         ({"swing_deg": 80}, ["stroke.time_ratio is missing"]),
-        ({"swing_deg": 80, "time_ratio": 7}, ["stroke.time_ratio is 7; it must be less than 6.2 "]),
         ({"stroke": 100, "time_ratio": 1.2}, ["stroke.stroke is of a slide; a four-bar has a swing"]),
         ({"swing_deg": "wide", "time_ratio": 1.2}, ["stroke.swing_deg is 'wide'; it must be a number"]),
-        ({"swing_deg": 80, "time_ratio": True}, ["stroke.time_ratio is True; it must be a number"]),
     ],
 )
 def test_each_error_is_a_line(stroke: dict[str, Any], messages: list[str]) -> None:

@@ -65,16 +65,10 @@ def test_the_luggage_has_the_masses_of_the_report() -> None:
 @pytest.mark.parametrize(
     ("name", "table", "expected"),
     [
-        ("dynamics", BARS, DynamicsSpec(2.0)),
         (
             "dynamics",
             BARS + "speed_rpm = 10\ngravity = [0, -9.80665]\npayload = 20",
             DynamicsSpec(2.0, speed_rpm=10.0, gravity=(0.0, -9.80665), payload=20.0),
-        ),
-        (
-            "dynamics",
-            "masses = [1, 2, 3]\ninertias = [0, 0.5, 0]",
-            DynamicsSpec(masses=(1.0, 2.0, 3.0), inertias=(0.0, 0.5, 0.0)),
         ),
         ("manufacturing", "length_tolerance = 0.1", Manufacturing(0.1, 0.1)),
         ("manufacturing", "length_tolerance = 0.1\nband = 0.25", Manufacturing(0.1, 0.25)),

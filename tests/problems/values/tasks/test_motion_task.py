@@ -44,7 +44,6 @@ def test_the_size_is_that_of_the_positions_given() -> None:
 @pytest.mark.parametrize(
     ("kinds", "exact"),
     [
-        ([COMPLETE] * 2, True),
         ([COMPLETE] * 5, True),
         ([COMPLETE] * 6, False),
         ([PLACE] * 9, True),
@@ -52,8 +51,6 @@ def test_the_size_is_that_of_the_positions_given() -> None:
         ([TURNED] * 14 + [PLACE], True),  # angles take no more than the driver angles give
         ([COMPLETE] * 4 + [PLACE] * 2, True),
         ([COMPLETE] * 4 + [PLACE] * 3, False),
-        ([COMPLETE] * 3 + [PLACE] * 4, True),
-        ([COMPLETE] * 3 + [PLACE] * 5, False),
         ([COMPLETE] + [PLACE] * 8, True),
         ([COMPLETE] + [PLACE] * 9, False),
         ([COMPLETE] * 5 + [TURNED], True),

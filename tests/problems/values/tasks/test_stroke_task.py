@@ -34,7 +34,6 @@ def test_a_stroke_is_the_size() -> None:
         ({"link_length": (10, 200)}, 200.0),
         ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3), (4, 4))}, 5.0),
         ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3))}, 1.0),
-        ({"o2": Box((0, 0), (0, 0))}, 1.0),
     ],
 )
 def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) -> None:

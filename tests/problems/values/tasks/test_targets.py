@@ -35,11 +35,6 @@ def test_degrees_become_radians() -> None:
     [
         ([[1, 2], [3, 4]], "path.points has 2 points; it must have three or more"),
         (
-            [[1e100, 0], [-1e100, 0], [0, 1]],
-            r"path.points\[0\] is \[1e\+100, 0\]; its numbers must be at most 1e\+20\n"
-            r"path.points\[1\] is \[-1e\+100, 0\]; its numbers must be at most 1e\+20",
-        ),
-        (
             [[0, 0], [1e-150, 0], [0, 1e-150]],
             r"path.points are at most 1.41421e-150 apart; two must be at least 1e-20 apart",
         ),
