@@ -52,9 +52,9 @@ print(
 assert np.sum(rms < 1e-6) <= 5
 
 # %%
-# Most starts end in a local minimum, and nothing distinguishes such a design from the best one. Grashof searches
-# over the proportions and places each linkage best on the points by linear algebra, thousands at once, so
-# that few unknowns are left to guess.
+# Most starts end in a local minimum, and nothing distinguishes such a design from the best one. Grashof
+# searches over the proportions and places each linkage best on the points by linear algebra, thousands at
+# once, so that few unknowns are left to guess.
 
 problem = Problem(
     length_unit="mm",
