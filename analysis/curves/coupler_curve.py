@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
+from grashof.analysis.mechanism.closing import STEADY, close, link_point, move, operands_of, point_rates
 from grashof.analysis.mechanism.driver_samples import closer_at_ends
-from grashof.analysis.mechanism.mobility import driver_ranges, range_index, whole_turn
+from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
@@ -37,11 +37,11 @@ def coupler_motion(
     """How P and its link move with the driver; arguments and what is not finite as for `coupler_curve`."""
     kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
     loops, frames = close(kind, operands_of(linkage, assembly), angle)
-    _, turns = move(loops, STEADY, dead_below=0.0, whole=True)
-    at = place(frames, kind.carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    _, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
+    at = link_point(frames, kind.carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
     (vx, vy), (ax, ay), _ = point_rates(at, turns)
     p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
-    frame, (omega, alpha, _) = frames[kind.carries], turns[kind.carries].push
+    frame, (omega, alpha, _) = frames[kind.carries], turns[kind.carries].tangential
     theta = np.arctan2(frame.sine, frame.cosine)
     return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
 
@@ -78,7 +78,7 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
     On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
     both assemblies.
     """
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return [_turn(linkage, pieces, _signs(linkage, same_branch))]
     ends = [(low, high) for low, high in driver_ranges(linkage).tolist() if high > low]
     single = [between(linkage, *each, each, pieces, same_branch) for each in ends]
@@ -96,7 +96,7 @@ def between(
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
     """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for a full turn."""
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)
     if index < 0:

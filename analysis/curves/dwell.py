@@ -11,9 +11,9 @@ from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.extremes import (
     Curve,
     Quantity,
-    counted_on,
-    dense_places,
+    dense_samples,
     motion_between,
+    unwrapped,
 )
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import greatest
@@ -113,8 +113,8 @@ class _Samples:
     def of(
         cls, linkage: Linkage, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
     ) -> _Samples:
-        at = even_motion(linkage, *ends).theta2(dense_places(0.0, 1.0, closed))
-        values = counted_on(at, curve(at), period)
+        at = even_motion(linkage, *ends).theta2(dense_samples(0.0, 1.0, closed))
+        values = unwrapped(at, curve(at), period)
         once = cls(curve, period, at, values, len(at))
         turning = once._turning()
         at, kept = np.unique(np.concatenate([at, turning]), return_index=True)

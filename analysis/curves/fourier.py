@@ -214,9 +214,9 @@ def _powers(coefficients: ComplexArray) -> FloatArray:
     return np.asarray(power[middle + 1 :] + power[:middle][::-1])
 
 
-def _shares(power: FloatArray, whole: float) -> FloatArray:
+def _shares(power: FloatArray, total: float) -> FloatArray:
     with np.errstate(invalid="ignore"):
-        return np.asarray(power / whole)
+        return np.asarray(power / total)
 
 
 def _refuse_swings(linkage: Linkage) -> None:

@@ -16,7 +16,7 @@ from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, LoopNames
 
 _ZERO = np.zeros(())
 STEADY = np.ones(()), _ZERO, _ZERO  # a driver at 1 rad/s
-Way: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
+Arms: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
 # Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
 # angle or of a length changes the velocities by more than a tenth.
 DEAD = 1e-7
@@ -84,7 +84,7 @@ class Frame(NamedTuple):
     cosine: FloatArray
     sine: FloatArray
     origin: Vector
-    way: Way
+    arms: Arms
 
     def arm(self, at: Vector) -> Vector:
         """A point of the link from its origin, in global axes."""
@@ -94,20 +94,20 @@ class Frame(NamedTuple):
         return u * self.cosine - v * self.sine, u * self.sine + v * self.cosine
 
 
-class Place(NamedTuple):
+class LinkPoint(NamedTuple):
     """A point of a link from O2, and the arms of links that lead to it."""
 
     x: FloatArray
     y: FloatArray
-    way: Way
+    arms: Arms
 
 
 class Loop(NamedTuple):
     """A closed loop: the dyad, C and D, and what it is closed to."""
 
     dyad: HostedDyad
-    c: Place
-    d: Place
+    c: LinkPoint
+    d: LinkPoint
     closed: Closed
 
     @property
@@ -150,36 +150,36 @@ def close(
     frames = {2: Frame(np.cos(theta2), np.sin(theta2), (_ZERO, _ZERO), ())}
     loops = []
     for first, dyad in zip((3, 5), _hosted_dyads(kind, operands), strict=False):
-        c, d = (place(frames, host, at) for host, at in zip(dyad.row.hosts, dyad.at, strict=True))
-        closed = dyad.sizes.place(d.x - c.x, d.y - c.y)
+        c, d = (link_point(frames, host, at) for host, at in zip(dyad.row.hosts, dyad.at, strict=True))
+        closed = dyad.sizes.close(d.x - c.x, d.y - c.y)
         loop = Loop(dyad, c, d, closed)
         loops.append(loop)
-        frames[first] = Frame(closed.cos3, closed.sin3, (c.x, c.y), c.way)
+        frames[first] = Frame(closed.cos3, closed.sin3, (c.x, c.y), c.arms)
         if dyad.row.kind is not DyadKind.RRP:
-            frames[first + 1] = Frame(closed.cos4, closed.sin4, (d.x, d.y), d.way)
+            frames[first + 1] = Frame(closed.cos4, closed.sin4, (d.x, d.y), d.arms)
         elif first + 1 == kind.carries:
-            frames[first + 1] = Frame(closed.sin4, -closed.cos4, loop.e, (*c.way, (first, loop.arm)))
+            frames[first + 1] = Frame(closed.sin4, -closed.cos4, loop.e, (*c.arms, (first, loop.arm)))
     return loops, frames
 
 
-def place(frames: dict[int, Frame], link: int, at: Vector) -> Place:
+def link_point(frames: dict[int, Frame], link: int, at: Vector) -> LinkPoint:
     """A point of a link; on the ground its place from O2."""
     if link == 1:
-        return Place(*at, ())
+        return LinkPoint(*at, ())
     frame = frames[link]
     (ox, oy), (x, y) = frame.origin, frame.arm(at)
-    way = (*frame.way, (link, (x, y)))
-    return Place(x, y, way) if ox is _ZERO else Place(ox + x, oy + y, way)
+    arms = (*frame.arms, (link, (x, y)))
+    return LinkPoint(x, y, arms) if ox is _ZERO else LinkPoint(ox + x, oy + y, arms)
 
 
-class Turns(NamedTuple):
-    """What the k-th derivatives of a link's angle do to a vector fixed in it: times i push - pull."""
+class Rotation(NamedTuple):
+    """What the k-th derivatives of a link's angle do to a vector fixed in it: times i tangential - normal."""
 
-    push: tuple[FloatArray, FloatArray, FloatArray]
-    pull: tuple[FloatArray, FloatArray, FloatArray]
+    tangential: tuple[FloatArray, FloatArray, FloatArray]
+    normal: tuple[FloatArray, FloatArray, FloatArray]
 
     @classmethod
-    def of(cls, omega: FloatArray, alpha: FloatArray, jerk: FloatArray) -> Turns:
+    def of(cls, omega: FloatArray, alpha: FloatArray, jerk: FloatArray) -> Rotation:
         """Of angular velocity, acceleration and jerk (Norton, *Design of Machinery*, secs. 6.7 and 7.3)."""
         square = omega * omega
         return cls((omega, alpha, jerk - square * omega), (_ZERO, square, 3 * omega * alpha))
@@ -188,8 +188,8 @@ class Turns(NamedTuple):
         """Three derivatives of an arm."""
         x, y = arm
         return [
-            (-push * y - pull * x, push * x - pull * y)
-            for push, pull in zip(self.push, self.pull, strict=True)
+            (-tangential * y - normal * x, tangential * x - normal * y)
+            for tangential, normal in zip(self.tangential, self.normal, strict=True)
         ]
 
 
@@ -206,14 +206,14 @@ def move(
     driver: tuple[FloatArray, FloatArray, FloatArray],
     dead_below: float = DEAD,
     *,
-    whole: bool = False,
-) -> tuple[list[Moving], dict[int, Turns]]:
-    """Rates of all loops to the jerk, and turns by link, with `whole` of those of the last loop, too.
+    last_too: bool = False,
+) -> tuple[list[Moving], dict[int, Rotation]]:
+    """Rates of all loops to the jerk, and turns by link, with `last_too` of those of the last loop, too.
 
     Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on such
     a one.
     """
-    turns, found = {2: Turns.of(*driver)}, []
+    turns, found = {2: Rotation.of(*driver)}, []
     for first, loop in zip((3, 5), loops, strict=False):
         sizes, closed = loop.dyad.sizes, loop.closed
         dead = np.abs(closed.margin) <= dead_below
@@ -221,12 +221,12 @@ def move(
         inverse = 1 / (np.where(dead, np.copysign(0.0, sizes.sign), closed.margin) if some else closed.margin)
         orders: tuple[Solved, ...] = sizes.rates(closed, inverse, *_projected(loop, turns, 3))
         if some:
-            ends = sizes.leading(closed, orders[0])
+            ends = sizes.growth(closed, orders[0])
             orders = (orders[0], *map(partial(_where, dead), ends, orders[1:]))
         found.append(Moving(orders, dead))
-        if whole or loop is not loops[-1]:
+        if last_too or loop is not loops[-1]:
             three, four, _ = zip(*orders, strict=True)
-            turns |= {first: Turns.of(*three), first + 1: Turns.of(*four)}
+            turns |= {first: Rotation.of(*three), first + 1: Rotation.of(*four)}
     return found, turns
 
 
@@ -243,7 +243,7 @@ def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
     omegas = {2: np.ones(np.shape(loops[-1].closed.margin))}
     found: list[Solved] = []
     for first, loop in zip((3, 5), loops, strict=False):
-        turns = {link: Turns((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
+        turns = {link: Rotation((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
         (gap,) = _projected(loop, turns, 1)
         scale = np.abs(loop.closed.margin)
         with np.errstate(invalid="ignore"):
@@ -255,32 +255,36 @@ def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
     return omegas[2], found
 
 
-def point_rates(at: Place, turns: dict[int, Turns]) -> list[Vector]:
+def point_rates(at: LinkPoint, turns: dict[int, Rotation]) -> list[Vector]:
     """Three derivatives of a point."""
     x = y = [_ZERO] * 3
-    for link, arm in at.way:
+    for link, arm in at.arms:
         moved = turns[link].moved(arm)
         x = [one + dx for one, (dx, _) in zip(x, moved, strict=True)]
         y = [one + dy for one, (_, dy) in zip(y, moved, strict=True)]
     return list(zip(x, y, strict=True))
 
 
-def _projected(loop: Loop, turns: dict[int, Turns], orders: int) -> list[Vector]:
+def _projected(loop: Loop, turns: dict[int, Rotation], orders: int) -> list[Vector]:
     """Derivatives of the gap along the two directions that its dyad faces."""
     found = []
     for ex, ey in loop.dyad.sizes.facing(loop.closed):
         total: list[FloatArray] = []
-        for link, (x, y) in loop.c.way:
-            push, pull = turns[link]
+        for link, (x, y) in loop.c.arms:
+            tangential, normal = turns[link]
             along, across = x * ex + y * ey, y * ex - x * ey
             total = _sums(
-                total, push[0] * across, *(push[k] * across + pull[k] * along for k in range(1, orders))
+                total,
+                tangential[0] * across,
+                *(tangential[k] * across + normal[k] * along for k in range(1, orders)),
             )
-        for link, (x, y) in loop.d.way:
-            push, pull = turns[link]
+        for link, (x, y) in loop.d.arms:
+            tangential, normal = turns[link]
             along, across = x * ex + y * ey, x * ey - y * ex
             total = _sums(
-                total, push[0] * across, *(push[k] * across - pull[k] * along for k in range(1, orders))
+                total,
+                tangential[0] * across,
+                *(tangential[k] * across - normal[k] * along for k in range(1, orders)),
             )
         found.append(total)
     return list(zip(*found, strict=True))

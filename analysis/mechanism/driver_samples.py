@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.analysis.mechanism.second_loop import cut, lifted
+from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
@@ -46,7 +46,7 @@ def close_samples(linkage: Linkage, start: float, end: float, count: int, *, sec
     spread[[0, -1]] = low, high
     aligned = ground_line(linkage, low, high)
     if second and len(linkage.mechanism.dyads) > 1:
-        aligned = np.concatenate([aligned, lifted(cut(linkage).extremes, low, high)])
+        aligned = np.concatenate([aligned, recurring(cut(linkage).extremes, low, high)])
     near = (aligned[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
     return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
 

@@ -5,12 +5,12 @@ derivative of the gap: J dq = dw, and so on. The determinant of J over its size 
 transmission angle with the sign of the assembly. The links are called 3 and 4 here, as in the first loop; of
 a second dyad they are links 5 and 6. Each kind has the same methods:
 
-- `place`: the dyad where its gap is (x, y); `travel`: how far its slide has gone then.
+- `close`: the dyad where its gap is (x, y); `travel`: how far its slide has gone then.
 - `facing`: two directions; a vector comes as its components along these.
 - `solve`: J^-1 of a vector times `scale`, with `inverse` = `scale` over the margin. A scale of 1 gives rates,
   one of the margin what stays finite in dead positions.
 - `rates`: three derivatives of q from those of the gap.
-- `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
+- `growth`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
 - `force`: J^T f = demands. The force on link 3 by link 4 in E, and the moment of a slide on link 4 about E.
 - `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
 - `width`: of the gap, as far as the dyad minds it; `limits`: the least and the greatest at which it closes
@@ -82,7 +82,7 @@ class Pins(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
         """E is an intersection of the circles about C and D (Norton, *Design of Machinery*, sec. 4.5).
 
         Heron's product gives its distance from C-D: m^2 - x^2 loses digits near dead positions.
@@ -132,7 +132,7 @@ class Pins(NamedTuple):
         jerk4 = (to4_3 + pull3 - pull4 * cosine) * over4 + omega4 * omega4 * omega4
         return Solved(omega3, omega4, _NONE), Solved(alpha3, alpha4, _NONE), Solved(jerk3, jerk4, _NONE)
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
         """With s the margin and `same` = cos(theta4 - theta3) = +-1 omega goes like 1/s, alpha like 1/s^3.
 
         The jerk, the rate of alpha, goes like -3 s'/s^4.
@@ -189,7 +189,7 @@ class Slider(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRP
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRP
         """With h from C to the slide, to its left, m sin(theta3 - slide) = h (Norton, sec. 4.6).
 
         The cosine comes from the product (m - h)(m + h), which keeps its digits near the dead positions.
@@ -236,7 +236,7 @@ class Slider(NamedTuple):
             Solved(turn + square * omega, still, -along_3 - rise * turn - m * cosine * mixed),
         )
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
         """With c the margin, S = sin(theta3 - slide) = +-1: omega is like 1/c, alpha S/c^3, the jerk 3/c^5.
 
         Those of the slider go like -S/c, -1/c^3 and -3 S/c^5.
@@ -290,7 +290,7 @@ class Block(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
         """The length l from C along the rod to E (Norton, sec. 4.7).
 
         With s = |D - C| it comes from (s - |offset|)(s + |offset|), which keeps its digits near dead
@@ -341,7 +341,7 @@ class Block(NamedTuple):
             Solved(third, third, jerk),
         )
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
         """Omega goes like 1/l, alpha like offset / l^3, the jerk like 3 offset^2 / l^5.
 
         Of the rod like -offset / l, -offset^2 / l^3 and -3 offset^3 / l^5.

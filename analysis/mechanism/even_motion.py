@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
-from grashof.analysis.mechanism.second_loop import cut, lifted
+from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panel_edges
+from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 
@@ -86,7 +86,7 @@ class EvenMotion:
         low, high = sorted((self.start, self.end))
         along = self.first.ground_line()
         inside = along[(along >= low) & (along <= high)] if any(self.dead) else along
-        return panelled(panels, np.concatenate([self.share(inside), self.corners]))
+        return panel_edges(panels, np.concatenate([self.share(inside), self.corners]))
 
     def _bent(self, v: FloatArray) -> FloatArray:
         """Share of the first loop's motion; its rate vanishes where the second loop is dead."""
@@ -146,5 +146,5 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
             first = first_motion(linkage, least + turned, most + turned)
             begin, finish = _unbent(first.share([start, end]), tuple(dead)).tolist()
             motion = EvenMotion(start, end, first, tuple(dead), begin, finish)
-    corners = motion.share(lifted(found.extremes, low, high))
+    corners = motion.share(recurring(found.extremes, low, high))
     return replace(motion, corners=tuple(corners.tolist()))

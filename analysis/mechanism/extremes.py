@@ -100,8 +100,8 @@ def extremes(
     def curve(share: FloatArray) -> FloatArray:
         return np.asarray(quantity(solve_kinematics(linkage, motion.theta2(share), omega2)), dtype=np.float64)
 
-    at = dense_places(0.0, 1.0, closed)
-    values = counted_on(motion.theta2(at), curve(at), period)
+    at = dense_samples(0.0, 1.0, closed)
+    values = unwrapped(motion.theta2(at), curve(at), period)
     found = refined(curve, at, values, closed, period)
     at_low, at_high = motion.theta2([found.at_low, found.at_high]).tolist()
     return Extremes(found.low, found.high, at_low, at_high)
@@ -195,11 +195,11 @@ def sampled(
     curve: Curve, start: float, end: float, closed: bool, period: float | None
 ) -> tuple[FloatArray, FloatArray]:
     """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
-    at = dense_places(start, end, closed)
-    return at, counted_on(at, np.asarray(curve(at), dtype=np.float64), period)
+    at = dense_samples(start, end, closed)
+    return at, unwrapped(at, np.asarray(curve(at), dtype=np.float64), period)
 
 
-def dense_places(start: float, end: float, closed: bool) -> FloatArray:
+def dense_samples(start: float, end: float, closed: bool) -> FloatArray:
     """Where a curve is sampled when its extremes are sought, shape (N,)."""
     share = np.linspace(0, 1, _SAMPLES)
     if not closed:  # closer towards ends that may be dead positions
@@ -209,7 +209,7 @@ def dense_places(start: float, end: float, closed: bool) -> FloatArray:
     return at
 
 
-def counted_on(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
+def unwrapped(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
     """Values at driver angles, unwrapped by `period`, shape (N,); AssemblyError where one is NaN."""
     if values.shape != theta2.shape:
         raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")

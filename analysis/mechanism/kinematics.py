@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Turns, close, move, operands_of
+from grashof.analysis.mechanism.closing import Rotation, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
@@ -357,7 +357,7 @@ def _turned(
     cosine, sine = np.cos(theta), np.sin(theta)
     arm = x, y = u * cosine - v * sine, u * sine + v * cosine
     with np.errstate(invalid="ignore", over="ignore"):
-        arms = (x, y, *chain.from_iterable(Turns.of(omega, alpha, jerk).moved(arm)))
+        arms = (x, y, *chain.from_iterable(Rotation.of(omega, alpha, jerk).moved(arm)))
         dead = ~np.isfinite(jerk) & np.isfinite(theta)
         if np.any(dead):  # the fastest growing terms alone, and nothing where there is no arm
             leading = (-alpha * y, alpha * x, -jerk * y, jerk * x)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
 from grashof.analysis.mechanism.first_loop import CHANGE, GrashofClass, first_loop, first_ranges
-from grashof.analysis.mechanism.second_loop import branches, cut, lifted
+from grashof.analysis.mechanism.second_loop import branches, cut, recurring
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
@@ -92,11 +92,11 @@ def full_rotation(linkage: Linkage) -> BoolArray:
         turns = np.array(turns)
         for index in np.argwhere(turns).tolist():
             single = linkage[tuple(index)]
-            turns[tuple(index)] = whole_turn(single) and not len(cut(single).touched)
+            turns[tuple(index)] = closes_everywhere(single) and not len(cut(single).touched)
     return turns[()]
 
 
-def whole_turn(linkage: Linkage) -> bool:
+def closes_everywhere(linkage: Linkage) -> bool:
     """Whether a single linkage closes at every driver angle, also where it has change points on the way."""
     if len(linkage.mechanism.dyads) == 1:
         return bool((rotatability(linkage) >= 0).all())
@@ -116,7 +116,7 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     first = (folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any())
     if len(linkage.mechanism.dyads) == 1:
         return bool(first)
-    return bool(first) or len(lifted(cut(linkage).touched, min(start, end), max(start, end))) > 0
+    return bool(first) or len(recurring(cut(linkage).touched, min(start, end), max(start, end))) > 0
 
 
 def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
@@ -257,7 +257,7 @@ def circuit_index(
         known = branches(linkage).circuits
         return np.where(index < 0, -1, known[index, side] if len(known) else -1)
     index, _ = range_index(linkage, theta2)
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return np.where(index < 0, -1, np.where(np.asarray(assembly) > 0, 0, 1))
     return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
 

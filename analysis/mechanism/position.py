@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Frame, Loop, close, operands_of, place
+from grashof.analysis.mechanism.closing import Frame, Loop, close, link_point, operands_of
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -67,7 +67,9 @@ class Position:
     def p(self) -> FloatArray:
         """The coupler point."""
         at = self.linkage.coupler_point
-        return self._global(place(self.frames, self.linkage.mechanism.carries, (at[..., 0], at[..., 1]))[:2])
+        return self._global(
+            link_point(self.frames, self.linkage.mechanism.carries, (at[..., 0], at[..., 1]))[:2]
+        )
 
     def point(self, name: str) -> FloatArray:
         """A point of the linkage by its name, shape (..., 2)."""

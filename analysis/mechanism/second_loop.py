@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
-from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
+from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panel_edges
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
@@ -78,8 +78,8 @@ def cut(linkage: Linkage, transmission: float = 0.0) -> Cut:
 def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float], size: float) -> Cut:
     """Of one range of the first loop."""
     curve, motion = width(linkage), first_motion(linkage, low, high)
-    whole = high - low > TURN - CHANGE
-    share, extremes = _samples(curve, motion, whole)
+    full_turn = high - low > TURN - CHANGE
+    share, extremes = _samples(curve, motion, full_turn)
 
     def missed(theta2: FloatArray) -> FloatArray:
         """How far the loop is from closing; below 0 where it closes."""
@@ -90,7 +90,7 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         return _NOTHING
     theta2, stationary, touching = motion.theta2(share), motion.theta2(extremes), CHANGE * size
     missing = missed(theta2)
-    if whole:
+    if full_turn:
         seam = int(missing.argmax())
         if missing[seam] <= touching:
             never = np.zeros((1, 2, 2), dtype=bool)
@@ -99,7 +99,7 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         theta2 = motion.theta2(np.concatenate([share[seam:], share[: seam + 1] + 1]))
         missing = np.concatenate([missing[seam:], missing[: seam + 1]])
     closed, together = missing <= 0, [False, False]
-    if not whole and len(theta2) > 1:  # what rounding leaves of both loops dead together
+    if not full_turn and len(theta2) > 1:  # what rounding leaves of both loops dead together
         for end, beside in ((0, 1), (-1, -2)):
             together[end] = bool(abs(missing[end]) <= _TOGETHER * size)
             closed[end] = closed[beside] if together[end] else closed[end]
@@ -107,12 +107,12 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         if missing[first:last].max() <= touching:
             closed[first:last] = True
     inner = closed[:-2] & closed[1:-1] & closed[2:] & (missing[1:-1] >= -touching)
-    return Cut(*_ranges(missed, theta2, closed, whole, together), stationary, theta2[1:-1][inner])
+    return Cut(*_ranges(missed, theta2, closed, full_turn, together), stationary, theta2[1:-1][inner])
 
 
-def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray, FloatArray]:
+def _samples(curve: Curve, motion: FirstMotion, full_turn: bool) -> tuple[FloatArray, FloatArray]:
     """Shares of a motion of the first loop, with all extremes of a curve among them, and these alone."""
-    share = panelled(_PANELS, motion.share(motion.ground_line()))
+    share = panel_edges(_PANELS, motion.share(motion.ground_line()))
 
     def height(at: FloatArray) -> FloatArray:
         """The width times its size, which is smooth also where it vanishes."""
@@ -120,7 +120,7 @@ def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray
         return np.asarray(values * np.abs(values))
 
     finite = np.isfinite(height(share))
-    return with_extremes(height, share[finite], periodic=whole)
+    return with_extremes(height, share[finite], periodic=full_turn)
 
 
 def _open_runs(closed: BoolArray) -> list[tuple[int, int]]:
@@ -131,7 +131,7 @@ def _open_runs(closed: BoolArray) -> list[tuple[int, int]]:
 
 
 def _ranges(
-    missed: Curve, theta2: FloatArray, closed: BoolArray, whole: bool, together: list[bool]
+    missed: Curve, theta2: FloatArray, closed: BoolArray, full_turn: bool, together: list[bool]
 ) -> tuple[FloatArray, BoolArray]:
     """Ranges of the driver, and which loops are dead at their ends."""
     change = np.flatnonzero(closed[1:] != closed[:-1])
@@ -140,9 +140,9 @@ def _ranges(
     ends = last_where(lambda angle: missed(angle) <= 0, inside, outside).tolist()
     dead = [(False, True)] * len(ends)
     if closed[0]:
-        ends, dead = [float(theta2[0]), *ends], [(not whole, together[0]), *dead]
+        ends, dead = [float(theta2[0]), *ends], [(not full_turn, together[0]), *dead]
     if closed[-1]:
-        ends, dead = [*ends, float(theta2[-1])], [*dead, (not whole, together[1])]
+        ends, dead = [*ends, float(theta2[-1])], [*dead, (not full_turn, together[1])]
     ranges = np.array(ends).reshape(-1, 2)
     turns = np.round(ranges.mean(axis=-1, keepdims=True) / TURN)
     return ranges - TURN * turns, np.array(dead, dtype=bool).reshape(-1, 2, 2)
@@ -175,7 +175,7 @@ def branches(linkage: Linkage) -> Branches:
     return Branches(ranges, assembly, np.unique(circuits, return_inverse=True)[1].reshape(-1, 2))
 
 
-def lifted(angles: FloatArray, low: float, high: float) -> FloatArray:
+def recurring(angles: FloatArray, low: float, high: float) -> FloatArray:
     """All counts of some angles between two driver angles, ascending."""
     counts = np.arange(np.floor((low - TURN) / TURN), np.ceil((high + TURN) / TURN) + 1)
     every = np.sort((angles % TURN + TURN * counts[:, None]).ravel())

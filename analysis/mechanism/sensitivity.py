@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Loop, Place, close, operands_of, place
+from grashof.analysis.mechanism.closing import LinkPoint, Loop, close, link_point, operands_of
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -46,7 +46,7 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     """
     varied = _Varied(linkage, theta2, assembly)
     carries = linkage.mechanism.carries
-    at = place(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    at = link_point(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
     turn = varied.turns[carries]
     moved = varied.add(varied.moved(at, carries), varied.along(carries, "u", "v"))
     return np.moveaxis(np.stack([moved.real, moved.imag, turn]), (0, 1), (-2, -1))
@@ -83,11 +83,11 @@ class _Varied:
         unit = np.ones((), dtype=complex) if link == 1 else _complex(self.frames[link][:2])
         return dict(zip(names, (unit, np.asarray(1j * unit)), strict=False))
 
-    def moved(self, at: Place, link: int) -> ComplexArray:
+    def moved(self, at: LinkPoint, link: int) -> ComplexArray:
         """How a point moves with the link that carries it; one of the ground does not."""
         if link == 1:
             return np.zeros(self.origins[2].shape, dtype=complex)
-        _, arm = at.way[-1]
+        _, arm = at.arms[-1]
         carried: ComplexArray = 1j * _complex(arm) * self.turns[link]
         return self.origins[link] + carried
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import counted_on, motion_between
+from grashof.analysis.mechanism.extremes import motion_between, unwrapped
 from grashof.analysis.mechanism.first_loop import first_loop
 from grashof.analysis.mechanism.kinematics import is_slider
 from grashof.analysis.mechanism.mobility import full_rotation
@@ -170,7 +170,7 @@ def link_stroke(
     share, _ = with_extremes(lambda at: moving(motion.theta2(at))[1], motion.edges(_PANELS), periodic=turns)
     theta2 = motion.theta2(np.append(share, share[0] + 1) if turns else share)
     raw, velocity = moving(theta2)
-    value = counted_on(theta2, raw, None if slides else TURN)
+    value = unwrapped(theta2, raw, None if slides else TURN)
     rises = velocity > 0
     if not turns:  # of a dead position of another loop the sine vanishes, too
         rises[0], rises[-1] = rises[1], rises[-2]

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from grashof.analysis.mechanism.closing import dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_loop
 from grashof.analysis.mechanism.mobility import full_rotation, rotatability
-from grashof.analysis.mechanism.second_loop import cut, lifted, width
+from grashof.analysis.mechanism.second_loop import cut, recurring, width
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.errors import wrong_value
@@ -116,7 +116,7 @@ def transmission_at_extremes(
     """Driver angles of a single linkage at extremes of mu of a loop and at the ends, and mu, each (N,)."""
     low, high = min(start, end), max(start, end)
     if loop != 1:
-        at = np.concatenate([[start, end], lifted(cut(linkage).extremes, low, high)])
+        at = np.concatenate([[start, end], recurring(cut(linkage).extremes, low, high)])
         return at, transmission_angle(linkage, at, loop)
     theta1 = float(linkage.theta1)
     along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, solve_position
@@ -42,28 +42,24 @@ def assert_double(linkage: FourBar, found: DoublePoints) -> None:
         np.testing.assert_allclose(p, [point, point], rtol=0, atol=3e-12 * size)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_one_turn_has_those_of_the_sampled_curve(seed: int) -> None:
-    linkage = random_full_crank(np.random.default_rng(1000 + seed))
-    theta2 = 0.1 + np.linspace(0, 2 * np.pi, 1201)
-    sampled = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
-    found = double_points(linkage, theta2[0], theta2[-1])
-    assert_double(linkage, found)
-    assert len(found) == len(sampled)
-    for pair in sampled:
-        assert np.abs(found.theta2 - pair).max(axis=1).min() < 2e-2
-
-
-def test_the_sampled_curves_above_have_double_points() -> None:
-    linkages = [random_full_crank(np.random.default_rng(1000 + seed)) for seed in range(40)]
-    counts = [len(double_points(linkage)) for linkage in linkages]
+def test_one_turn_has_those_of_the_sampled_curve() -> None:
+    counts = []
+    for seed in range(12):
+        linkage = random_full_crank(np.random.default_rng(1000 + seed))
+        theta2 = 0.1 + np.linspace(0, 2 * np.pi, 1201)
+        sampled = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
+        found = double_points(linkage, theta2[0], theta2[-1])
+        assert_double(linkage, found)
+        assert len(found) == len(sampled)
+        counts.append(len(found))
+        for pair in sampled:
+            assert np.abs(found.theta2 - pair).max(axis=1).min() < 2e-2
     assert min(counts) == 0
-    assert max(counts) >= 1
-    assert sum(counts) >= 5
+    assert sum(counts) >= 3
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(data=st.data())
 def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))
@@ -85,7 +81,7 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(data=st.data())
 def test_o2_o4_is_seen_from_them_as_a_b_from_p(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject
@@ -95,6 +91,7 @@ def test_o2_o4_is_seen_from_them_as_a_b_from_p(
     assert_double(linkage, every)
     assert len(every) <= 3
     w = complex(*linkage.coupler_point)
+    assume(min(abs(w), abs(w - linkage.r3)) > 1e-6 * linkage.r3)  # beside A or B the angle at P has no digits
     for point in every.points @ [1, 1j]:
         seen = (point - complex(*linkage.o4)) / (point - complex(*linkage.o2))
         coupler = (w - linkage.r3) / w
@@ -147,7 +144,7 @@ def test_arcs_have_none() -> None:
     assert len(all_double_points(FourBar((0, 0), (10, 0), 1, 2, 3, coupler_point=(1, 1)))) == 0
 
 
-@settings(max_examples=30)
+@settings(max_examples=6)
 @given(turn=st.floats(-3, 3), scale=st.floats(0.01, 100), shift=st.floats(-5, 5))
 def test_they_move_with_the_linkage(turn: float, scale: float, shift: float) -> None:
     plain = FourBar((0, 0), (4, 0), 2, 4, 3, coupler_point=(2, -3))

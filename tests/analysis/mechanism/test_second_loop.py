@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from body_coordinates import circuit, follow, margins, reach, start
 from body_plans import Array, Plan, plan_of
-from random_linkages import ROWS, six_bars, swinging_six_bars
+from random_linkages import six_bars, swinging_six_bars
 
 from grashof.analysis import (
     branch_index,
@@ -31,7 +31,8 @@ from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar, InvertedSliderCrank, ProblemError, SixBar
 
 TURN = 2 * np.pi
-COUNT = 20  # of each sort and row: 320 linkages
+COUNT = 10  # of each sort and row
+FEW = ("pins 2 4", "pins 3 1", "slide 4 1")  # all hosts, with and without a slide
 
 
 @dataclass
@@ -44,10 +45,10 @@ class Judged:
     q: Array
 
 
-@pytest.fixture(scope="module", params=ROWS)
+@pytest.fixture(scope="module", params=FEW)
 def judged(request: pytest.FixtureRequest) -> Judged:
     """Those whose second loop alone may stop the driver, and others."""
-    rng = np.random.default_rng(list(ROWS).index(request.param))
+    rng = np.random.default_rng(FEW.index(request.param))
     swinging, theta = swinging_six_bars(request.param, COUNT, rng)
     turning = six_bars(request.param, COUNT, rng, turning=False)
     names = [row.name for row in swinging.mechanism.parameters]
@@ -179,9 +180,9 @@ def intersection(one: Array, other: Array) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("limit", [0.0, 0.4])
 def test_ranges_of_two_four_bars_on_one_crank(limit: float) -> None:
-    linkage, first, second, ahead = twins(60, 5)
+    linkage, first, second, ahead = twins(24, 5)
     counts = set()
-    for k in range(60):
+    for k in range(24):
         own = driver_ranges(linkage[k], limit)
         both = intersection(driver_ranges(first[k], limit), driver_ranges(second[k], limit) - ahead[k])
         own = own[np.isfinite(own[:, 0])]
@@ -196,7 +197,7 @@ def test_ranges_of_two_four_bars_on_one_crank(limit: float) -> None:
 
 
 def test_transmission_of_two_four_bars_on_one_crank() -> None:
-    linkage, first, second, ahead = twins(40, 6)
+    linkage, first, second, ahead = twins(12, 6)
     theta2 = np.linspace(0, TURN, 50)[:, None]
     both = [transmission_angle(first, theta2), transmission_angle(second, theta2 + ahead)]
     np.testing.assert_allclose(transmission_angle(linkage, theta2), both[0], atol=1e-12)
@@ -213,7 +214,7 @@ def test_transmission_of_two_four_bars_on_one_crank() -> None:
 
 
 def test_least_and_largest_transmission_angles_are_those_of_dense_samples() -> None:
-    for row in ROWS:
+    for row in FEW:
         linkage = six_bars(row, 4, np.random.default_rng(2), turning=False)[1]
         low, high = driver_ranges(linkage)[0].tolist()
         theta2 = even_motion(linkage, low, high).theta2(np.linspace(0, 1, 4001))
@@ -253,12 +254,9 @@ def test_a_circuit_goes_on_through_a_dead_position_of_the_first_loop(side: int) 
     assert branch_index(linkage, 0.5, [1, -1, 1, -1], [1, 1, -1, -1]).tolist() == [0, 2, 1, 3]
 
 
-BOTH_DEAD = ((5, 1), (1, -3), (-2, 2))
-
-
-@pytest.mark.parametrize("far", [True, False])
-@pytest.mark.parametrize("hosts", [(3, 1), (4, 1)])
-@pytest.mark.parametrize("d", BOTH_DEAD)
+@pytest.mark.parametrize(
+    ("hosts", "d", "far"), [((3, 1), (5, 1), True), ((4, 1), (1, -3), False), ((3, 1), (-2, 2), False)]
+)
 def test_both_loops_dead_together(hosts: tuple[int, int], d: tuple[float, float], far: bool) -> None:
     """The second loop is just stretched or folded where the first one stops: one assembly gets there."""
     four = FourBar((0, 0), (4, 0), 2, 2, 3)
@@ -290,7 +288,10 @@ def _last_end(linkage: Any) -> float:
 
 def test_two_intervals_of_one_circuit() -> None:
     """From one to the other through the first loop's other assembly."""
-    joined = _two_of_one()
+    joined = SixBar(
+        (1.524, -1.525), (3.471, -2.323), 0.7215, 1.402, 1.1308, c=(0.1236, 1.5784), d=(-0.8381, 0.6784),
+        r5=1.4879, r6=3.4342, hosts=(3, 4), assembly=-1, assembly_2=-1,
+    )  # fmt: skip
     ranges = driver_ranges(joined)
     assert np.isfinite(ranges).sum() >= 4
     middles = ranges[:2].mean(axis=-1)
@@ -349,8 +350,8 @@ def test_a_through_o4_of_an_inverted_slider_crank() -> None:
 
 
 def test_limit_positions_are_those_of_the_closed_form() -> None:
-    linkage = six_bars("pins 4 1", 12, np.random.default_rng(8))
-    for k in range(12):
+    linkage = six_bars("pins 4 1", 4, np.random.default_rng(8))
+    for k in range(4):
         first = FourBar(*linkage[k].parameters[:5], assembly=linkage[k].assembly)
         found, known = link_stroke(linkage[k], 4), link_stroke(first)
         np.testing.assert_allclose(found.theta2, known.theta2, atol=1e-10)
@@ -362,8 +363,8 @@ def test_limit_positions_are_those_of_the_closed_form() -> None:
 @pytest.mark.parametrize("row", ["pins 3 1", "slide 3 1"])
 def test_strokes_of_link_6_are_its_extremes(row: str) -> None:
     for turning in (True, False):
-        linkage = six_bars(row, 6, np.random.default_rng(4), turning)
-        for k in range(6):
+        linkage = six_bars(row, 3, np.random.default_rng(4), turning)
+        for k in range(3):
             found = link_stroke(linkage[k])
             if np.isnan(found.stroke):
                 continue
@@ -378,14 +379,3 @@ def test_strokes_of_link_6_are_its_extremes(row: str) -> None:
             value = state.travel if slides else state.theta6
             away = (value - found.value + np.pi) % TURN - np.pi
             np.testing.assert_allclose(away, 0, atol=1e-12)
-
-
-def _two_of_one() -> Any:
-    batch, _ = swinging_six_bars("pins 3 4", 40, np.random.default_rng(1))
-    for k in range(40):
-        ranges = driver_ranges(batch[k])
-        middles = ranges[np.isfinite(ranges[:, 0])].mean(axis=-1)
-        index = circuit_index(batch[k], middles, batch[k].assembly)
-        if len(index) == 2 and index[0] == index[1]:
-            return batch[k]
-    raise LookupError
