@@ -13,9 +13,14 @@ from grashof.analysis.curves.fit import (
     regression,
 )
 from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
-from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
-from grashof.analysis.curves.path_fits import FittedPath, PathFit
+from grashof.analysis.curves.path_fits import (
+    FittedPath,
+    NewtonPolynomial,
+    PathFit,
+    newton_interpolation,
+    spline,
+)
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.cylinder.lengths import CylinderState, cylinder_state
 from grashof.analysis.forces.balancing import (
@@ -57,8 +62,14 @@ from grashof.analysis.forces.reciprocating import (
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
-from grashof.analysis.four_bar.coupler_circles import Centrodes, CouplerCircles, centrodes, coupler_circles
-from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.four_bar.instant_centres import (
+    Centrodes,
+    CouplerCircles,
+    InstantCentres,
+    centrodes,
+    coupler_circles,
+    instant_centres,
+)
 from grashof.analysis.four_bar.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.four_bar.pumping_unit import (
     ReducerTorque,
@@ -80,9 +91,14 @@ from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.mechanism.driver_law import DriverLaw, DriverMotion, driver_motion
-from grashof.analysis.mechanism.driver_samples import driver_samples
-from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
-from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes
+from grashof.analysis.mechanism.even_motion import EvenMotion, driver_samples, even_motion
+from grashof.analysis.mechanism.extremes import (
+    Extremes,
+    extremes,
+    extremes_of,
+    reach_box,
+    transmission_extremes,
+)
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
 from grashof.analysis.mechanism.mobility import (
@@ -96,7 +112,6 @@ from grashof.analysis.mechanism.mobility import (
     triple_rocker_kind,
 )
 from grashof.analysis.mechanism.position import Position, solve_position
-from grashof.analysis.mechanism.reach import reach_box
 from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.stroke import LinkStroke, OutputStroke, link_stroke, output_stroke
 from grashof.analysis.mechanism.transmission import (

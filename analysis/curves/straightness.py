@@ -9,10 +9,10 @@ import numpy as np
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.line_and_circle import BestLine
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.kinematics import virtual_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
 from grashof.problems import AssemblyError, Linkage

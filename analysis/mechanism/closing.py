@@ -1,4 +1,4 @@
-"""A linkage closed, dyad after dyad: where the frames of its links are, and how they move."""
+"""A linkage closed, dyad after dyad: positions and rates of the frames of its links."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, LoopNames
 _ZERO = np.zeros(())
 STEADY = np.ones(()), _ZERO, _ZERO  # a driver at 1 rad/s
 Arms: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
-# Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
-# angle or of a length changes the velocities by more than a tenth.
+# Below this sine of the transmission angle a unit in the last place of the driver angle or of a length
+# changes the velocities by more than a tenth.
 DEAD = 1e-7
 
 
@@ -31,7 +31,7 @@ class HostedDyad(NamedTuple):
 
 
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage, its first loop on `assembly`, for `close`: C, D and sizes of each dyad."""
+    """Operands of `close`: C, D and the sizes of each dyad, the first loop on `assembly`."""
     kind, o2 = linkage.mechanism, linkage.o2
     pinned = "o4" in kind.ground
     rounding = np.abs(o2).sum(axis=-1) + np.abs(linkage.o4).sum(axis=-1) if pinned else _ZERO
@@ -54,7 +54,7 @@ def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list
 
 
 def _far_end(linkage: Linkage, loop: LoopNames) -> Vector:
-    """D in the frame of its link, on the ground from O2, where the line of a slide begins."""
+    """D in the frame of its link; on the ground, and for a slide, from O2."""
     if not loop.pinned:
         return _ZERO, _ZERO
     x, y = _pair(linkage, loop.d)
@@ -87,15 +87,15 @@ class Frame(NamedTuple):
     arms: Arms
 
     def arm(self, at: Vector) -> Vector:
-        """A point of the link from its origin, in global axes."""
+        """Vector from the origin to a point of the link, in global axes."""
         u, v = at
-        if v is _ZERO:  # most joints lie on the u-axis
+        if v is _ZERO:  # as for most joints
             return u * self.cosine, u * self.sine
         return u * self.cosine - v * self.sine, u * self.sine + v * self.cosine
 
 
 class LinkPoint(NamedTuple):
-    """A point of a link from O2, and the arms of links that lead to it."""
+    """A point of a link, from O2, and the arms of links that lead to it."""
 
     x: FloatArray
     y: FloatArray
@@ -103,7 +103,7 @@ class LinkPoint(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """A closed loop: the dyad, C and D, and what it is closed to."""
+    """A closed loop: the dyad, C and D, and the directions of its links."""
 
     dyad: HostedDyad
     c: LinkPoint
@@ -124,12 +124,12 @@ class Loop(NamedTuple):
 
     @property
     def width(self) -> FloatArray:
-        """Of the gap between C and D."""
+        """Width of the gap between C and D."""
         return self.dyad.sizes.width(self.d.x - self.c.x, self.d.y - self.c.y)
 
     @property
     def travel(self) -> FloatArray:
-        """How far its slide has gone; NaN without a slide."""
+        """Travel of its slide; NaN without a slide."""
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
 
 
@@ -139,14 +139,14 @@ def dyads_of(linkage: Linkage) -> list[HostedDyad]:
 
 
 def dyad_of(linkage: Linkage, loop: int = 1) -> DyadSizes:
-    """The dyad of the first loop or of another one."""
+    """The dyad of a loop, 1 or 2."""
     return dyads_of(linkage)[loop - 1].sizes
 
 
 def close(
     kind: Mechanism, operands: Sequence[FloatArray], theta2: FloatArray
 ) -> tuple[list[Loop], dict[int, Frame]]:
-    """All loops at driver angles, and the frames of the links that carry something."""
+    """All loops at driver angles, and the frames of the links that carry joints or the coupler point."""
     frames = {2: Frame(np.cos(theta2), np.sin(theta2), (_ZERO, _ZERO), ())}
     loops = []
     for first, dyad in zip((3, 5), _hosted_dyads(kind, operands), strict=False):
@@ -163,7 +163,7 @@ def close(
 
 
 def link_point(frames: dict[int, Frame], link: int, at: Vector) -> LinkPoint:
-    """A point of a link; on the ground its place from O2."""
+    """A point of a link; on the ground `at` is from O2."""
     if link == 1:
         return LinkPoint(*at, ())
     frame = frames[link]
@@ -173,7 +173,7 @@ def link_point(frames: dict[int, Frame], link: int, at: Vector) -> LinkPoint:
 
 
 class Rotation(NamedTuple):
-    """What the k-th derivatives of a link's angle do to a vector fixed in it: times i tangential - normal."""
+    """Factors of the first three derivatives of a vector fixed in a link: i tangential - normal."""
 
     tangential: tuple[FloatArray, FloatArray, FloatArray]
     normal: tuple[FloatArray, FloatArray, FloatArray]
@@ -194,7 +194,7 @@ class Rotation(NamedTuple):
 
 
 class Moving(NamedTuple):
-    """How the links of a loop move: three derivatives by time of turns and travel, and where it is dead."""
+    """Three derivatives by time of the turns and travel of a loop, and where it is dead."""
 
     orders: tuple[Solved, ...]
     dead: BoolArray
@@ -208,10 +208,10 @@ def move(
     *,
     last_too: bool = False,
 ) -> tuple[list[Moving], dict[int, Rotation]]:
-    """Rates of all loops to the jerk, and turns by link, with `last_too` of those of the last loop, too.
+    """Rates of all loops to the jerk, and rotations by link, those of the last loop only with `last_too`.
 
-    Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on such
-    a one.
+    Infinite in dead positions, signed as the term that grows fastest; NaN in a loop that depends on such a
+    one.
     """
     turns, found = {2: Rotation.of(*driver)}, []
     for first, loop in zip((3, 5), loops, strict=False):
@@ -235,10 +235,10 @@ def _where(dead: BoolArray, one: Solved, other: Solved) -> Solved:
 
 
 def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
-    """Velocities, with a limit in dead positions, of the driver and of each loop.
+    """Velocities of the driver and of each loop, with a limit in dead positions.
 
-    The driver turns counter-clockwise by the product of all margins without their signs: each loop has adj J
-    in place of J^-1, and scales all that moves before it by its margin.
+    The driver's is the product of the absolute margins: each loop has adj J in place of J^-1, and scales all
+    that moves before it by its margin.
     """
     omegas = {2: np.ones(np.shape(loops[-1].closed.margin))}
     found: list[Solved] = []
@@ -270,25 +270,12 @@ def _projected(loop: Loop, turns: dict[int, Rotation], orders: int) -> list[Vect
     found = []
     for ex, ey in loop.dyad.sizes.facing(loop.closed):
         total: list[FloatArray] = []
-        for link, (x, y) in loop.c.arms:
-            tangential, normal = turns[link]
-            along, across = x * ex + y * ey, y * ex - x * ey
-            total = _sums(
-                total,
-                tangential[0] * across,
-                *(tangential[k] * across + normal[k] * along for k in range(1, orders)),
-            )
-        for link, (x, y) in loop.d.arms:
-            tangential, normal = turns[link]
-            along, across = x * ex + y * ey, x * ey - y * ex
-            total = _sums(
-                total,
-                tangential[0] * across,
-                *(tangential[k] * across - normal[k] * along for k in range(1, orders)),
-            )
+        for sign, arms in ((1, loop.c.arms), (-1, loop.d.arms)):
+            for link, (x, y) in arms:
+                tangential, normal = turns[link]
+                along, across = sign * (x * ex + y * ey), sign * (y * ex - x * ey)
+                rates = [tangential[0] * across]
+                rates += [tangential[k] * across + normal[k] * along for k in range(1, orders)]
+                total = [one + other for one, other in zip(total, rates, strict=True)] if total else rates
         found.append(total)
     return list(zip(*found, strict=True))
-
-
-def _sums(known: list[FloatArray], *more: FloatArray) -> list[FloatArray]:
-    return [one + other for one, other in zip(known, more, strict=True)] if known else list(more)

@@ -1,4 +1,4 @@
-"""A variable over which the first loop moves evenly, wherever it runs away from its driver."""
+"""A variable over which the first loop moves evenly, near dead positions and change points too."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from grashof.analysis.mechanism.first_loop import first_loop, first_ranges
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 
-_SLACK = 1e-9  # rad: so far past the end of a range rounding may lie
-_SHORT = 1e-6  # rad: a range below it has no room for more than its ends
+SLACK = 1e-9  # rad: rounding of the end of a range
+SHORT = 1e-6  # rad: shorter ranges are ignored
 
 
 class _Swing(Enum):
-    """How the driver moves about the ground line."""
+    """Motion of the driver with respect to the ground line."""
 
     TURNS = "turns fully"
     THROUGH = "swings through it"
@@ -28,10 +28,10 @@ class _Swing(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FirstMotion:
-    """Driver angle over a share t, 0 to 1, of a motion with which links 3 and 4 move evenly.
+    """Driver angle as a function of a share t, 0 to 1, over which links 3 and 4 move evenly.
 
-    Tangents of half angles are counted from `centre` (rad); `scale` is c or X and `modulus` the k' of
-    `first_motion`; `first` and `last` are the elliptic integral at both ends, as shares of half its period.
+    Half angles are counted from `centre` (rad); `scale` is c or X and `modulus` the k' of `first_motion`;
+    `first` and `last` are the elliptic integral at both ends, as shares of half its period.
     """
 
     start: float
@@ -44,7 +44,7 @@ class FirstMotion:
     last: float = 1.0
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
-        """Driver angle (...) in rad at shares, beyond 0 and 1 where the driver turns fully."""
+        """Driver angle (...) in rad at shares, which may exceed [0, 1] where the driver turns fully."""
         t = np.asarray(share, dtype=np.float64)
         if self.swing is _Swing.PLAIN:
             angle = self.start + (self.end - self.start) * np.sin(np.pi / 2 * t) ** 2
@@ -129,11 +129,10 @@ def first_motion(linkage: Linkage, start: float, end: float) -> FirstMotion:
     x is c sn / cn where the driver turns fully (a, b > 0), X cn where it swings through the ground line
     (b < 0 < a; the other way round phi is counted from its back), and X dn where it swings on one side of
     it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
-    c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) nothing is narrow that need be
-    met: that part is then left out of the integral.
+    c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) that factor is left out.
 
-    Slider-cranks have the same form with a and b of their own (`FirstLoop.even`). Of an inverted one b is
-    infinite, and sin mu has the diagonal A-O4 below it besides.
+    Slider-cranks have the same form with a and b of their own (`FirstLoop.even`). For an inverted one b is
+    infinite, and sin mu has the diagonal A-O4 as denominator.
     """
     plain = FirstMotion(float(start), float(end))
     home = _home(linkage, min(start, end), max(start, end))
@@ -150,13 +149,19 @@ def first_motion(linkage: Linkage, start: float, end: float) -> FirstMotion:
 
 
 def panel_edges(panels: int, shares: FloatArray) -> FloatArray:
-    """Shares that part a motion evenly, about so many, and some others."""
+    """Ends of equal panels of a motion, with further shares added."""
     edges = np.sort(np.concatenate([np.linspace(0, 1, panels + 1), np.clip(shares, 0, 1)]))
     return edges[np.diff(edges, prepend=-1) > 1e-12]
 
 
+def turns_into(least: float, most: float, low: float, high: float) -> float | None:
+    """Full turns (rad) that move a range over a part; None where it does not hold it."""
+    turned = float(TURN * np.round((low + high - least - most) / (2 * TURN)))
+    return turned if least + turned - SLACK <= low <= high <= most + turned + SLACK else None
+
+
 def _home(linkage: Linkage, low: float, high: float) -> tuple[_Swing, float, float, float] | None:
-    """How the driver moves between two angles, the angle that it is counted from, and a and b."""
+    """Motion of the driver between two angles, the angle it is counted from, and a and b."""
     a, b = first_loop(linkage).even(linkage)
     if np.isnan(a):
         return None
@@ -164,8 +169,8 @@ def _home(linkage: Linkage, low: float, high: float) -> tuple[_Swing, float, flo
     if a > 0 and b > 0:
         return _Swing.TURNS, theta1, a, b
     for least, most in first_ranges(linkage).tolist():
-        turned = TURN * np.round((low + high - least - most) / (2 * TURN))
-        if most - least > _SHORT and least + turned - _SLACK <= low <= high <= most + turned + _SLACK:
+        turned = turns_into(least, most, low, high)
+        if turned is not None and most - least > SHORT:
             half_turns = ((least + most) / 2 - theta1) / np.pi
             if a < 0 and b < 0:
                 return _Swing.BESIDE, theta1 + turned + TURN * np.round(half_turns / 2), a, b

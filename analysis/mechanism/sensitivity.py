@@ -1,4 +1,4 @@
-"""How places and angles depend on the dimensions of a linkage, at held driver angles."""
+"""Derivatives of positions and angles by the dimensions of a linkage, at fixed driver angles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grashof.problems.values.linkages.mechanism import LoopNames
 
 
 def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
-    """Derivatives of the coupler's position by the dimensions, at held driver angles.
+    """Derivatives of the coupler's position by the dimensions, at fixed driver angles.
 
     Parameters
     ----------
@@ -28,12 +28,8 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     -------
     ndarray, shape (..., 3, D), length/length and rad/length
         Rows: x and y of P, the angle of the link that carries it. Columns: the dimensions of the mechanism,
-        of a four-bar r1, r2, r3, r4, u, v. NaN where the linkage cannot close, without bound towards a dead
+        of a four-bar r1, r2, r3, r4, u, v. NaN where the linkage cannot close, unbounded near a dead
         position.
-
-    Notes
-    -----
-    The varied equations of each loop give the turns of its links: J dq = dw less what its lengths change.
 
     Examples
     --------
@@ -58,7 +54,11 @@ def turn_sensitivity(linkage: Linkage, theta2: npt.ArrayLike, link: int) -> Floa
 
 
 class _Varied:
-    """A linkage in some positions, and what each dimension turns and moves; arrays of shape (D, ...)."""
+    """Turns and displacements of the links by each dimension, in some positions; arrays of shape (D, ...).
+
+    The varied equations of each loop give the turns: J dq = dw less the derivatives of the gap by its
+    lengths.
+    """
 
     def __init__(
         self, linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
@@ -73,18 +73,18 @@ class _Varied:
             self._vary(names, loop)
 
     def add(self, moved: ComplexArray, by: dict[str, ComplexArray]) -> ComplexArray:
-        """What some dimensions move besides, added in place."""
+        """Add further displacements by some dimensions, in place."""
         for name, value in by.items():
             moved[self.names.index(name)] += value
         return moved
 
     def along(self, link: int, *names: str) -> dict[str, ComplexArray]:
-        """How a point of a link moves with its places along and across the link."""
+        """Displacements of a point of a link by its coordinates along and across the link."""
         unit = np.ones((), dtype=complex) if link == 1 else _complex(self.frames[link][:2])
         return dict(zip(names, (unit, np.asarray(1j * unit)), strict=False))
 
     def moved(self, at: LinkPoint, link: int) -> ComplexArray:
-        """How a point moves with the link that carries it; one of the ground does not."""
+        """Displacements of a point with the link that carries it; zero on the ground."""
         if link == 1:
             return np.zeros(self.origins[2].shape, dtype=complex)
         _, arm = at.arms[-1]
@@ -109,7 +109,7 @@ class _Varied:
             self.origins[second] = self.add(c + carried, {names.bars[0]: e3})
 
     def _own(self, names: LoopNames) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
-        """How C and D move with their places on their links."""
+        """Displacements of C and D by their coordinates on their links."""
         (on_c, on_d), far = names.dyad.hosts, dict[str, ComplexArray]()
         if names.links[0] == 3:
             far = {"r1": np.exp(1j * self.linkage.theta1)} if names.pinned else far

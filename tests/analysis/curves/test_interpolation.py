@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from grashof.analysis import solve_position
 from grashof.analysis.curves.fit import fit_polynomial, greatest_error
-from grashof.analysis.curves.interpolation import newton_interpolation, spline
+from grashof.analysis.curves.path_fits import newton_interpolation, spline
 from grashof.problems import FourBar
 from grashof.problems.values.errors import ProblemError
 

@@ -10,9 +10,8 @@ import pytest
 from random_linkages import six_bars
 
 from grashof.analysis import transmission_angle
-from grashof.analysis.enclosure.closure import closure_of, places
+from grashof.analysis.enclosure.closure import Pieces, closure_of, least_transmission, places
 from grashof.analysis.enclosure.interval import Centred, Interval, crank
-from grashof.analysis.enclosure.turns import Pieces, least_transmission
 from grashof.analysis.judge.planted import (
     random_full_crank,
     random_inverted_slider_crank,

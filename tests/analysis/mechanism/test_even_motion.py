@@ -18,8 +18,8 @@ from grashof.analysis import (
     solve_position,
     transmission_angle,
 )
+from grashof.analysis.mechanism.driver_law import mean_in_time, mean_over
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.analysis.mechanism.means import mean_in_time, mean_over
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar
 from grashof.problems.values.dynamics.motor import MotorSpec

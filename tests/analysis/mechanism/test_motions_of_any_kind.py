@@ -27,10 +27,9 @@ from grashof.analysis import (
     worst_transmission_cycle,
 )
 from grashof.analysis.curves.coupler_curve import tracks
-from grashof.analysis.mechanism.extremes import transmission_extremes
+from grashof.analysis.mechanism.driver_law import mean_over
+from grashof.analysis.mechanism.extremes import reach_box, transmission_extremes
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.analysis.mechanism.means import mean_over
-from grashof.analysis.mechanism.reach import reach_box
 from grashof.problems import InvertedSliderCrank, SliderCrank
 
 # Of the four-bars, tests of their own know more.

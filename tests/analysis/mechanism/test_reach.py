@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, reach_box, solve_position
+from grashof.analysis.mechanism.extremes import diagonal
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.analysis.mechanism.reach import diagonal
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=20)

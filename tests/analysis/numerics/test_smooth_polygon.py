@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis import full_rotation, solve_position, worst_transmission
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.problems import FourBar
 from grashof.problems.values.arrays import FloatArray
 
