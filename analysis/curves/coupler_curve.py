@@ -1,4 +1,4 @@
-"""The coupler curve: P with its derivatives, and its samples along the motion that a driver can make."""
+"""The coupler curve: P with its derivatives, its samples along the motions of a driver, and as a polygon."""
 
 from __future__ import annotations
 
@@ -16,8 +16,13 @@ from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, turned_from
 
-PIECES = 180  # of each range of the driver, when points are sought on the curve
-_FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
+PIECES = 180  # of each range of the driver, for the search of points on the curve
+_FINE = 180  # samples of half a turn, or of a range, from which the nodes are placed
+_CHORD = 0.01  # longest chord, as a share of the extent of the curve
+_BEND = np.radians(4)  # largest turn between chords
+_VISIBLE = 0.002  # share of the extent: turns between shorter chords do not count, as at a cusp
+_MOST = 2000
+_ROUNDS = 24
 
 
 class CouplerMotion(NamedTuple):
@@ -35,7 +40,7 @@ class CouplerMotion(NamedTuple):
 def coupler_motion(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> CouplerMotion:
-    """How P and its link move with the driver; arguments and what is not finite as for `coupler_curve`."""
+    """P and its link with derivatives by the driver angle; finite as in `coupler_curve`."""
     kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
     loops, frames = close(kind, operands_of(linkage, assembly), angle)
     _, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
@@ -56,11 +61,11 @@ def coupler_curve(
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A motion that the driver can make, in M pieces on which the curve is nearly straight.
+    """A motion of the driver in M pieces on which the curve is nearly straight.
 
     Driver angles (M,) in rad and P (S, M) at the ends of each, on the assemblies `signs`. Floor and ceiling
-    are the ends of the range that a piece lies in, infinite where the driver turns fully; if `cyclic`, the
-    first piece follows the last.
+    are the ends of the range of each piece, infinite where the driver turns fully; `cyclic` if the first
+    piece follows the last.
     """
 
     low: FloatArray
@@ -74,10 +79,9 @@ class Track:
 
 
 def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
-    """Every motion that the driver of a single linkage can make, in `pieces` a range; empty without any.
+    """All motions of the driver of a single linkage, in `pieces` per range.
 
-    On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
-    both assemblies.
+    Without dead positions on its own assembly if `same_branch`; otherwise one over all ranges and assemblies.
     """
     if closes_everywhere(linkage):
         return [_turn(linkage, pieces, _signs(linkage, same_branch))]
@@ -89,7 +93,7 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
 def between(
     linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
 ) -> Track:
-    """The part from `start` to `end` > `start` of the driver's range with these ends."""
+    """The part of a range with these `ends` from `start` to `end` > `start`."""
     signs = _signs(linkage, same_branch)
     nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, *ends, cyclic=False)
@@ -107,7 +111,7 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
 
 
 def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
-    # Closer about the ground line: there a linkage near a change point runs away from its driver.
+    # Denser about the ground line, where a linkage near a change point moves fast.
     half = closer_at_ends(0.0, np.pi, _FINE + 1)
     fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
     nodes = _nodes(linkage, fine, pieces, signs)
@@ -141,7 +145,7 @@ def _track(
 
 
 def _joined(parts: list[Track]) -> Track:
-    """Parts one after the other round the turn."""
+    """Parts in order round the turn."""
     parts = sorted(parts, key=lambda part: part.low[0])
     fields = [[getattr(part, name) for part in parts] for name in ("low", "high", "floor", "ceiling")]
     low, high, floor, ceiling = (np.concatenate(field) for field in fields)
@@ -150,20 +154,13 @@ def _joined(parts: list[Track]) -> Track:
     return Track(low, high, start, end, parts[0].signs, floor, ceiling, cyclic=True)
 
 
-_CHORD = 0.01  # share of the curve's extent: no chord is longer
-_TURN = np.radians(4)  # nor turns more against the next
-_SEEN = 0.002  # share of the extent: between shorter chords no turn is seen, as at a cusp
-_MOST = 2000
-_ROUNDS = 24
-
-
 def smooth_polygon(
     curve: Callable[[FloatArray], FloatArray], places: npt.ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Places (M,) and points (M, 2) of a curve, so close together that lines between look like it.
+    """Places (M,) and points (M, 2) of a curve, dense enough to draw it as a polygon.
 
-    Places, in order, are halved while a chord exceeds a hundredth of the extent or turns by more than 4 deg,
-    up to about 2000 in all; points are NaN where there are none.
+    Intervals of the places, in order, are halved while a chord exceeds a hundredth of the extent or turns by
+    more than 4 deg, up to about 2000 places; points may be NaN.
     """
     places = np.asarray(places, dtype=np.float64)
     points = curve(places)
@@ -178,7 +175,7 @@ def smooth_polygon(
 
 
 def _coarse(points: FloatArray) -> npt.NDArray[np.bool_]:
-    """Chords to be halved, shape (N - 1,); those at a gap are not."""
+    """Chords to halve, shape (N - 1,); none beside a gap."""
     known = points[np.isfinite(points).all(axis=1)]
     if len(known) < 2:
         return np.zeros(max(len(points) - 1, 0), dtype=bool)
@@ -189,7 +186,7 @@ def _coarse(points: FloatArray) -> npt.NDArray[np.bool_]:
     ways = np.arctan2(chords[:, 1], chords[:, 0])
     turns = np.abs(turned_from(ways[1:], ways[:-1]))
     longer = np.maximum(lengths[1:], lengths[:-1])
-    bent = (turns > _TURN) & (longer > _SEEN * extent)
+    bent = (turns > _BEND) & (longer > _VISIBLE * extent)
     coarse[1:] |= bent & (lengths[1:] > longer / 2)
     coarse[:-1] |= bent & (lengths[:-1] > longer / 2)
     return coarse

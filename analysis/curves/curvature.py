@@ -15,8 +15,8 @@ from grashof.problems.values.errors import ProblemError
 
 _SAMPLES = 1440
 _HALVINGS = 60
-_BEYOND = 1e-6  # rad: searched past the ends, so that a minimum on an end is seen
-SLACK = 1e-9  # rad: what lies so close to the end of a motion still lies in it
+_BEYOND = 1e-6  # rad: search beyond the ends, which finds a minimum at an end
+SLACK = 1e-9  # rad: rounding of the ends of a motion
 
 
 def curvature(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
@@ -33,14 +33,12 @@ def curvature(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike |
     Returns
     -------
     ndarray, shape (...), 1/length
-        Positive where the path turns left as the driver turns counter-clockwise; one divided by it is
-        the radius. Not finite in a cusp and in a dead position of the driver, NaN where the linkage
-        cannot close.
+        Positive where the path turns left as the driver turns counter-clockwise. Not finite in a cusp and in
+        a dead position of the driver, NaN where the linkage cannot close.
 
     Notes
     -----
-    (x' y'' - y' x'') / (x'^2 + y'^2)^(3/2), with the closed-form derivatives by the driver angle of
-    `coupler_curve`. It is that of the path, whatever the speed of the driver.
+    (x' y'' - y' x'') / (x'^2 + y'^2)^(3/2), with derivatives by the driver angle.
 
     Examples
     --------
@@ -60,22 +58,21 @@ def cusps(
     theta2_end: float | None = None,
     tolerance: float = 1e-6,
 ) -> FloatArray:
-    """Driver angles at which P stands still while the driver turns: cusps of its curve.
+    """Driver angles at which P stands still while the driver turns: the cusps of its curve.
 
     Parameters
     ----------
     linkage : Linkage
         A single linkage, on its own assembly.
     theta2_start, theta2_end : float, rad, optional
-        Part of the motion; without them all that the driver can do.
+        Part of the motion; by default all of it.
     tolerance : float
-        P counts as still where its speed, at a minimum, is at most this share of A's.
+        Greatest speed of P, at a minimum, as a share of that of A.
 
     Returns
     -------
     ndarray, shape (N,), rad
-        Increasing; of a driver that turns fully in [-pi, pi], else as counted in its ranges or between
-        the ends given.
+        Increasing; in [-pi, pi] if the driver turns fully, else within its ranges or the ends given.
 
     Raises
     ------
@@ -84,9 +81,8 @@ def cusps(
 
     Notes
     -----
-    In a cusp P is the instant centre of the coupler (Norton, *Design of Machinery*, ch. 6). A point
-    chosen at random has none, hence the tolerance. Where P is B (or close to it) the dead points of the
-    rocker count as well: there its arc turns back.
+    In a cusp P is the instant centre of the coupler (Norton, *Design of Machinery*, ch. 6). Where P is B (or
+    close to it) the limit positions of the rocker count as well, where its arc turns back.
 
     Examples
     --------
@@ -101,7 +97,7 @@ def cusps(
         angle = _slowest(linkage, low, high)
         angle = angle[(angle >= low - SLACK) & (angle <= high + SLACK)]
         for value in angle[np.abs(coupler_curve(linkage, angle)[1]) <= tolerance * linkage.r2]:
-            # The end of a whole turn is its start once more.
+            # The end of a full turn repeats its start.
             if not any(abs(turned_from(value, other)) < 2 * SLACK for other in still):
                 still.append(float(np.clip(value, low, high)))
     return np.sort(still)
@@ -110,7 +106,7 @@ def cusps(
 def driver_intervals(
     linkage: Linkage, theta2_start: float | None, theta2_end: float | None
 ) -> list[tuple[float, float]]:
-    """The part of the motion asked for, low end first; without ends all that the driver can do."""
+    """The part of the motion requested, low end first; all ranges of the driver without ends."""
     if theta2_start is not None and theta2_end is not None:
         low, high = sorted((float(theta2_start), float(theta2_end)))
         if not np.isfinite([low, high]).all():
@@ -127,7 +123,7 @@ def driver_intervals(
 
 
 def _slowest(linkage: Linkage, low: float, high: float) -> FloatArray:
-    """Driver angles at which the speed of P has a minimum, at an end too."""
+    """Driver angles at minima of the speed of P, ends included."""
 
     def slope(theta2: FloatArray) -> FloatArray:
         _, rate, bend = coupler_curve(linkage, theta2)

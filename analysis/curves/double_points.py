@@ -1,4 +1,4 @@
-"""Double points of the coupler curve: where it meets itself, in closed form."""
+"""Double points of the coupler curve in closed form."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _STEPS = 8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DoublePoints(ReadOnly):
-    """Where the coupler curve passes twice.
+    """Points through which the coupler curve passes twice.
 
     Parameters
     ----------
     points : ndarray, shape (N, 2), length
     theta2 : ndarray, shape (N, 2), rad
-        Driver angles of both passages; the first is less.
+        Driver angles of both passages, ascending.
     assembly : ndarray of int, shape (N, 2)
         Assemblies of both passages.
     """
@@ -41,7 +41,7 @@ class DoublePoints(ReadOnly):
 
 
 def all_double_points(linkage: FourBar) -> DoublePoints:
-    """Double points of the whole coupler curve, of both assemblies together: at most three.
+    """Double points of the complete coupler curve, both assemblies together: at most three.
 
     Parameters
     ----------
@@ -51,8 +51,7 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
     Returns
     -------
     DoublePoints
-        theta2 in [-pi, pi]. None where P is A or B, whose arcs have no isolated double point, and no
-        point that the linkage does not reach; cusps are found by `cusps`.
+        theta2 in [-pi, pi]; without cusps (see `cusps`), and empty where P is A or B, which move along arcs.
 
     Notes
     -----
@@ -61,7 +60,7 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
     Re(conj(q) (w - r3) e) = t. A second unit e solves both only where they are one equation. Their left
     sides are in proportion on the circle on which O2O4 is seen under the angle A-P-B (Roberts 1875; Hunt,
     *Kinematic Geometry of Mechanisms*, 1978): q / p = k |w| |w - r3| / (w conj(w - r3)) with k real.
-    The right sides then leave a cubic in k. A few Newton steps on P(theta2) = P(theta2') end it.
+    The right sides then leave a cubic in k. Newton steps on P(theta2) = P(theta2') refine the roots.
 
     Examples
     --------
@@ -91,15 +90,14 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
 def double_points(
     linkage: FourBar, theta2_start: float | None = None, theta2_end: float | None = None
 ) -> DoublePoints:
-    """Double points of the path that P describes in one motion of the linkage.
+    """Double points of the path of P in one motion of the linkage.
 
     Parameters
     ----------
     linkage : FourBar
         A single linkage, on its own assembly.
     theta2_start, theta2_end : float, rad, optional
-        Part of the motion, up to one turn; without them all that the driver can do, each of its ranges
-        by itself.
+        Part of the motion, up to one turn; by default each range of the driver by itself.
 
     Returns
     -------
@@ -110,10 +108,6 @@ def double_points(
     ------
     ProblemError
         Only one end of the motion is given.
-
-    Notes
-    -----
-    See `all_double_points`.
 
     Examples
     --------
@@ -145,7 +139,7 @@ def _collected(points: list[complex], angles: list[FloatArray], signs: list[IntA
 
 
 def _candidates(linkage: FourBar, w: complex) -> ComplexArray:
-    """Points at which the two equations for the direction of the coupler are one."""
+    """Points at which the two equations for the direction of the coupler coincide."""
     r1, r2, r3, r4 = map(float, linkage.lengths)
     arm, other = abs(w), abs(w - r3)
     turn = w * (w - r3).conjugate() / (arm * other)
@@ -163,7 +157,7 @@ def _candidates(linkage: FourBar, w: complex) -> ComplexArray:
 
 
 def _projective_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Real roots as quotients above / below, so that one at infinity is as good as any."""
+    """Real roots as quotients above / below, which include infinity."""
     companion, scale = np.eye(3, k=1), np.eye(3)
     companion[2], scale[2, 2] = -cubic[:3], cubic[3]
     roots = scipy.linalg.eigvals(companion, scale, homogeneous_eigvals=True)
@@ -175,7 +169,7 @@ def _projective_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _passages(linkage: FourBar, w: complex, place: complex) -> tuple[FloatArray, IntArray] | None:
-    """Driver angles and assemblies with P at a double point; None where no real linkage stands there."""
+    """Driver angles and assemblies with P at a double point; None if they are not real."""
     o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
     p, q, beyond = place - o2, place - o4, w - float(linkage.r3)
     through2 = (p.conjugate() * w, abs(p) ** 2 + abs(w) ** 2 - float(linkage.r2) ** 2)
@@ -192,7 +186,7 @@ def _passages(linkage: FourBar, w: complex, place: complex) -> tuple[FloatArray,
 
 
 def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> tuple[FloatArray, IntArray]:
-    """Newton steps that make P the same at both driver angles, as long as they do."""
+    """Newton steps towards equal P at both driver angles, while they improve."""
     gap = _gap(linkage, theta2, sign)
     for _ in range(_STEPS):
         p, rate, _ = coupler_curve(linkage, theta2, sign)

@@ -1,4 +1,4 @@
-"""Fourier series of a closed curve: what harmonics it is made of, and how few of them do."""
+"""Fourier series of a closed curve, and the errors of its first harmonics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SAMPLES = 1441
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FourierSeries:
-    """A closed curve as x + i y = sum of c_k e^(i k angle); call it to evaluate it.
+    """A closed curve as x + i y = sum of c_k e^(i k angle), evaluated by a call.
 
     Parameters
     ----------
@@ -31,11 +31,10 @@ class FourierSeries:
         -M to M. A negative one turns against the angle; k and -k together draw an ellipse.
     coefficients : ndarray of complex, shape (2 M + 1,), length
     error_max, error_rms : ndarray, shape (M + 1,), length
-        Greatest and root mean square distance from the samples, or from the curve, when only the
-        harmonics up to 0, 1, 2 ... M are kept.
+        Greatest and root mean square distance from the samples, or from the curve, with the harmonics up to
+        0, 1, ... M.
     content : ndarray, shape (M,)
-        Share of harmonics 1 to M (both senses) in the mean squared distance from the centre; NaN for a
-        curve that is a point.
+        Share of harmonics 1 to M (both senses) in the mean squared distance from the centre; NaN for a point.
     """
 
     harmonics: IntArray
@@ -58,17 +57,17 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
     Parameters
     ----------
     points : array_like, shape (N, 2), length
-        At the angles 0, 2 pi / N, 4 pi / N ...; the first one is not repeated.
+        At the angles 0, 2 pi / N, 4 pi / N ...; the first is not repeated.
 
     Returns
     -------
     FourierSeries
-        With M = N // 2 harmonics: it passes through all samples.
+        With M = N // 2 harmonics; it passes through all samples.
 
     Notes
     -----
-    The discrete transform of x + i y; for even N the highest harmonic is shared between both senses.
-    The mean squared error of a truncated series is the sum of the |c_k|^2 left out (Parseval).
+    The discrete transform of x + i y; for even N the highest harmonic is shared between both senses. The mean
+    squared error of a truncated series is the sum of the omitted |c_k|^2 (Parseval).
 
     Examples
     --------
@@ -100,19 +99,19 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
 
 
 def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
-    """First harmonics of the coupler curve in the driver angle, and how far they alone are from it.
+    """First harmonics of the coupler curve in the driver angle, with their errors from the curve.
 
     Parameters
     ----------
     linkage : Linkage
         A single one whose driver turns fully.
     top : int
-        Harmonics up to this one, from 1.
+        Highest harmonic, from 1.
 
     Returns
     -------
     FourierSeries
-        In theta2, with its errors from the curve itself, not from samples.
+        In theta2; its errors are from the curve itself, not from samples.
 
     Raises
     ------
@@ -121,9 +120,8 @@ def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
 
     Notes
     -----
-    c_k is the mean of P e^(-i k theta2), by equal steps of an `even_motion`, over which the curve is
-    periodic and smooth; their number is doubled until the means stay as they are. Near a change point
-    equal steps of the driver would take tens of thousands.
+    c_k is the mean of P e^(-i k theta2) over equal steps of an `even_motion`, doubled until the means settle.
+    Near a change point equal steps of the driver would take tens of thousands.
 
     Examples
     --------
@@ -187,12 +185,12 @@ def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
     Returns
     -------
     FourierSeries
-        In theta2: evaluate it at driver angles.
+        In theta2.
 
     Raises
     ------
     ProblemError
-        A driver that does not turn fully: its coupler curve is not a periodic function of theta2.
+        A driver that does not turn fully.
 
     Examples
     --------
@@ -208,7 +206,7 @@ def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
 
 
 def _powers(coefficients: ComplexArray) -> FloatArray:
-    """Squared size of each harmonic from 1, both senses together."""
+    """Squared amplitudes of the harmonics from 1, both senses together."""
     power = np.abs(coefficients) ** 2
     middle = len(power) // 2
     return np.asarray(power[middle + 1 :] + power[:middle][::-1])

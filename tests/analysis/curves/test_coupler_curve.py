@@ -10,14 +10,12 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
 from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.problems import FourBar
+from grashof.problems import FourBar, Linkage
 
-FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
-CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
+Linkages = Callable[[GrashofClass], st.SearchStrategy[Linkage]]
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("assembly", [1, -1])
 def test_derivatives_are_those_of_the_position(seed: int, assembly: int) -> None:
     rng = np.random.default_rng(seed)
@@ -50,13 +48,15 @@ def test_derivatives_converge_as_the_square_of_the_step() -> None:
     np.testing.assert_allclose(np.divide(*misses), 4, rtol=1e-2)
 
 
-@pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=15)
+@pytest.mark.parametrize(
+    "kind", ["double-crank", "rocker-crank", "non-Grashof", "slider-rocker", "Whitworth"]
+)
+@settings(max_examples=6)
 @given(data=st.data())
 def test_tracks_cover_every_range_and_lie_on_the_curve(
-    four_bars: FourBars, kind: GrashofClass, data: st.DataObject
+    linkages: Linkages, kind: str, data: st.DataObject
 ) -> None:
-    linkage = data.draw(four_bars(kind))
+    linkage = data.draw(linkages(GrashofClass(kind)))
     ends = driver_ranges(linkage)
     ends = ends[np.isfinite(ends[:, 0])]
     own = tracks(linkage, 60, same_branch=True)

@@ -48,8 +48,7 @@ def test_a_circle_gone_round_the_wrong_way_is_near_and_yet_far() -> None:
     assert frechet >= np.sqrt(2)
 
 
-@pytest.mark.quick("0", "7")
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [7])
 def test_a_curve_is_at_no_distance_from_itself_wherever_it_begins(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)

@@ -59,7 +59,7 @@ def test_the_crank_pin_has_one_harmonic() -> None:
     np.testing.assert_allclose(series.content, [1] + [0] * 15, atol=1e-14)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
@@ -71,10 +71,10 @@ def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None
 
 
 NEARLY_DEAD = FourBar((0, 0), (4, 0), 2, 4.5, 2.501, (2, 1))
-CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(5)]
+CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(3)]
 
 
-@pytest.mark.quick("linkage0", "linkage2", "linkage3", "linkage5")
+@pytest.mark.quick("linkage0", "linkage3")
 @pytest.mark.parametrize("linkage", [NEARLY_DEAD, *CRANKS])
 def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None:
     """However close it comes to a change point: against adaptive quadrature and a dense search."""

@@ -36,10 +36,6 @@ def test_it_is_the_least_squares_polynomial_of_full_degree() -> None:
     assert curve(between).shape == (23, 1)
 
 
-def test_divided_differences_by_hand() -> None:
-    assert newton_interpolation([1, 2, 4], [1, 4, 16]).coefficients.tolist() == [1, 3, 1]
-
-
 @pytest.mark.parametrize("link", REPORTED)
 def test_interpolation_of_the_report_is_reproduced(link: int) -> None:
     """y(x) through five of its eleven points each, judged halfway (in x) between the first two of them."""
@@ -56,13 +52,6 @@ def test_interpolation_of_the_report_is_reproduced(link: int) -> None:
         errors.append(greatest_error(curve, [halfway], [centre(link, theta2_of(there))[1]]))
     value, within = REPORTED[link]
     assert max(errors) == pytest.approx(value, rel=within)
-
-
-@pytest.mark.parametrize("link", REPORTED)
-def test_against_the_driver_angle_interpolation_is_harmless(link: int) -> None:
-    samples, fine = np.linspace(0, 30, 5), np.linspace(0, 30, 301)
-    curve = newton_interpolation(samples, centre(link, theta2_of(samples)))
-    assert greatest_error(curve, fine, centre(link, theta2_of(fine))) < 0.02
 
 
 def test_a_spline_passes_through_its_samples_and_converges_with_the_fourth_power() -> None:

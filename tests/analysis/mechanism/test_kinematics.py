@@ -14,7 +14,7 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_k
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
-CHECKED = settings(max_examples=25)
+CHECKED = settings(max_examples=8)
 TURN = 2 * np.pi
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
@@ -166,12 +166,17 @@ def test_open_positions_are_nan_and_a_single_one_is_an_error() -> None:
         solve_kinematics(nowhere, 0.0)
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
-@pytest.mark.parametrize("end", [0, 1])
-@pytest.mark.parametrize("speed", [2.0, -2.0])
-@pytest.mark.parametrize("lengths", [(4, 2, 2, 3), (4, 3, 1, 3), (5, 4, 1, 3.5), (3, 4, 2, 2.5)])
+@pytest.mark.parametrize(
+    ("lengths", "assembly", "end", "speed"),
+    [
+        ((4, 2, 2, 3), 1, 0, 2.0),
+        ((4, 3, 1, 3), -1, 1, 2.0),
+        ((5, 4, 1, 3.5), 1, 1, -2.0),
+        ((3, 4, 2, 2.5), -1, 0, -2.0),
+    ],
+)
 def test_dead_positions_are_infinite_with_the_sign_of_their_neighbourhood(
-    assembly: int, end: int, speed: float, lengths: tuple[float, ...]
+    lengths: tuple[float, ...], assembly: int, end: int, speed: float
 ) -> None:
     r1, r2, r3, r4 = lengths
     linkage = FourBar(o2=(0, 0), o4=(r1, 0), r2=r2, r3=r3, r4=r4, assembly=assembly)

@@ -26,7 +26,6 @@ from grashof.analysis import (
     worst_transmission,
     worst_transmission_cycle,
 )
-from grashof.analysis.curves.coupler_curve import tracks
 from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.analysis.mechanism.extremes import reach_box, transmission_extremes
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
@@ -34,7 +33,7 @@ from grashof.problems import InvertedSliderCrank, SliderCrank
 
 # Of the four-bars, tests of their own know more.
 CLASSES = [GrashofClass.NON_GRASHOF, *(kind for kind in GrashofClass if kind not in FOUR_BAR_CLASSES)]
-few = settings(max_examples=6)
+few = settings(max_examples=4)
 
 
 def motion_of(linkage):
@@ -43,7 +42,7 @@ def motion_of(linkage):
     return (0.3, 0.3 + 2 * np.pi) if full_rotation(linkage) else (float(low), float(high))
 
 
-def dense(start, end, count=20001):
+def dense(start, end, count=5001):
     """Driver angles, closer towards the ends."""
     return start + (end - start) * (1 - np.cos(np.linspace(0, np.pi, count))) / 2
 
@@ -78,7 +77,7 @@ def test_extremes_and_boxes_are_those_of_dense_samples(linkages, kind) -> None:
 
 @pytest.mark.parametrize("kind", CLASSES)
 def test_means_are_those_of_another_quadrature(linkages, kind) -> None:
-    @settings(max_examples=3)
+    @settings(max_examples=1)
     @given(linkages(kind))
     def check(linkage) -> None:
         start, end = motion_of(linkage)
@@ -99,12 +98,12 @@ def test_means_are_those_of_another_quadrature(linkages, kind) -> None:
 
 @pytest.mark.parametrize("kind", CLASSES)
 def test_fits_and_straightness_are_those_of_dense_samples(linkages, kind) -> None:
-    @settings(max_examples=4)
+    @settings(max_examples=2)
     @given(linkages(kind))
     def check(linkage) -> None:
         start, end = motion_of(linkage)
         end = start + 0.8 * (end - start)  # from a dead position on, where the driver swings
-        even = np.linspace(start, end, 40001)[1:]
+        even = np.linspace(start, end, 10001)[1:]
         p = solve_position(linkage, even).p
         fitted = np.stack([np.polynomial.Polynomial.fit(even, row, 4)(even) for row in p.T], axis=-1)
         r2 = 1 - ((p - fitted) ** 2).sum() / ((p - p.mean(axis=0)) ** 2).sum()
@@ -119,27 +118,6 @@ def test_fits_and_straightness_are_those_of_dense_samples(linkages, kind) -> Non
         across = (p - centre) @ normal
         size = float(linkage.lengths.sum())
         assert line.width == pytest.approx(np.ptp(across), abs=2e-3 * size)
-
-    check()
-
-
-@pytest.mark.parametrize("kind", CLASSES)
-def test_tracks_lie_on_the_curve_within_the_ranges(linkages, kind) -> None:
-    @few
-    @given(linkages(kind))
-    def check(linkage) -> None:
-        ranges = driver_ranges(linkage)
-        number = int(np.isfinite(ranges[:, 0]).sum())
-        turns = bool(full_rotation(linkage))
-        found = tracks(linkage, 60, same_branch=True)
-        assert len(found) == (1 if turns else number)
-        for track in found:
-            p = solve_position(linkage, track.low).p @ [1, 1j]
-            assert np.allclose(track.start[0], p, rtol=0, atol=1e-9 * float(linkage.lengths.sum()))
-            steps = np.abs(track.end - track.start)[0]
-            assert steps.max() < 8 * steps.mean() + 0.1 * float(linkage.lengths.sum())
-        (whole,) = tracks(linkage, 60, same_branch=False)
-        assert set(whole.signs.tolist()) == {1, -1}
 
     check()
 
@@ -187,9 +165,9 @@ AT_ANGLES = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK, *CLASSES])
+@pytest.mark.parametrize("kind", [*CLASSES[:2], GrashofClass.CRANK_SHAPER])
 def test_a_batch_is_its_linkages_one_by_one(linkages, kind) -> None:
-    @few
+    @settings(max_examples=3)
     @given(linkages(kind), linkages(kind))
     def check(one, other) -> None:
         batch = type(one)(*(np.stack(pair) for pair in zip(one.parameters, other.parameters, strict=True)))

@@ -20,7 +20,7 @@ def parabolas(bottom: FloatArray, weight: FloatArray):
     return model
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(
     st.lists(st.tuples(st.floats(-4, 4), st.floats(0.1, 10)), min_size=2, max_size=7),
     st.sampled_from([OPEN, 3.0, 1.0]),
