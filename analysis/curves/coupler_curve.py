@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, close, link_point, move, operands_of, point_rates
+from grashof.analysis.mechanism.closing import STEADY, closed_at, coupler_point, move, point_rates
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
@@ -41,13 +41,12 @@ def coupler_motion(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> CouplerMotion:
     """P and its link with derivatives by the driver angle; finite as in `coupler_curve`."""
-    kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
-    loops, frames = close(kind, operands_of(linkage, assembly), angle)
+    loops, frames = closed_at(linkage, theta2, assembly)
     _, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
-    at = link_point(frames, kind.carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    at, carries = coupler_point(linkage, frames), linkage.mechanism.carries
     (vx, vy), (ax, ay), _ = point_rates(at, turns)
     p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
-    frame, (omega, alpha, _) = frames[kind.carries], turns[kind.carries].tangential
+    frame, (omega, alpha, _) = frames[carries], turns[carries].tangential
     theta = np.arctan2(frame.sine, frame.cosine)
     return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
 

@@ -8,13 +8,13 @@ import numpy.typing as npt
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.mobility import driver_ranges, full_rotation
+from grashof.analysis.numerics.peaks import last_where
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.errors import ProblemError
 
 _SAMPLES = 1440
-_HALVINGS = 60
 _BEYOND = 1e-6  # rad: search beyond the ends, which finds a minimum at an end
 SLACK = 1e-9  # rad: rounding of the ends of a motion
 
@@ -136,8 +136,4 @@ def _slowest(linkage: Linkage, low: float, high: float) -> FloatArray:
     rising = slope(theta2)
     from_here = (rising[:-1] <= 0) & (rising[1:] > 0)
     left, right = theta2[:-1][from_here], theta2[1:][from_here]
-    for _ in range(_HALVINGS):
-        middle = (left + right) / 2
-        up = slope(middle) > 0
-        left, right = np.where(up, left, middle), np.where(up, middle, right)
-    return np.asarray((left + right) / 2)
+    return last_where(lambda at: ~(slope(at) > 0), left, right)

@@ -1,6 +1,6 @@
-"""How each kind of dyad closes, over intervals of the driver angle: its only formulas here.
+"""Closure of each kind of dyad and the transmission angle over intervals of the driver angle, with bisection.
 
-Derivatives come from those of the operations, so a dyad states its closure alone.
+A dyad states its closure alone; derivatives follow from those of the operations.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from grashof.problems.values.linkages.mechanism import DyadKind
 
 
 class Margins(NamedTuple):
-    """How far a dyad is from its dead positions: both are positive, tan^2(mu / 2) = near / far."""
+    """Distances of a dyad from its dead positions: both positive, with tan^2(mu / 2) = near / far."""
 
     near: Centred
     far: Centred
 
 
 class Rod(NamedTuple):
-    """Link 3: its direction, and how far B lies from A along it."""
+    """Link 3: its direction, and the distance of B from A along it."""
 
     direction: Vector
     ab: Centred
@@ -33,10 +33,10 @@ class Rod(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """A kind of dyad, as functions of a batch of linkages.
+    """Functions of a batch of linkages for a kind of dyad.
 
-    `margins` takes the driver's direction; `rod` besides the square root of near times far, with the sign of
-    the assembly; `reach` is of the order of near and far.
+    `margins` takes the driver's direction; `rod` also the square root of near times far with the sign of the
+    assembly; `reach` is the scale of near and far.
     """
 
     margins: Callable[[Any, Vector], Margins]
@@ -55,7 +55,7 @@ def _to_o4(linkage: FourBar | InvertedSliderCrank, driver: Vector) -> Vector:
 
 
 def _diagonal2(linkage: FourBar | InvertedSliderCrank, driver: Vector) -> Centred:
-    """|A O4|^2 = r1^2 + r2^2 - 2 r2 g.e, which holds the driver angle once."""
+    """|A O4|^2 = r1^2 + r2^2 - 2 r2 g.e, in which the driver angle occurs once."""
     gx, gy = (_number(linkage.o4[..., k]) - _number(linkage.o2[..., k]) for k in (0, 1))
     r2 = _number(linkage.r2)
     return -((driver.x * gx + driver.y * gy) * (2 * linkage.r2)) + (gx * gx + gy * gy + r2 * r2)
@@ -113,7 +113,7 @@ _CLOSURES = {
 
 
 def closure_of(linkage: Linkage) -> Closure:
-    """How the dyad of a linkage closes; ProblemError for two loops: intervals are known of one."""
+    """Closure of the dyad of a linkage; ProblemError for two loops."""
     kind = linkage.mechanism
     if len(kind.dyads) > 1:
         raise ProblemError(f"a {kind.word} has two loops; it cannot be proven by intervals")
@@ -121,7 +121,7 @@ def closure_of(linkage: Linkage) -> Closure:
 
 
 class Places(NamedTuple):
-    """Moving pivots and coupler point from O2 on in the global frame, and the direction of link 3."""
+    """Moving pivots and coupler point in the global frame, and the direction of link 3."""
 
     a: Vector
     b: Vector
@@ -130,7 +130,7 @@ class Places(NamedTuple):
 
 
 def places(linkage: Linkage, sign: FloatArray, driver: Vector) -> Places:
-    """Where a linkage is, on the assembly of a sign, for each interval of the driver; batch axes alike."""
+    """Positions of a linkage on the assembly `sign` for each interval of the driver; equal batch axes."""
     closure = closure_of(linkage)
     margins = closure.margins(linkage, driver)
     root = (margins.near * margins.far).root() * sign
@@ -144,17 +144,17 @@ def places(linkage: Linkage, sign: FloatArray, driver: Vector) -> Places:
     return Places(a, a + Vector(e3.x * rod.ab, e3.y * rod.ab), a + e3.times(u, v), e3)
 
 
-_FIRST = np.pi / 24  # rad: the widest interval to begin with
-# How near the least transmission angle is known, rad, where rounding allows it; nearer beside its limit.
+_FIRST = np.pi / 24  # rad: the widest initial interval
+# Accuracy of the least transmission angle, rad, where rounding allows it; finer beside its limit.
 _SHARP, _AT_LIMIT = 1e-8, 2e-10
-_ROUNDS = 48  # of bisection; those that are left then keep what they have
-_MOST = 2000  # intervals of a range at once, as where the angle hardly varies: then all keep what they have
+_ROUNDS = 48  # of bisection
+_MOST = 2000  # intervals of a range at once, as where the angle hardly varies, at which to stop
 _ARCTANGENT = 8 * EPS  # relative error of a computed arctangent, and a margin
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """Intervals of driver angles: `row` is the range that each is a part of, all of shape (n,)."""
+    """Intervals of driver angles, each a part of the range `row`; all of shape (n,)."""
 
     row: IntArray
     middle: FloatArray
@@ -174,7 +174,7 @@ class Pieces:
 
     @classmethod
     def wide(cls, row: IntArray, middle: FloatArray, half: FloatArray) -> Pieces:
-        """Wide enough that neighbours overlap whatever was rounded on the way to their middles."""
+        """Pieces widened so that neighbours overlap in spite of rounding."""
         return cls(row, middle, half + 8 * EPS * (np.abs(middle) + half))
 
     def halves(self, chosen: IntArray) -> Pieces:
@@ -189,10 +189,10 @@ class Pieces:
 
 @dataclass(frozen=True, slots=True)
 class Least:
-    """The least min(mu, pi - mu) over each range, in [lo, hi], shape (R,), rad; 0 where the loop opens.
+    """Bounds lo and hi, shape (R,), rad, of the least min(mu, pi - mu) over each range; 0 if the loop opens.
 
-    `gap` bounds from above how far the loop is from open at the worst middle, as a share of `Closure.reach`:
-    less than 0 where it is open. `pieces` counts the intervals.
+    `gap` is an upper bound of the distance from open at the worst middle, as a share of `Closure.reach`,
+    negative where the loop is open; `pieces` counts the intervals.
     """
 
     lo: FloatArray
@@ -206,8 +206,8 @@ def least_transmission(
 ) -> Least:
     """Enclose the least transmission angle of linkages (R,) over driver ranges in rad, in either order.
 
-    It is known nearer about `required` (rad); where that is NaN closure alone counts and `lo` is any positive
-    bound. Where `lo` is positive the loop closes all over the range, without a dead position.
+    Finer about `required` (rad); where that is NaN only closure counts and `lo` is any positive bound. Where
+    `lo` is positive the loop closes throughout the range, without a dead position.
 
     >>> from grashof.problems import FourBar
     >>> norton = FourBar(o2=[(0, 0)], o4=(100, 0), r2=40, r3=120, r4=80)

@@ -1,4 +1,4 @@
-"""Instant centres: points that two links have in common for a moment."""
+"""Instant centres, and the moving plane of the coupler: centrodes, inflection and Bresse circles."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis.forces.loads import cross
-from grashof.analysis.mechanism.kinematics import PointMotion, solve_kinematics
+from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -21,11 +21,12 @@ class InstantCentres:
     Parameters
     ----------
     i12, i23, i34, i14 : ndarray
-        The joints O2, A, B, O4; NaN for that of a slide, which is at infinity, square to it.
+        The joints O2, A, B, O4; NaN for that of a slide, at infinity square to it.
     i13 : ndarray
-        About which the coupler turns: where lines O2A and O4B meet, or their like through infinity.
+        Centre of rotation of the coupler: the intersection of O2A and O4B, or their counterparts with a
+        slide.
     i24 : ndarray
-        Where driver and output have the same velocity: where lines AB and O2O4 meet, likewise.
+        Point of equal velocity of driver and output: the intersection of AB and O2O4, likewise.
     """
 
     i12: FloatArray
@@ -52,13 +53,11 @@ def instant_centres(
     Returns
     -------
     InstantCentres
-        Not finite where the lines that meet in a centre are parallel, and where the linkage cannot
-        close.
+        Not finite where the lines to a centre are parallel, and where the linkage cannot close.
 
     Notes
     -----
-    Kennedy's rule: the centres of three links lie in one line (Norton, *Design of Machinery*,
-    sec. 6.3).
+    Kennedy's rule: the centres of three links lie on a line (Norton, *Design of Machinery*, sec. 6.3).
 
     Examples
     --------
@@ -88,7 +87,7 @@ def instant_centres(
 
 
 def _meeting(first: FloatArray, along: FloatArray, second: FloatArray, beside: FloatArray) -> FloatArray:
-    """Where two lines meet, each given by a point and a direction."""
+    """Intersection of two lines, each given by a point and a direction."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = cross(second - first, beside) / cross(along, beside)
         meeting: FloatArray = first + share[..., None] * along
@@ -100,7 +99,7 @@ _FAR = 1e12  # lengths of link 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Centrodes:
-    """The two curves that roll on each other while the coupler moves; each of shape (..., 2), length.
+    """The curves that roll on each other while the coupler moves; each of shape (..., 2), length.
 
     Parameters
     ----------
@@ -116,19 +115,19 @@ class Centrodes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CouplerCircles:
-    """Where points of the coupler have no normal, no tangential, no acceleration at all.
+    """Circles of the points of the coupler without normal or tangential acceleration.
 
     Parameters
     ----------
     pole : ndarray, shape (..., 2), length
         Instant centre I13, on both circles.
     inflection, bresse : ndarray, shape (..., 2), length
-        Centres of the inflection circle, whose points pass an inflection of their paths (no normal
-        acceleration), and of Bresse's circle, whose points have no tangential acceleration while the
-        driver turns steadily.
+        Centres of the inflection circle, whose points pass inflections of their paths (no normal
+        acceleration), and of Bresse's circle, whose points have no tangential acceleration under a steady
+        driver.
     inflection_diameter, bresse_diameter : ndarray, shape (...), length
     acceleration_pole : ndarray, shape (..., 2), length
-        Where the circles meet again: no acceleration.
+        The other intersection of the circles: no acceleration.
     """
 
     pole: FloatArray
@@ -150,11 +149,8 @@ def centrodes(linkage: Linkage, theta2: npt.ArrayLike) -> Centrodes:
     Returns
     -------
     Centrodes
-        Not finite where the coupler does not turn, and where the linkage cannot close.
-
-    Notes
-    -----
-    Norton, *Design of Machinery*, sec. 6.5.
+        Not finite where the coupler does not turn, and where the linkage cannot close (Norton, *Design of
+        Machinery*, sec. 6.5).
 
     Examples
     --------
@@ -184,16 +180,14 @@ def coupler_circles(linkage: Linkage, theta2: npt.ArrayLike) -> CouplerCircles:
     Returns
     -------
     CouplerCircles
-        Not finite where the coupler does not turn, in dead positions, and where the linkage cannot
-        close.
+        Not finite where the coupler does not turn, in dead positions, and where the linkage cannot close.
 
     Notes
     -----
-    The point of the coupler in the pole has an acceleration a; at r from the pole that is
-    a + alpha k x r - omega^2 r beside a velocity omega k x r. It has no normal part where
-    r . r = r . a / omega^2, no tangential part where r . r = r . (k x a) / alpha: circles through the
-    pole with these two vectors as diameters (Bresse 1853; Bottema & Roth, *Theoretical Kinematics*,
-    ch. 8).
+    With the acceleration a of the coupler's point in the pole, points at r from it have the acceleration a +
+    alpha k x r - omega^2 r and the velocity omega k x r. The normal part vanishes where r . r = r . a /
+    omega^2, the tangential part where r . r = r . (k x a) / alpha: circles through the pole with these two
+    vectors as diameters (Bresse 1853; Bottema & Roth, *Theoretical Kinematics*, ch. 8).
 
     Examples
     --------
@@ -215,7 +209,7 @@ def coupler_circles(linkage: Linkage, theta2: npt.ArrayLike) -> CouplerCircles:
     omega, alpha = (np.asarray(rate)[..., None] for rate in (state.omega3, state.alpha3))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         arm = _unless_far(_across(state.a.velocity) / omega, linkage)
-        there = _pole_acceleration(state.a, arm, omega, alpha)
+        there = state.a.acceleration + alpha * _across(arm) - omega**2 * arm
         pole = state.a.position + arm
         normal, tangential = there / omega**2, _across(there) / alpha
         # a + alpha k x r - omega^2 r = 0
@@ -230,17 +224,12 @@ def coupler_circles(linkage: Linkage, theta2: npt.ArrayLike) -> CouplerCircles:
         )
 
 
-def _pole_acceleration(a: PointMotion, arm: FloatArray, omega: FloatArray, alpha: FloatArray) -> FloatArray:
-    acceleration: FloatArray = a.acceleration + alpha * _across(arm) - omega**2 * arm
-    return acceleration
-
-
 def _unless_far(arm: FloatArray, linkage: Linkage) -> FloatArray:
-    """From A to the pole; NaN where it is at infinity but for rounding."""
+    """From A to the pole; NaN where the pole is at infinity but for rounding."""
     far = np.hypot(arm[..., 0], arm[..., 1]) > _FAR * linkage.r2
     return np.where(far[..., None], np.nan, arm)
 
 
 def _across(vector: FloatArray) -> FloatArray:
-    """K x vector: a quarter turn counter-clockwise."""
+    """The vector turned a quarter turn counter-clockwise."""
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)

@@ -162,6 +162,19 @@ def close(
     return loops, frames
 
 
+def closed_at(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> tuple[list[Loop], dict[int, Frame]]:
+    """`close` for a linkage, on its own assembly by default."""
+    angle = np.asarray(theta2, dtype=np.float64)
+    return close(linkage.mechanism, operands_of(linkage, assembly), angle)
+
+
+def coupler_point(linkage: Linkage, frames: dict[int, Frame]) -> LinkPoint:
+    """P of a linkage with these frames."""
+    return link_point(frames, linkage.mechanism.carries, _pair(linkage, "coupler_point"))
+
+
 def link_point(frames: dict[int, Frame], link: int, at: Vector) -> LinkPoint:
     """A point of a link; on the ground `at` is from O2."""
     if link == 1:

@@ -13,13 +13,13 @@ import scipy
 
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.numerics.peaks import last_where
 from grashof.analysis.numerics.quadrature import Curve, integrate
 from grashof.analysis.numerics.taylor import derivatives
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
 
-_HALVINGS = 60
 _BESIDE = 1e-12  # share of the time
 
 
@@ -254,12 +254,7 @@ def _measured(rows: FloatArray) -> _Shape:
 
 def _inverse(rising: Callable[[FloatArray], FloatArray], value: FloatArray) -> FloatArray:
     """Inverse of a function that rises from 0 to 1, by halving."""
-    low, high = np.zeros(np.shape(value)), np.ones(np.shape(value))
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        below = rising(middle) < value
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return np.asarray((low + high) / 2)
+    return last_where(lambda u: rising(u) < value, np.zeros(np.shape(value)), np.ones(np.shape(value)))
 
 
 _CYCLOID = _Shape(_cycloid, lambda s: _inverse(lambda u: _cycloid(u)[0], s))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Rotation, close, move, operands_of, virtual_rates
+from grashof.analysis.mechanism.closing import Rotation, close, closed_at, move, operands_of, virtual_rates
 from grashof.analysis.mechanism.dyad import Solved
 from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.analysis.numerics.blockwise import in_blocks
@@ -382,8 +382,7 @@ def virtual_motion(
 
     The speed of the driver is the product of the sines of all transmission angles.
     """
-    angle = np.asarray(theta2, dtype=np.float64)
-    loops, _ = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+    angle, (loops, _) = np.asarray(theta2, dtype=np.float64), closed_at(linkage, theta2, assembly)
     margins = tuple(loop.closed.margin for loop in loops)
     shape = np.shape(margins[-1])
     none = np.zeros(shape)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
+from grashof.analysis.mechanism.closing import closed_at, dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, GrashofClass, first_loop, first_ranges
 from grashof.analysis.mechanism.second_loop import branches, cut, recurring
 from grashof.problems import Linkage
@@ -166,7 +166,7 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
     """
     scale = max(abs(low), abs(high), 1.0)
     places = np.array([[low], [high]]) + np.array([[-scale], [scale]]) * _OUTWARDS
-    loops, _ = close(linkage.mechanism, operands_of(linkage), places)
+    loops, _ = closed_at(linkage, places)
     dead = np.any([loop.closed.margin == 0 for loop in loops], axis=0)
     first = np.where(dead.any(axis=1), dead.argmax(axis=1), 0)
     return float(places[0, first[0]]), float(places[1, first[1]])

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Frame, Loop, close, link_point, operands_of
+from grashof.analysis.mechanism.closing import Frame, Loop, closed_at, coupler_point
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -66,10 +66,7 @@ class Position:
     @cached_property
     def p(self) -> FloatArray:
         """The coupler point."""
-        at = self.linkage.coupler_point
-        return self._global(
-            link_point(self.frames, self.linkage.mechanism.carries, (at[..., 0], at[..., 1]))[:2]
-        )
+        return self._global(coupler_point(self.linkage, self.frames)[:2])
 
     def point(self, name: str) -> FloatArray:
         """A point of the linkage by its name, shape (..., 2)."""
@@ -120,10 +117,9 @@ def solve_position(
     >>> np.degrees([state.theta3, state.theta4]).round(6).tolist()
     [20.297883, 57.32488]
     """
+    loops, frames = closed_at(linkage, theta2, assembly)
     angle = np.asarray(theta2, dtype=np.float64)
-    loops, frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
-    theta2 = np.broadcast_to(angle, np.shape(loops[-1].closed.margin))
-    return Position(linkage, theta2, tuple(loops), frames)
+    return Position(linkage, np.broadcast_to(angle, np.shape(loops[-1].closed.margin)), tuple(loops), frames)
 
 
 def places(linkage: Linkage, state: Position) -> dict[str, FloatArray]:

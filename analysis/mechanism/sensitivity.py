@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import LinkPoint, Loop, close, link_point, operands_of
+from grashof.analysis.mechanism.closing import LinkPoint, Loop, closed_at, coupler_point
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -41,8 +41,7 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     [0.0, 1.0, 0.5]
     """
     varied = _Varied(linkage, theta2, assembly)
-    carries = linkage.mechanism.carries
-    at = link_point(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    carries, at = linkage.mechanism.carries, coupler_point(linkage, varied.frames)
     turn = varied.turns[carries]
     moved = varied.add(varied.moved(at, carries), varied.along(carries, "u", "v"))
     return np.moveaxis(np.stack([moved.real, moved.imag, turn]), (0, 1), (-2, -1))
@@ -64,8 +63,7 @@ class _Varied:
         self, linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
     ) -> None:
         self.linkage, self.names = linkage, linkage.mechanism.dimensions
-        angle = np.asarray(theta2, dtype=np.float64)
-        loops, self.frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+        loops, self.frames = closed_at(linkage, theta2, assembly)
         shape = np.shape(loops[-1].closed.margin)
         self.turns: dict[int, FloatArray] = {2: np.zeros((len(self.names), *shape))}
         self.origins: dict[int, ComplexArray] = {2: np.zeros((len(self.names), *shape), dtype=complex)}

@@ -335,7 +335,7 @@ def rates(plan: Plan, q: Array, omega: Any = 1.0, alpha: Any = 0.0, jerk: Any = 
 
 
 def _factorials(axes: int) -> Array:
-    """What coefficients of a series are multiplied by to be derivatives."""
+    """Factors from coefficients of a series to derivatives."""
     return np.array([1.0, 1, 2, 6]).reshape(-1, *([1] * axes))
 
 

@@ -1,4 +1,4 @@
-"""The coupler curve: derivatives against differences, tracks against the driver's ranges."""
+"""The coupler curve: derivatives, tracks over the ranges of the driver, and curves as polygons."""
 
 from collections.abc import Callable
 
@@ -7,10 +7,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
-from grashof.analysis.curves.coupler_curve import coupler_curve, tracks
+from grashof.analysis import (
+    GrashofClass,
+    driver_ranges,
+    full_rotation,
+    solve_kinematics,
+    solve_position,
+    worst_transmission,
+)
+from grashof.analysis.curves.coupler_curve import coupler_curve, coupler_motion, smooth_polygon, tracks
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar, Linkage
+from grashof.problems.values.arrays import FloatArray
 
 Linkages = Callable[[GrashofClass], st.SearchStrategy[Linkage]]
 
@@ -26,6 +34,11 @@ def test_derivatives_are_those_of_the_position(seed: int, assembly: int) -> None
         solve_position(linkage, theta2 + step, assembly).p @ [1, 1j] for step in (-h, 0, h)
     )
     np.testing.assert_array_equal(p, here)
+    moving, state = (
+        coupler_motion(linkage, theta2, assembly),
+        solve_kinematics(linkage, theta2, assembly=assembly),
+    )
+    np.testing.assert_allclose([moving.omega, moving.alpha], [state.omega3, state.alpha3], rtol=1e-9)
     near_dead = np.abs(bend) > 50 * np.abs(rate).max()  # where differences are of no use
     scale = np.abs(bend)[~near_dead].max()
     np.testing.assert_allclose(((after - before) / (2 * h) - rate)[~near_dead], 0, atol=1e-3 * scale)
@@ -76,3 +89,38 @@ def test_tracks_cover_every_range_and_lie_on_the_curve(
 
 def test_a_linkage_that_cannot_be_assembled_has_no_track() -> None:
     assert tracks(FourBar(o2=(0, 0), o4=(10, 0), r2=1, r3=2, r4=3), 60, same_branch=False) == []
+
+
+# Its driver just turns: links 3 and 4 come within 1 deg of one line, and P moves far in one degree.
+NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
+
+
+def chords(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Length of every chord as a share of the extent, and its turn against the next, rad."""
+    steps = np.diff(points, axis=0) @ [1, 1j]
+    return np.abs(steps) / np.ptp(points, axis=0).max(), np.abs(np.angle(steps[1:] / steps[:-1]))
+
+
+def test_no_chord_is_long_and_none_turns_far_beside_a_dead_position() -> None:
+    assert full_rotation(NEARLY_DEAD)
+    assert worst_transmission(NEARLY_DEAD, 0, 2 * np.pi) < np.radians(1)
+    even = np.linspace(0, 2 * np.pi, 361)
+    assert chords(solve_position(NEARLY_DEAD, even).p)[0].max() > 0.15
+    angles, points = smooth_polygon(lambda theta2: solve_position(NEARLY_DEAD, theta2).p, even)
+    lengths, turns = chords(points)
+    assert lengths.max() <= 0.01
+    assert np.degrees(turns[np.maximum(lengths[1:], lengths[:-1]) > 0.002]).max() <= 4
+    assert len(points) <= 2000
+    assert (np.diff(angles) > 0).all()
+    assert np.isin(even, angles).all()
+    np.testing.assert_array_equal(points, solve_position(NEARLY_DEAD, angles).p)
+
+
+def test_gaps_corners_and_points_that_stand_still_come_to_an_end() -> None:
+    def corner(place: FloatArray) -> FloatArray:
+        return np.column_stack([place, np.where(place > 2, np.nan, np.abs(place - 1))])
+
+    points = smooth_polygon(corner, np.linspace(0, 3, 7))[1]
+    assert np.hypot(*np.diff(points[np.isfinite(points[:, 1])], axis=0).T).max() < 0.03
+    assert len(points) < 400
+    assert len(smooth_polygon(lambda place: np.zeros((len(place), 2)), np.arange(5.0))[1]) == 5

@@ -78,7 +78,7 @@ def test_a_corner_and_a_ridge() -> None:
 @pytest.mark.quick("2")
 @pytest.mark.parametrize("seed", range(6))
 def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
-    """Against a dense search on both, ever closer about what is furthest."""
+    """Compared with a dense search on both curves, refined about the furthest points."""
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
     corners = solve_position(linkage, np.sort(rng.uniform(0, 2 * np.pi, 5 + 3 * seed))).p

@@ -85,10 +85,10 @@ def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None
         z = complex(*(solve_position(linkage, theta2).p - linkage.o2))
         return np.append(z * np.exp(-1j * harmonics * theta2), abs(z) ** 2) / (2 * np.pi)
 
-    whole = quad_vec(
+    integral = quad_vec(
         moments, theta1, theta1 + 2 * np.pi, epsabs=1e-12, epsrel=1e-12, points=[theta1 + np.pi]
     )[0]
-    expected, square = whole[:-1], whole[-1].real
+    expected, square = integral[:-1], integral[-1].real
     size = np.sqrt(square)
     shifted = expected + np.where(harmonics == 0, complex(*linkage.o2), 0.0)
     np.testing.assert_allclose(first.coefficients, shifted, rtol=0, atol=1e-11 * size)

@@ -199,7 +199,7 @@ def test_operations_hold_derivatives(work: Callable[..., Any]) -> None:
     assert_within(slope, at(angle, zero + 0.01).slope, 1e-8)
 
 
-def test_intervals_hold_exact_quotients_and_what_is_undefined() -> None:
+def test_intervals_hold_exact_quotients_and_undefined_values() -> None:
     one, zero = np.array([1.0]), np.array([0.0])
     beyond = Interval.of(one) / Interval(-one, one)
     assert beyond.lo[0] == -np.inf

@@ -51,7 +51,7 @@ def test_a_trapezoid_is_what_its_speeds_add_up_to(ramp: float, share: float) -> 
     assert float(law.at_time(share).theta2) == pytest.approx(added, abs=1e-12)
 
 
-def test_a_whole_turn_is_followed_by_the_next() -> None:
+def test_each_turn_repeats_the_first() -> None:
     law = DriverLaw(0.0, 2 * np.pi, 1.0, PROFILES["cycloid"])
     once, twice = (law.at_angle(np.array([1.0, 5.0]) + turn) for turn in (0.0, 2 * np.pi))
     np.testing.assert_allclose(once.omega2, twice.omega2, rtol=1e-12)

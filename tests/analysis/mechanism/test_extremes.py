@@ -62,8 +62,8 @@ def test_every_extreme_of_the_reference_figures(
         found = extremes(golden_linkages[name], QUANTITIES[quantity], SPEED, period=period)
         value, where = (found.high, found.at_high) if side == "max" else (found.low, found.at_low)
         largest = max(abs(found.low), abs(found.high))
-        whole_turns = TURN * np.round((value - float(expected["value"])) / TURN) if period else 0.0
-        assert abs(value - whole_turns - float(expected["value"])) <= 1e-12 * largest, label
+        full_turns = TURN * np.round((value - float(expected["value"])) / TURN) if period else 0.0
+        assert abs(value - full_turns - float(expected["value"])) <= 1e-12 * largest, label
         assert abs(np.degrees(where) % 360 - float(expected["theta2_deg"])) <= 1e-12 * 360, label
         checked += 1
     assert checked == {"pumpjack": 19, "lufkin": 8}[name]

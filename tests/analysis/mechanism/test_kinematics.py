@@ -214,7 +214,7 @@ def test_no_warning_where_the_driver_turns() -> None:
         solve_kinematics(linkage, np.linspace(0, TURN, 1000))
 
 
-def test_what_is_asked_of_a_point_is_checked() -> None:
+def test_arguments_of_a_point_are_checked() -> None:
     state = solve_kinematics(TRIPLE_ROCKER, 0.3)
     with pytest.raises(
         ProblemError, match=r"link is 5; it must be 2 \(driver\), 3 \(coupler\) or 4 \(output\)"

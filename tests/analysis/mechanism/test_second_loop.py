@@ -162,7 +162,7 @@ def twins(count: int, seed: int) -> tuple[SixBar, FourBar, FourBar, Array]:
 
 
 def intersection(one: Array, other: Array) -> list[tuple[float, float]]:
-    """Ranges in both of two sets of them, each modulo a turn; a whole turn has any ends."""
+    """Intersections of two sets of ranges modulo a turn; a full turn may have any ends."""
     found = []
     for low, high in one[np.isfinite(one[:, 0])]:
         for least, most in other[np.isfinite(other[:, 0])]:
@@ -244,7 +244,7 @@ def test_the_second_loop_alone_makes_several_ranges_of_one_turn() -> None:
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_circuit_goes_on_through_a_dead_position_of_the_first_loop(side: int) -> None:
+def test_a_circuit_continues_through_a_dead_position_of_the_first_loop(side: int) -> None:
     """A second loop with room everywhere: one circuit for each of its assemblies, of both of the first."""
     linkage = SixBar((0, 0), (4, 0), 2, 2, 3, c=(1, 0), d=(2, 0), r5=6, r6=5.99, hosts=(3, 1), assembly=side)
     np.testing.assert_allclose(

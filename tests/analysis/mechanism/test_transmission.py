@@ -134,8 +134,8 @@ def test_extremes_inside_an_interval_are_found(theta1: float, assembly: int) -> 
     def worst(start: float, end: float) -> float:
         return float(worst_transmission(linkage, theta1 + start, theta1 + end))
 
-    for whole in (-2, -1, 0, 1, 2):
-        turns = whole * TURN
+    for count in (-2, -1, 0, 1, 2):
+        turns = count * TURN
         assert worst(turns - 0.3, turns + 0.4) == pytest.approx(folded, rel=1e-12)
         assert worst(turns + 0.4, turns - 0.3) == pytest.approx(folded, rel=1e-12)
         assert worst(turns + 3, turns + 3.3) == pytest.approx(stretched, rel=1e-12)

@@ -1,4 +1,4 @@
-"""Motions of one unknown: closed forms, jumps, stiff damping, events, and where there is no motion."""
+"""Motions of one unknown: closed forms, jumps, stiff damping, events, and no motion at all."""
 
 import numpy as np
 import pytest

@@ -27,7 +27,7 @@ def test_a_kink_and_an_end_may_be_the_highest() -> None:
     np.testing.assert_allclose(places, [0.7654321, 2, 0], atol=1e-5)
 
 
-def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
+def test_curves_are_never_evaluated_beyond_their_ends() -> None:
     rng = np.random.default_rng(0)
     beyond = 0
     for _ in range(200):
@@ -43,7 +43,7 @@ def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
     assert beyond
 
 
-def test_what_is_not_a_number_is_infinite_in_its_own_curve_alone() -> None:
+def test_nan_counts_as_infinite_in_its_own_curve_alone() -> None:
     def curves(x: Floats) -> Floats:
         with np.errstate(divide="ignore"):
             return np.stack([np.where(x == 1.0, np.nan, x), np.cos(x), 1 / (x - 1.0) ** 2])
@@ -68,17 +68,17 @@ def test_few_samples_are_enough_for_a_line(count: int) -> None:
 
 def test_many_curves_each_looked_at_in_its_own_places() -> None:
     """Asked for once at the same places for all, then for each at its own."""
-    centres, asked = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
+    centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
 
     def curves(x: Floats) -> Floats:
-        asked.append(x.shape)
+        evaluated.append(x.shape)
         return np.cos(x - centres[:, None])
 
     values, places = greatest(curves, np.linspace(0, 3, 31))
     np.testing.assert_allclose(values, 1, rtol=1e-15)
     np.testing.assert_allclose(places, centres, atol=1e-7)
-    assert asked[0] == (1, 31)
-    assert {shape[0] for shape in asked[1:]} == {40}
+    assert evaluated[0] == (1, 31)
+    assert {shape[0] for shape in evaluated[1:]} == {40}
 
 
 @pytest.mark.parametrize("rounds", [2, 5, 9])
