@@ -1,8 +1,7 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
-from grashof.analysis.curves.curvature import curvature, cusps
+from grashof.analysis.curves.curvature import DoublePoints, all_double_points, curvature, cusps, double_points
 from grashof.analysis.curves.curve_distance import curve_distances
-from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
 from grashof.analysis.curves.dwell import Dwell, dwell
 from grashof.analysis.curves.fit import (
     NotAFunctionWarning,

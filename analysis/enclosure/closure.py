@@ -208,12 +208,6 @@ def least_transmission(
 
     Finer about `required` (rad); where that is NaN only closure counts and `lo` is any positive bound. Where
     `lo` is positive the loop closes throughout the range, without a dead position.
-
-    >>> from grashof.problems import FourBar
-    >>> norton = FourBar(o2=[(0, 0)], o4=(100, 0), r2=40, r3=120, r4=80)
-    >>> least = least_transmission(norton, np.array([0.0]), np.array([6.3]))
-    >>> np.degrees([least.lo, least.hi]).round(4).ravel().tolist()
-    [26.3843, 26.3843]
     """
     rows = len(start)
     lo, hi, gap = np.full(rows, np.inf), np.full(rows, np.pi / 2), np.full(rows, np.inf)

@@ -139,7 +139,7 @@ class CouplerCircles:
 
 
 def centrodes(linkage: Linkage, theta2: npt.ArrayLike) -> Centrodes:
-    """Fixed and moving centrode of the coupler at given driver angles.
+    """Fixed and moving centrode of the coupler at driver angles (Norton, *Design of Machinery*, sec. 6.5).
 
     Parameters
     ----------
@@ -149,8 +149,7 @@ def centrodes(linkage: Linkage, theta2: npt.ArrayLike) -> Centrodes:
     Returns
     -------
     Centrodes
-        Not finite where the coupler does not turn, and where the linkage cannot close (Norton, *Design of
-        Machinery*, sec. 6.5).
+        Not finite where the coupler does not turn, and where the linkage cannot close.
 
     Examples
     --------

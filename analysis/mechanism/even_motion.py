@@ -124,8 +124,8 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
 
     Notes
     -----
-    For the first loop elliptic functions, whose derivative by the driver angle is 1 / sin mu (Darboux 1879).
-    From a dead position of the second loop on, the root of the distance from there.
+    For the first loop t is the integral of d theta2 / sin mu, an elliptic integral (Darboux 1879). Near a
+    dead position of the second loop it is the root of the distance from there.
 
     Examples
     --------

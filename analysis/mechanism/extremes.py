@@ -86,7 +86,8 @@ def extremes(
 
     Notes
     -----
-    Dense samples, then stationary points of Chebyshev polynomials about the outermost ones.
+    Dense samples, then stationary points of Chebyshev polynomials about the outermost ones: right to rounding
+    where the quantity is smooth.
 
     Examples
     --------

@@ -39,15 +39,6 @@ def least_peak(
     largest value. A linear programme at some places, to which the peaks of its curve are added (an exchange
     method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429). NaN if a curve is not finite; SolverError if
     the programme is not solved. Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
-
-    >>> from grashof.analysis.mechanism.extremes import extremes_of
-    >>> def outermost(curve):
-    ...     found = extremes_of(curve, 0.0, 1.0)
-    ...     return found.at_low, found.at_high
-    >>> line = lambda t: np.stack([np.ones_like(t), t], axis=-1)
-    >>> found = least_peak(lambda t: t**2, line, 0.0, 1.0, outermost)
-    >>> round(found.peak, 12), (found.parameters + 0.0).round(9).tolist()
-    (0.125, [0.125, -1.0])
     """
     places = np.linspace(start, end, _SAMPLES)
     best = LeastPeak(np.zeros(effects(places[:1]).shape[-1]), np.inf)

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, solve_position
-from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
+from grashof.analysis.curves.curvature import DoublePoints, all_double_points, double_points
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
