@@ -12,10 +12,9 @@ from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.mobility import driver_ranges, full_rotation
 from grashof.analysis.numerics.peaks import last_where
-from grashof.problems import FourBar, Linkage
+from grashof.problems import FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, frozen_array, turned_from
 from grashof.problems.values.checks import number_within
-from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
 _SAMPLES = 1440

@@ -13,10 +13,9 @@ from numpy.polynomial import chebyshev, legendre
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
 _FEWEST, _MOST = 8, 512  # panels over a motion

@@ -11,10 +11,9 @@ from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
 
 _ROUNDING = 4e-15  # share of the size
 _FEWEST, _MOST = 32, 1 << 15  # steps of a turn

@@ -9,10 +9,9 @@ import numpy.typing as npt
 import scipy
 
 from grashof.analysis.mechanism.position import solve_position
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
 _STRAIGHT = 1e-11  # deviations below this share of the length are rounding

@@ -10,9 +10,9 @@ import numpy.typing as npt
 import scipy
 
 from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial, samples, turns_back
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_number
-from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.read_only import ReadOnly
 
 

@@ -15,9 +15,8 @@ from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
-from grashof.problems import AssemblyError, Linkage
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, frozen_array
-from grashof.problems.values.errors import ProblemError
 
 _PANELS = 16
 _SAMPLES = 121  # of each part, for the points furthest from its line

@@ -8,13 +8,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SixBar, SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
-from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import DyadKind
-from grashof.problems.values.linkages.six_bar import SixBar
-from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 CHANGE = 1e-12  # share of the lengths within which a linkage has a change point
 

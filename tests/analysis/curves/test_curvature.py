@@ -12,8 +12,7 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_p
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.line_and_circle import best_circle
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 

@@ -15,8 +15,7 @@ from grashof.analysis.curves.fit import (
     regression,
 )
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 
 @given(st.integers(1, 4), st.floats(-10, 10), st.floats(0.5, 10), st.integers(0, 2**16))

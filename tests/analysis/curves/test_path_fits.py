@@ -12,8 +12,7 @@ from scipy.optimize import brentq
 from grashof.analysis import FittedPath, PathFit, solve_position
 from grashof.analysis.curves.fit import fit_polynomial, greatest_error
 from grashof.analysis.curves.path_fits import DEGREES, OF_THETA2, Y_OF_X, newton_interpolation, spline
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 SLOPES = {2: 0.98387, 3: 1.03078, 4: 1.05768}
 PARAMETRIC = {2: 0.0031, 3: 0.0103, 4: 0.0098}

@@ -73,14 +73,6 @@ def test_a_part_is_as_straight_as_its_dense_samples(linkage: FourBar) -> None:
         assert np.cos(back.angle - line.angle) == pytest.approx(-1, abs=1e-12)
 
 
-def test_the_pumpjack_from_270_to_450_deg() -> None:
-    line = straightness(JACK, 1.5 * np.pi, 2.5 * np.pi)
-    assert line.deviation_max == pytest.approx(0.39842, abs=5e-6)
-    assert line.deviation_max == pytest.approx(
-        sampled(JACK, np.linspace(1.5, 2.5, 50_001) * np.pi)[2], rel=1e-8
-    )
-
-
 def ratio(line: BestLine) -> float:
     return line.width / line.length
 

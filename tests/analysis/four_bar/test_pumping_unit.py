@@ -98,18 +98,6 @@ def test_the_torque_is_that_of_the_dynamics_without_masses(well: str, crank: str
     np.testing.assert_allclose(found.torque, torque, atol=1e-9 * np.abs(torque).max())
 
 
-def test_the_work_on_the_rod_is_the_work_of_the_crank() -> None:
-    unit = PumpingUnitSpec(values=UP_AND_DOWN)
-    angles = np.linspace(0, TURN, 20001)
-    motion, load = rod_motion(LUFKIN, angles, A, unit), rod_load(unit)
-    assert load is not None
-    pull = load(angles, motion)
-    rise = motion.position * 145.55632344536175088
-    lifted = np.sum((pull[1:] + pull[:-1]) / 2 * np.diff(rise))
-    torque = reducer_torque(unit, angles, motion.torque_factor, pull).torque
-    assert np.mean(torque[:-1]) * TURN == pytest.approx(lifted, rel=1e-7)
-
-
 def test_the_permissible_load_is_that_of_the_rating() -> None:
     unit = PumpingUnitSpec(structural_unbalance=-2e3, counterbalance=4e5, rating=2e5)
     factor = rod_motion(LUFKIN, CRANK, A, unit).torque_factor

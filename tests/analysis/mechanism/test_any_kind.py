@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from grashof.analysis import (
     GrashofClass,
-    coupler_fit_r2,
     driver_ranges,
     extremes,
     full_rotation,
@@ -22,7 +21,6 @@ from grashof.analysis import (
     rotatability,
     solve_kinematics,
     solve_position,
-    straightness,
     transmission_angle,
     worst_transmission,
     worst_transmission_cycle,
@@ -238,32 +236,6 @@ def test_means_are_those_of_another_quadrature(linkages, kind) -> None:
         parts = [part(*ends) for ends in pairwise(np.linspace(start, end, 9))]
         assert error < 1e-8
         assert float(mean) == pytest.approx(sum(parts) / (end - start), abs=1e-7)
-
-    check()
-
-
-@pytest.mark.parametrize("kind", MOVING)
-def test_fits_and_straightness_are_those_of_dense_samples(linkages, kind) -> None:
-    @settings(max_examples=2)
-    @given(linkages(kind))
-    def check(linkage) -> None:
-        start, end = motion_of(linkage)
-        end = start + 0.8 * (end - start)  # from a dead position on, where the driver swings
-        even = np.linspace(start, end, 10001)[1:]
-        p = solve_position(linkage, even).p
-        fitted = np.stack([np.polynomial.Polynomial.fit(even, row, 4)(even) for row in p.T], axis=-1)
-        r2 = 1 - ((p - fitted) ** 2).sum() / ((p - p.mean(axis=0)) ** 2).sum()
-        assert coupler_fit_r2(linkage, start, end) == pytest.approx(r2, abs=2e-4)
-        line = straightness(linkage, start, end)
-        p = solve_position(linkage, dense(start, end)[1:]).p
-        step = np.hypot(*np.diff(p, axis=0).T)
-        middle = (p[1:] + p[:-1]) / 2
-        centre = (step[:, None] * middle).sum(axis=0) / step.sum()
-        spread = np.cov((middle - centre).T, aweights=step)
-        normal = np.linalg.eigh(spread)[1][:, 0]
-        across = (p - centre) @ normal
-        size = float(linkage.lengths.sum())
-        assert line.width == pytest.approx(np.ptp(across), abs=2e-3 * size)
 
     check()
 

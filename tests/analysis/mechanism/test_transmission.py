@@ -70,17 +70,6 @@ def test_worst_over_the_turn_of_the_reference_figures(
     )
 
 
-def test_bag_mechanism_at_its_poses(golden: dict[str, Any], golden_linkages: dict[str, FourBar]) -> None:
-    given, linkage = golden["bag_mechanism_exact"], golden_linkages["bag"]
-    beta = [0.0, *map(float, given["beta_deg"])]
-    angles = np.radians(float(given["theta2_pose1_deg"]) + np.array(beta))
-    expected = np.array(given["mu_at_poses_deg"], dtype=np.float64)
-    np.testing.assert_allclose(np.degrees(transmission_angle(linkage, angles)), expected, rtol=1e-12)
-    assert np.degrees(worst_transmission(linkage, angles[0], angles[-1])) == pytest.approx(
-        float(given["mu_at_poses_deg"][0]), rel=1e-12
-    )
-
-
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @CHECKED

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from grashof.analysis.numerics.peaks import greatest, own, peaks
+from grashof.analysis.numerics.peaks import greatest, peaks
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,12 +60,6 @@ def test_the_highest_of_several_stretches() -> None:
     np.testing.assert_allclose(places, [1, 2])
 
 
-@pytest.mark.parametrize("count", [2, 3, 4])
-def test_few_samples_are_enough_for_a_line(count: int) -> None:
-    values, places = peaks(lambda x: np.stack([3 * x]), [np.linspace(1, 2, count)])
-    assert (values[0], places[0]) == (6, 2)
-
-
 def test_many_curves_each_looked_at_in_its_own_places() -> None:
     """Asked for once at the same places for all, then for each at its own."""
     centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
@@ -85,12 +79,6 @@ def test_many_curves_each_looked_at_in_its_own_places() -> None:
 def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
     _, places = greatest(lambda x: -np.abs(x - 0.7654321), np.linspace(0, 2, 50), rounds=rounds)
     assert abs(places[0] - 0.7654321) <= 2 * (2 / 49) / 8**rounds + 1e-15
-
-
-def test_values_of_curves_at_their_own_places() -> None:
-    table = np.arange(18.0).reshape(3, 3, 2)
-    np.testing.assert_array_equal(own(table), [[0, 1], [8, 9], [16, 17]])
-    np.testing.assert_array_equal(own(table[:, :1]), table[:, 0])
 
 
 def test_rows_that_repeat_their_last_place_are_as_without() -> None:
