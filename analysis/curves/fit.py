@@ -5,12 +5,14 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev, legendre
 
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.mobility import one_by_one
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
 from grashof.problems import Linkage, ProblemError
@@ -230,14 +232,7 @@ def coupler_fit_r2(
     degree = whole_number(degree, 1, "degree")
     if degree > 30:
         raise ProblemError(f"degree is {degree}; it must be from 1 to 30")
-    start, end = np.asarray(theta2_start, dtype=np.float64), np.asarray(theta2_end, dtype=np.float64)
-    found = np.empty(np.broadcast_shapes(start.shape, end.shape, linkage.shape))
-    start, end = np.broadcast_to(start, found.shape), np.broadcast_to(end, found.shape)
-    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
-    member = np.broadcast_to(np.arange(len(members)).reshape(linkage.shape), found.shape)
-    for index in np.ndindex(found.shape):
-        found[index] = _settled_r2(members[member[index]], float(start[index]), float(end[index]), degree)
-    return found[()]
+    return one_by_one(partial(_settled_r2, degree), linkage, theta2_start, theta2_end)[()]
 
 
 def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -257,7 +252,7 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
     return t, y
 
 
-def _settled_r2(linkage: Linkage, start: float, end: float, degree: int) -> float:
+def _settled_r2(degree: int, linkage: Linkage, start: float, end: float) -> float:
     if start == end:
         return np.nan
     motion, panels, before = even_motion(linkage, start, end), _FEWEST, np.inf

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -146,6 +148,14 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     for index, each in found.items():
         ranges[(*index, slice(len(each)))] = each
     return ranges
+
+
+def one_by_one(function: Callable[..., float], linkage: Linkage, *angles: npt.ArrayLike) -> FloatArray:
+    """Values of a function of a single linkage and driver angles, broadcast over a batch; shape (...)."""
+    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
+    every = np.broadcast(np.arange(len(members)).reshape(linkage.shape), *map(np.asarray, angles))
+    values = [function(members[number], *map(float, at)) for number, *at in every]
+    return np.array(values, dtype=np.float64).reshape(every.shape)
 
 
 def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:

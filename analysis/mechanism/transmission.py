@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_loop
-from grashof.analysis.mechanism.mobility import full_rotation, rotatability
+from grashof.analysis.mechanism.mobility import full_rotation, one_by_one, rotatability
 from grashof.analysis.mechanism.second_loop import cut, recurring, width
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -97,15 +97,11 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     worst = np.where(odd, np.minimum(worst, quality(stretched)), worst)
     if len(linkage.mechanism.dyads) == 1:
         return worst
-    numbers = np.arange(np.prod(linkage.shape, dtype=int)).reshape(linkage.shape)
-    every = np.broadcast_arrays(start, end, numbers)
-    second = np.full(every[0].shape, np.nan)
-    for index in np.ndindex(second.shape):
-        one, other, number = (each[index] for each in every)
-        single = linkage[np.unravel_index(number, linkage.shape)]
-        second[index] = quality(transmission_at_extremes(single, float(one), float(other), 2)[1]).min()
-    least: FloatArray = np.minimum(worst, second)[()]
-    return least
+
+    def second(single: Linkage, one: float, other: float) -> float:
+        return float(quality(transmission_at_extremes(single, one, other, 2)[1]).min())
+
+    return np.asarray(np.minimum(worst, one_by_one(second, linkage, start, end)))[()]
 
 
 def transmission_at_extremes(
