@@ -98,7 +98,7 @@ def test_a_parallelogram_carries_its_coupler_without_turning_it() -> None:
     np.testing.assert_allclose(reach(plan, q, 1.0)[:, 0], [0, np.pi], atol=1e-6)
 
 
-def test_drivers_stop_where_triangles_do() -> None:
+def test_drivers_stop_where_triangles_degenerate() -> None:
     """Law of cosines for a triple-rocker; a slider-rocker whose rod stands square to its slide."""
     rocker = plan_of(FourBar((0, 0), (4, 0), 2, 2, 3))
     end = np.arccos((4**2 + 2**2 - 5**2) / (2 * 4 * 2))
@@ -115,7 +115,7 @@ def test_drivers_stop_where_triangles_do() -> None:
     assert reach(full, start(full, 0.0), 0.0).tolist() == [[-np.inf], [np.inf]]
 
 
-def test_what_cannot_be_assembled_is_nan() -> None:
+def test_linkages_that_cannot_be_assembled_are_nan() -> None:
     plan = plan_of(FourBar((0, 0), (4, 0), [1, 1, 2], [1, 4, 2], [1, 3, 3]))
     q = start(plan, [0.0, 0.0, 0.2], guesses=40)
     assert np.isfinite(q).all(axis=-1).tolist() == [False, True, True]

@@ -116,7 +116,7 @@ def test_no_chord_is_long_and_none_turns_far_beside_a_dead_position() -> None:
     np.testing.assert_array_equal(points, solve_position(NEARLY_DEAD, angles).p)
 
 
-def test_gaps_corners_and_points_that_stand_still_come_to_an_end() -> None:
+def test_gaps_corners_and_constant_points_end_the_halving() -> None:
     def corner(place: FloatArray) -> FloatArray:
         return np.column_stack([place, np.where(place > 2, np.nan, np.abs(place - 1))])
 

@@ -104,7 +104,7 @@ def test_tolerance_is_a_share_of_the_speed_of_a() -> None:
     assert cusps(blunt, tolerance=1e-3) == pytest.approx([1.0], abs=1e-3)
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     linkage = FourBar((0, 0), (4, 0), 1, 4, 3)
     with pytest.raises(ProblemError, match="one end"):
         cusps(linkage, 0.0)

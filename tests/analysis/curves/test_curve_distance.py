@@ -41,7 +41,7 @@ def test_a_polygon_about_or_in_a_circle(radius: float) -> None:
     assert frechet == pytest.approx(abs(radius - 1), abs=1e-3)
 
 
-def test_a_circle_gone_round_the_wrong_way_is_near_and_yet_far() -> None:
+def test_a_circle_in_the_wrong_sense_is_near_and_yet_far() -> None:
     hausdorff, frechet = curve_distances(DISC, CIRCLE, -1)
     assert hausdorff < 2e-4
     # Two walkers that go round in opposite senses are somewhere a quarter turn or more from each other.

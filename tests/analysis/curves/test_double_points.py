@@ -82,7 +82,7 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
 @pytest.mark.parametrize("kind", CLASSES)
 @settings(max_examples=6)
 @given(data=st.data())
-def test_o2_o4_is_seen_from_them_as_a_b_from_p(
+def test_o2_o4_subtends_the_angle_of_a_b_at_p(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject
 ) -> None:
     linkage = data.draw(four_bars(kind))

@@ -49,7 +49,7 @@ def test_the_longest_of_many_runs_across_an_edge_is_found() -> None:
     assert found.duration >= longest
 
 
-def test_what_never_leaves_the_band_dwells_all_the_time() -> None:
+def test_a_constant_dwells_throughout() -> None:
     found = dwell(CRANK_ROCKER, lambda state: np.hypot(*state.a.position.T), 1e-6)
     assert found.duration == pytest.approx(TURN)
 
@@ -69,6 +69,6 @@ def test_a_rocking_driver_may_dwell_at_its_end() -> None:
     assert found.duration == pytest.approx(0.25, abs=1e-9)
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="tolerance"):
         dwell(CRANK_ROCKER, output_angle, 0.0)

@@ -68,7 +68,7 @@ def test_no_warning_where_y_is_a_function_of_x(sense: int) -> None:
     assert regression(np.column_stack([x, x**3]), 3).powers == pytest.approx([0, 0, 0, 1])
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     for arguments, message in [
         (([0, 1], [0, 1], 2), "2 different parameters; degree 2 needs 3"),
         (([0, 0, 0, 1], [0, 1, 2, 3], 2), "2 different parameters"),

@@ -102,7 +102,7 @@ def test_first_harmonics_of_the_crank_pin() -> None:
     assert first.error_max.tolist() == [pytest.approx(1.5), 0, 0, 0, 0, 0]
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="top is 0"):
         coupler_harmonics(NEARLY_DEAD, top=0)
     with pytest.raises(ProblemError, match="does not turn fully"):

@@ -95,7 +95,7 @@ def test_points_along_a_path_are_equally_far_apart() -> None:
     np.testing.assert_allclose(points[[0, -1]], solve_position(linkage, [0.2, 5.0]).p, atol=1e-14)
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="all one"):
         best_line([[1, 1], [1, 1]])
     for points in ([[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2]], [[0.1, 0.3], [1.1, 0.6], [2.1, 0.9]]):

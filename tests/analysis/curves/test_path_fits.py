@@ -69,7 +69,7 @@ def test_newton_goes_through_every_point() -> None:
             assert near.max() < 1e-12
 
 
-def test_where_all_x_are_one_there_is_no_y_of_x() -> None:
+def test_equal_x_give_no_y_of_x() -> None:
     theta2, fine = FittedPath.angles(0.0, 1.0, 7)
     points, path = (np.stack([1 + 1e-16 * np.cos(t), t], axis=-1) for t in (theta2, fine))
     for fit in FittedPath("p", "P", theta2, points, fine, path).fits:
@@ -143,7 +143,7 @@ def test_a_closed_spline_is_smooth_across_its_start() -> None:
     assert greatest_error(curve, fine, solve_position(CRANK_ROCKER, fine).p) < 1e-4
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="two nodes are equal"):
         newton_interpolation([0, 1, 0], [1, 2, 3])
     with pytest.raises(ProblemError, match="does not increase"):

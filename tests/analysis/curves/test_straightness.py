@@ -109,7 +109,7 @@ def test_all_half_turns_of_a_circle_are_equally_straight() -> None:
     assert line.deviation_rms == pytest.approx(np.sqrt(0.5 - (2 / np.pi) ** 2), rel=1e-12)
 
 
-def test_a_driver_that_swings_all_the_way() -> None:
+def test_the_complete_range_of_a_swinging_driver() -> None:
     rocker = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
     low, high = driver_ranges(rocker)[0]
     line = straightness(rocker, low, high)
@@ -118,7 +118,7 @@ def test_a_driver_that_swings_all_the_way() -> None:
     assert (line.length, line.deviation_max) == pytest.approx((length, furthest), rel=1e-6)
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     rocker = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
     with pytest.raises(ProblemError, match="cannot be assembled"):
         straightness(rocker, 0, np.pi)

@@ -44,7 +44,7 @@ def quality(linkage: Linkage, theta2: np.ndarray) -> np.ndarray:
     return np.minimum(mu, np.pi - mu)
 
 
-def test_holds_the_least_transmission_angle_and_is_sharp(batch: Linkage) -> None:
+def test_the_enclosure_holds_the_least_angle_and_is_sharp(batch: Linkage) -> None:
     rng = np.random.default_rng(1)
     start = rng.uniform(-4, 4, 6)
     end = start + rng.uniform(-6.3, 6.3, 6)
@@ -58,7 +58,7 @@ def test_holds_the_least_transmission_angle_and_is_sharp(batch: Linkage) -> None
 
 
 @pytest.mark.parametrize("linkage", NEARLY)
-def test_holds_beside_change_points(linkage: Linkage) -> None:
+def test_the_enclosure_holds_beside_change_points(linkage: Linkage) -> None:
     one, turn = Linkage.stacked([linkage]), np.array([0.3])
     least = least_transmission(one, turn, turn + 2 * np.pi)
     dense = quality(linkage, linkage.theta1 + np.linspace(-np.pi, np.pi, 20_001)).min()
@@ -88,7 +88,7 @@ def test_an_angle_that_hardly_varies_takes_few_intervals() -> None:
     assert np.all(found.hi <= np.pi / 2)
 
 
-def test_a_range_that_opens_between_its_ends_has_none() -> None:
+def test_a_range_that_opens_between_its_ends_has_the_bound_0() -> None:
     """The loop is open for some 1e-5 rad, far less than any sample is wide."""
     linkage = FourBar((0, 0), (4, 0), 1, 3, 2 - 1e-10)  # stretched: r1 + r2 = r3 + r4 + 1e-10
     least = least_transmission(Linkage.stacked([linkage]), np.array([3.0]), np.array([3.3]))
@@ -159,7 +159,7 @@ def test_slopes_are_as_narrow_as_the_derivative(batch: Linkage) -> None:
             np.testing.assert_allclose(part.mid.lo, getattr(state, name).position[:, axis], atol=1e-9)
 
 
-def test_half_as_wide_is_a_quarter_as_far(batch: Linkage) -> None:
+def test_the_excess_falls_with_the_square_of_the_width(batch: Linkage) -> None:
     """Mean-value form: what an interval holds too much falls with the square of its width."""
     angle = np.linspace(0.2, 5.9, 6)
     excess = []

@@ -54,7 +54,7 @@ def inside(linkage, share):
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-def test_the_class_is_the_one_drawn(linkages, kind) -> None:
+def test_the_class_is_that_of_the_strategy(linkages, kind) -> None:
     @few
     @given(linkages(kind))
     def check(linkage) -> None:
@@ -69,7 +69,7 @@ def test_the_class_is_the_one_drawn(linkages, kind) -> None:
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
+def test_the_output_is_at_rest_in_limit_positions(linkages, kind) -> None:
     @few
     @given(linkages(kind))
     def check(linkage) -> None:
@@ -115,7 +115,7 @@ def test_coupler_rates_grow_without_digits_lost_near_dead_positions(linkages, ki
 
 
 @pytest.mark.parametrize("kind", SWINGING)
-def test_rates_in_a_dead_position_have_the_signs_they_grow_with(linkages, kind) -> None:
+def test_infinite_rates_of_dead_positions_have_the_sign_nearby(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]))
     def check(linkage, end, omega2) -> None:
@@ -157,7 +157,7 @@ def test_even_motion_has_neither_jumps_nor_crowds(linkages, kind) -> None:
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> None:
+def test_turns_by_dimensions_are_differences_of_positions(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.floats(0.2, 0.8))
     def check(linkage, share) -> None:

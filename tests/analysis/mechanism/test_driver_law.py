@@ -44,7 +44,7 @@ def test_rates_are_derivatives_and_the_inverse_is_one(kind: str, start: float, r
 
 
 @given(st.floats(0.01, 0.5), st.floats(0, 1))
-def test_a_trapezoid_is_what_its_speeds_add_up_to(ramp: float, share: float) -> None:
+def test_a_trapezoid_is_the_integral_of_its_speed(ramp: float, share: float) -> None:
     law = DriverLaw(0.0, 1.0, 1.0, MotorSpec("trapezoid", ramp))
     grid = np.unique(np.concatenate([np.linspace(0, share, 2001), law.corners[law.corners <= share]]))
     added = np.trapezoid(law.at_time(grid).omega2, grid)  # straight pieces: exact
@@ -66,7 +66,7 @@ def test_the_speed_of_a_linkage_that_starts_and_stops() -> None:
     assert float(law.at_angle(np.pi).omega2) == pytest.approx(4.0)  # twice the mean halfway
 
 
-def test_no_speed_takes_for_ever() -> None:
+def test_zero_speed_takes_forever() -> None:
     law = DriverLaw(0.0, 1.0, 0.0)
     assert np.isinf(law.duration)
     assert np.isnan(law.time_at(0.5))

@@ -73,7 +73,7 @@ def test_the_driver_goes_as_the_sine_of_mu(
 
 
 @pytest.mark.parametrize("linkage", NEARLY)
-def test_so_it_goes_near_a_change_point(linkage: FourBar) -> None:
+def test_the_same_near_a_change_point(linkage: FourBar) -> None:
     for low, high in ranges(linkage):
         check_evenness(linkage, low, high)
         middle = solve_position(linkage, even_motion(linkage, low, high).theta2(np.linspace(0, 1, 1001))).b

@@ -46,7 +46,7 @@ QUANTITIES: dict[str, Callable[[Any], Any]] = {
 
 
 @pytest.mark.parametrize("name", ["pumpjack", "lufkin"])
-def test_every_extreme_of_the_reference_figures(
+def test_extremes_of_the_reference_figures(
     golden: dict[str, Any], golden_linkages: dict[str, FourBar], name: str
 ) -> None:
     section, key = {
@@ -178,7 +178,7 @@ def test_extremes_within_a_thousandth_of_a_radian() -> None:
         assert found.high >= values.max()
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_refused() -> None:
     theta4 = QUANTITIES["theta4"]
     with pytest.raises(ProblemError, match="give both or neither"):
         extremes(CRANK_ROCKER, theta4, start=1.0)

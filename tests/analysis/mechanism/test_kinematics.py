@@ -181,7 +181,7 @@ def test_dead_positions_are_infinite_with_the_sign_of_their_neighbourhood(
     np.testing.assert_allclose(dead.point(3, (0, 0)).jerk, dead.a.jerk)
 
 
-def test_a_driver_at_rest_in_a_dead_position_leaves_the_rates_open() -> None:
+def test_a_driver_at_rest_in_a_dead_position_has_undetermined_rates() -> None:
     end = driver_ranges(TRIPLE_ROCKER)[0, 1]
     with pytest.warns(DeadPositionWarning):
         state = solve_kinematics(TRIPLE_ROCKER, end, 0.0)

@@ -63,7 +63,7 @@ def test_an_offset_slider_crank_has_the_stroke_of_its_two_triangles() -> None:
     assert np.cos(worst_transmission_cycle(linkage)) == pytest.approx(cosine, rel=1e-14)
 
 
-def test_rotatability_of_slides_is_the_room_they_leave() -> None:
+def test_rotatability_of_slides_is_their_clearance() -> None:
     assert rotatability(SliderCrank(o2=(0, 0), r2=2, r3=7, offset=3)) == pytest.approx([2 / 12, 8 / 12])
     inverted = InvertedSliderCrank(o2=(0, 0), o4=(0, 5), r2=2, offset=-1)
     assert rotatability(inverted) == pytest.approx([1, 2 / 8])

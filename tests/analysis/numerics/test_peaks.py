@@ -60,7 +60,7 @@ def test_the_highest_of_several_stretches() -> None:
     np.testing.assert_allclose(places, [1, 2])
 
 
-def test_many_curves_each_looked_at_in_its_own_places() -> None:
+def test_many_curves_are_refined_at_their_own_places() -> None:
     """Asked for once at the same places for all, then for each at its own."""
     centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
 
@@ -81,7 +81,7 @@ def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
     assert abs(places[0] - 0.7654321) <= 2 * (2 / 49) / 8**rounds + 1e-15
 
 
-def test_rows_that_repeat_their_last_place_are_as_without() -> None:
+def test_rows_that_repeat_their_last_place_are_unchanged() -> None:
     """Three maxima, the last end among them, which must not take the place of the others."""
 
     def curves(x: Floats) -> Floats:

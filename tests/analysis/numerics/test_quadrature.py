@@ -36,7 +36,7 @@ def test_a_table_of_loads() -> None:
     assert found.error < 1e-10
 
 
-def test_what_has_no_integral_is_not_given_one() -> None:
+def test_divergent_integrals_are_detected() -> None:
     """1 / x grows by the same with each halving, 1 / sqrt(x) by less and less."""
     found = integrate(lambda x: np.stack([1 / x, x**-1.5, 1 / np.sqrt(x)]), [0.0, 1.0])
     assert np.isinf(found.error[:2]).all()
@@ -46,7 +46,7 @@ def test_what_has_no_integral_is_not_given_one() -> None:
     assert np.isnan(held(float(nowhere.total), float(nowhere.error)))
 
 
-def test_backwards_is_less() -> None:
+def test_reversed_edges_change_the_sign() -> None:
     there, back = (integrate(np.cos, ends) for ends in ([0.0, 0.2, 1.0], [1.0, 0.2, 0.0]))
     assert there.total == pytest.approx(np.sin(1), abs=1e-15)
     assert back.total == pytest.approx(-np.sin(1), abs=1e-15)
@@ -54,7 +54,7 @@ def test_backwards_is_less() -> None:
 
 
 @given(st.lists(INSIDE, min_size=1, max_size=20))
-def test_integrals_up_to_places_within(places: list[float]) -> None:
+def test_integrals_up_to_places_between(places: list[float]) -> None:
     def curves(x: Floats) -> Floats:
         return np.stack([np.cos(5 * x), np.abs(x - 0.4)])
 
@@ -68,7 +68,7 @@ def test_nodes_and_weights_are_exact_for_polynomials() -> None:
     assert weight @ place**31 == pytest.approx((2.0**32 - 1) / 32, rel=1e-13)
 
 
-def test_digits_that_hold() -> None:
+def test_rounding_to_certain_digits() -> None:
     assert held(123.456789, 0.004) == 123.46
     assert held(123.456789, 0.006) == 123.5
     assert held(-98765.0, 300.0) == -99000.0
