@@ -1,4 +1,4 @@
-"""The judge in body coordinates against textbooks, triangles and published six-bars."""
+"""The judge in body coordinates compared with textbooks, triangles and published six-bars."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def test_linkages_that_cannot_be_assembled_are_nan() -> None:
 
 
 def test_klanns_leg() -> None:
-    """Stride and lift of the foot, and how little of the turn it is close to the ground."""
+    """Stride and lift of the foot, and the share of the turn close to the ground."""
     plan, t = plan_of(KLANN), np.linspace(0, 2 * np.pi, 2001)[:-1]
     foot = carried(rates(plan, follow(plan, start(plan, 0.0), 0.0, t)), 5, KLANN.coupler_point)[0, :, 0]
     stride, lift = np.ptp(foot, axis=0)
@@ -146,7 +146,7 @@ def test_the_dwell_of_a_course_project() -> None:
 
 
 def longest(values: Array, band: float) -> int:
-    """The most steps over which samples stay within a band, by two hands."""
+    """The most steps over which samples stay within a band, by two pointers."""
     best = first = 0
     for last in range(len(values)):
         while np.ptp(values[first : last + 1]) > band:

@@ -39,7 +39,7 @@ def test_derivatives_are_those_of_the_position(seed: int, assembly: int) -> None
         solve_kinematics(linkage, theta2, assembly=assembly),
     )
     np.testing.assert_allclose([moving.omega, moving.alpha], [state.omega3, state.alpha3], rtol=1e-9)
-    near_dead = np.abs(bend) > 50 * np.abs(rate).max()  # where differences are of no use
+    near_dead = np.abs(bend) > 50 * np.abs(rate).max()  # where differences are inaccurate
     scale = np.abs(bend)[~near_dead].max()
     np.testing.assert_allclose(((after - before) / (2 * h) - rate)[~near_dead], 0, atol=1e-3 * scale)
     np.testing.assert_allclose(((after - 2 * here + before) / h**2 - bend)[~near_dead], 0, atol=1e-2 * scale)
@@ -91,7 +91,7 @@ def test_a_linkage_that_cannot_be_assembled_has_no_track() -> None:
     assert tracks(FourBar(o2=(0, 0), o4=(10, 0), r2=1, r3=2, r4=3), 60, same_branch=False) == []
 
 
-# Its driver just turns: links 3 and 4 come within 1 deg of one line, and P moves far in one degree.
+# The driver just turns: links 3 and 4 come within 1 deg of a line, and P moves far in one degree.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
 
 

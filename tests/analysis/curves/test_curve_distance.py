@@ -44,7 +44,7 @@ def test_a_polygon_about_or_in_a_circle(radius: float) -> None:
 def test_a_circle_in_the_wrong_sense_is_near_and_yet_far() -> None:
     hausdorff, frechet = curve_distances(DISC, CIRCLE, -1)
     assert hausdorff < 2e-4
-    # Two walkers that go round in opposite senses are somewhere a quarter turn or more from each other.
+    # Two walkers in opposite senses are a quarter turn or more apart somewhere.
     assert frechet >= np.sqrt(2)
 
 
@@ -123,7 +123,7 @@ def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
 
 
 def brute_frechet(one: Array, other: Array) -> float:
-    """Discrete Frechet distance (Eiter & Mannila 1994) by its recursion, for every shift of the second."""
+    """Discrete Frechet distance (Eiter & Mannila 1994) by recursion, for every shift of the second."""
     gap = np.hypot(*np.moveaxis(one[:, None] - other, -1, 0))
     gap = np.concatenate([gap, gap[:1]])
     least = np.inf

@@ -1,4 +1,4 @@
-"""Double points in closed form against crossings of the sampled curve, and against geometry."""
+"""Double points in closed form, compared with crossings of the sampled curve and with geometry."""
 
 from collections.abc import Callable
 
@@ -73,7 +73,9 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
             hits = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
             seam = np.abs(hits - [low, high]).max(axis=1) < 1e-6  # where a closed curve ends
             sampled.append(hits[~seam])
-    for pair in np.concatenate(sampled):  # a small loop may hide between samples, no crossing may be missed
+    for pair in np.concatenate(
+        sampled
+    ):  # small loops may hide between samples, but no sampled crossing is missed
         p = solve_position(linkage, pair).p.mean(axis=0)
         assert len(found)
         assert np.hypot(*(found.points - p).T).min() < 2e-2 * linkage.lengths.max()

@@ -99,7 +99,7 @@ def test_r2_of_a_motion_is_the_limit_of_many_samples(seed: int, degree: int) -> 
 
 @pytest.mark.parametrize(("r4", "degree"), [(2.501, 4), (2.5 + 1e-5, 8), (2.499, 4), (2.5, 4)])
 def test_r2_near_a_change_point(r4: float, degree: int) -> None:
-    """Against panels that close up towards the ground line, and the dead positions where there are some."""
+    """Compared with panels that are denser towards the ground line and any dead positions."""
     linkage = FourBar((0, 0), (4, 0), 2, 4.5, r4, (2, 1))
     low, high = driver_ranges(linkage)[0]
     edges = np.concatenate(

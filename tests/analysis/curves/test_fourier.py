@@ -67,7 +67,7 @@ CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(3)]
 @pytest.mark.quick("linkage0", "linkage3")
 @pytest.mark.parametrize("linkage", [NEARLY_DEAD, *CRANKS])
 def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None:
-    """However close it comes to a change point: against adaptive quadrature and a dense search."""
+    """Near a change point too: compared with adaptive quadrature and a dense search."""
     first = coupler_harmonics(linkage, top=4)
     theta1, harmonics = float(linkage.theta1), np.arange(-4, 5)
 

@@ -32,7 +32,7 @@ def test_the_figures_of_the_luggage_report(link: int, golden: dict[str, Any]) ->
     path, report = path_of(link), golden["report_figures"]["motion"]
     assert path.turns_back
     regressions = chosen(path, Y_OF_X, newton=False)
-    # For link 3 the report's code has places of its own, 1e-4 off.
+    # For link 3 the report's code uses slightly different places, 1e-4 off.
     assert [regressions[degree].r2 for degree in DEGREES] == pytest.approx(
         report["R2_y_of_x_deg1_4"][str(link)], abs=1.1e-4 if link == 3 else 2e-6
     )
@@ -81,7 +81,7 @@ def test_equal_x_give_no_y_of_x() -> None:
 
 
 CRANK_ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))
-# Greatest error of the luggage report's degree-4 polynomials y(x), by link, and how closely it is reproduced.
+# Greatest error of the luggage report's degree-4 polynomials y(x), by link, and the accuracy of reproduction.
 REPORTED = {2: (7.578427646663461, 1e-5), 3: (24.762292531509868, 1.5e-3), 4: (51.883117888363046, 2e-4)}
 
 

@@ -53,7 +53,7 @@ def sampled(linkage: FourBar, theta2: Floats) -> tuple[float, float, float]:
 
 
 def close_to_ground_line(linkage: FourBar, start: float, end: float, count: int = 20_001) -> Floats:
-    """Driver angles in between, close where a linkage near a change point runs away from its driver."""
+    """Driver angles in between, denser where a linkage near a change point moves fast."""
     along = float(linkage.theta1) + np.pi * np.arange(-6, 7)
     near = np.concatenate([along + sign * step for step in np.logspace(-6, 0, 2000) for sign in (-1, 1)])
     every = np.concatenate([np.linspace(start, end, count), near[(near > start) & (near < end)]])

@@ -1,4 +1,4 @@
-"""Enclosures over the driver's range against dense samples of the closed forms, for every kind."""
+"""Enclosures over the driver's range compared with dense samples of the closed forms, for every kind."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -89,7 +89,7 @@ def test_an_angle_that_hardly_varies_takes_few_intervals() -> None:
 
 
 def test_a_range_that_opens_between_its_ends_has_the_bound_0() -> None:
-    """The loop is open for some 1e-5 rad, far less than any sample is wide."""
+    """The loop is open over about 1e-5 rad, far less than the spacing of the samples."""
     linkage = FourBar((0, 0), (4, 0), 1, 3, 2 - 1e-10)  # stretched: r1 + r2 = r3 + r4 + 1e-10
     least = least_transmission(Linkage.stacked([linkage]), np.array([3.0]), np.array([3.3]))
     assert least.lo[0] == 0
@@ -147,7 +147,7 @@ def assert_within(values: np.ndarray, held: Interval, rounding: float = 1e-12) -
 
 
 def test_slopes_are_as_narrow_as_the_derivative(batch: Linkage) -> None:
-    """At a single angle an enclosure of the derivative is the derivative, so that none is needlessly wide."""
+    """At a single angle the enclosure of the derivative is the derivative, no wider than necessary."""
     angle = np.linspace(0.2, 5.9, 6)
     found = places(batch, batch.assembly, crank(angle, np.zeros(6)))
     state = solve_kinematics(batch, angle, 1.0, 0.0)
@@ -160,7 +160,7 @@ def test_slopes_are_as_narrow_as_the_derivative(batch: Linkage) -> None:
 
 
 def test_the_excess_falls_with_the_square_of_the_width(batch: Linkage) -> None:
-    """Mean-value form: what an interval holds too much falls with the square of its width."""
+    """Mean-value form: the excess width falls with the square of the width."""
     angle = np.linspace(0.2, 5.9, 6)
     excess = []
     for half in (2e-3, 1e-3):
@@ -183,7 +183,7 @@ def test_the_excess_falls_with_the_square_of_the_width(batch: Linkage) -> None:
     ],
 )  # fmt: skip
 def test_operations_hold_derivatives(work: Callable[..., Any]) -> None:
-    """Each rule by central differences of its own middles."""
+    """Each rule compared with central differences of its middles."""
 
     def at(middle: np.ndarray, half: np.ndarray) -> Centred:
         e = crank(middle, half)

@@ -28,7 +28,7 @@ Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 
 def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
-    """The linkage with P where the coupler has a point at a place."""
+    """The linkage with P at the point of the coupler that lies at a place."""
     state = solve_position(linkage, theta2)
     arm = complex(*(place - state.a)) * np.exp(-1j * state.theta3)
     return replace(linkage, coupler_point=(arm.real, arm.imag))

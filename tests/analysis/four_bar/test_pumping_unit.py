@@ -32,7 +32,7 @@ UP_AND_DOWN = ((0, 9e3), (20, 9e3), (45, 20e3), (170, 20e3), (200, 9e3), (360, 9
 
 
 def api_11e(crank: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Position and torque factor as API Specification 11E has them for units like this."""
+    """Position and torque factor by API Specification 11E for such units."""
     k, phi = np.hypot(H - G, I), np.arctan2(I, H - G)
     turned = crank - phi
     beta = np.arccos((C**2 + P**2 - k**2 - R**2 + 2 * k * R * np.cos(turned)) / (2 * C * P))

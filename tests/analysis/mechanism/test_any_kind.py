@@ -105,7 +105,7 @@ def test_coupler_rates_grow_without_digits_lost_near_dead_positions(linkages, ki
         assume(not full_rotation(linkage))
         theta2 = driver_ranges(linkage)[0][end] + (1 - 2 * end) * 10**exponent
         state = solve_kinematics(linkage, theta2)
-        # theta3 goes as the root of the way to the end: rate = 1/2 (theta3 - theta3 end) / way, nearly.
+        # theta3 varies with the root of the distance from the end.
         assert np.isfinite([state.omega3, state.alpha3, state.jerk3]).all()
         p, rate, _ = coupler_curve(linkage, theta2)
         assert np.isfinite([p, rate]).all()

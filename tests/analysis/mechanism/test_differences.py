@@ -1,4 +1,4 @@
-"""Central differences: their order, their step, and the report against analytic values."""
+"""Central differences: their order and step, and the comparison with analytic values."""
 
 from typing import Any
 

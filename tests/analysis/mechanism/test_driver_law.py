@@ -1,4 +1,4 @@
-"""The driver from rest to rest: its rates are its derivatives, its time the inverse of its way."""
+"""The driver from rest to rest: rates as derivatives, time as the inverse of the angle."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The variable over which a linkage moves evenly: its definition, its ends, and means by quadrature in it."""
+"""Even motions: their definition and ends, means by quadrature over them, and samples of the driver."""
 
 from collections.abc import Callable
 
@@ -41,7 +41,7 @@ NEARLY = [
 
 
 def check_evenness(linkage: FourBar, start: float, end: float) -> None:
-    """D theta2 / dt is in proportion to sin mu: what makes t an elliptic integral."""
+    """D theta2 / dt is proportional to sin mu, which makes t an elliptic integral."""
     motion, share = even_motion(linkage, start, end), np.linspace(0, 1, 41)
     theta2 = motion.theta2(share)
     assert (theta2[0], theta2[-1]) == (start, end)
@@ -146,7 +146,7 @@ def test_means_near_a_change_point_are_those_of_adaptive_quadrature() -> None:
 
 @pytest.mark.parametrize("profile", ["trapezoid", "cycloid"])
 def test_means_in_time_of_a_driver_that_starts_and_stops(profile: str) -> None:
-    """Half the speed is gone at when half the time has, by symmetry: the mean angle is that halfway."""
+    """By symmetry the mean angle is that at half the time."""
     linkage = FourBar((0, 0), (4, 0), 1, 4, 3)
     law = DriverLaw(0.2, 1.5, 2.0, MotorSpec(profile=profile))
     (angle, speed), error = mean_in_time(linkage, law, lambda place: np.stack(law.at_place(place)[:2]))

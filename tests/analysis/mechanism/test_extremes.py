@@ -166,7 +166,7 @@ def mu_of(state: Any) -> Any:
 
 
 def test_extremes_within_a_thousandth_of_a_radian() -> None:
-    """Near a change point the output jerks where no even sample is: mu is 0.08 deg at worst."""
+    """Near a change point the output jerks between even samples: mu is 0.08 deg at worst."""
     linkage = FourBar((0, 0), (4, 0), 2, 4.5, 2.500005, (2, 1))
     assert np.degrees(transmission_extremes(linkage, 0.0, TURN).low) == pytest.approx(0.0764, abs=1e-4)
     for quantity in (lambda state: state.alpha4, lambda state: state.b.acceleration_magnitude):
@@ -266,7 +266,7 @@ def test_box_of_a_linkage_that_cannot_close_is_that_of_its_pivots() -> None:
 
 @pytest.mark.parametrize("kite", [(30.0, 30.0, 30.0), (30.0, 35.0, 35.0)])
 def test_box_of_a_kite_reaches_to_where_its_links_are_free(kite: tuple[float, float, float]) -> None:
-    """A meets O4 in the middle of the motion, where B is anywhere: on the way there it was in front of O4."""
+    """A meets O4 in the middle of the motion, where B is undetermined; before that it was in front of O4."""
     linkage = FourBar(o2=(0, 0), o4=(30, 0), r2=kite[0], r3=kite[1], r4=kite[2], assembly=-1)
     box = reach_box(linkage, -3.0, 3.0)
     angles = np.concatenate([-np.geomspace(3.0, 1e-6, 4001), np.geomspace(1e-6, 3.0, 4001)])

@@ -94,7 +94,7 @@ def test_positions_agree_with_the_law_of_cosines(
         _, b, p = close_loop(linkage, theta2, sign)
         state = solve_position(linkage, theta2, sign)
         found_b, found_p = (point @ np.array([1, 1j]) for point in (state.b, state.p))
-        # The arc cosine has half its digits at a dead position, and there alone the two may disagree.
+        # The arc cosine loses half its digits at a dead position, the only place where the two may differ.
         length = np.abs(complex(*linkage.o4) - state.a @ np.array([1, 1j]))
         room = np.minimum(linkage.r3 + linkage.r4 - length, length - np.abs(linkage.r3 - linkage.r4))
         clear = np.abs(room) > 1e-4 * linkage.r3

@@ -1,4 +1,4 @@
-"""Mobility: every formula against closing the loop, and circuits against the judge, who goes round them."""
+"""Mobility: formulas compared with closing the loop, circuits with the judge, which follows them."""
 
 import math
 from collections import Counter
@@ -169,7 +169,7 @@ def test_ranges_in_which_a_transmission_angle_is_kept(linkage: Linkage, least: f
 
 @pytest.mark.parametrize("kind", [FourBar, SliderCrank, InvertedSliderCrank])
 def test_circuits_and_branches_are_those_that_the_judge_passes(kind: type[Linkage]) -> None:
-    """It goes round each circuit without a driver, through dead positions, and meets no other branch."""
+    """It follows each circuit without a driver, through dead positions, and meets no other branch."""
     rng = np.random.default_rng(5)
     some, theta = any_linkages(kind, 60, rng), rng.uniform(-np.pi, np.pi, 60)
     plan = plan_of(some)

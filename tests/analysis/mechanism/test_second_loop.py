@@ -1,4 +1,4 @@
-"""Ranges, circuits and transmission of six-bars, against the judge in body coordinates and closed forms."""
+"""Ranges, circuits and transmission of six-bars against the judge in body coordinates and closed forms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar, InvertedSliderCrank, ProblemError, SixBar
 
 TURN = 2 * np.pi
-COUNT = 10  # of each sort and row
+COUNT = 10  # of each kind and row
 FEW = ("pins 2 4", "pins 3 1", "slide 4 1")  # all hosts, with and without a slide
 
 
@@ -47,7 +47,7 @@ class Judged:
 
 @pytest.fixture(scope="module", params=FEW)
 def judged(request: pytest.FixtureRequest) -> Judged:
-    """Those whose second loop alone may stop the driver, and others."""
+    """Six-bars of which some are stopped by the second loop alone."""
     rng = np.random.default_rng(FEW.index(request.param))
     swinging, theta = swinging_six_bars(request.param, COUNT, rng)
     turning = six_bars(request.param, COUNT, rng, turning=False)
@@ -64,7 +64,7 @@ def judged(request: pytest.FixtureRequest) -> Judged:
 
 
 def own_range(linkage: Any, theta: float) -> Array:
-    """The range that an angle lies in, counted from it."""
+    """The range of an angle, moved by full turns to include it."""
     index, inside = range_index(linkage, theta)
     found: Array = driver_ranges(linkage)[int(index)] - inside + theta
     return found
@@ -109,7 +109,7 @@ def test_positions_inside_are_the_judges(judged: Judged) -> None:
 
 
 def test_motion_through_dead_positions_stays_on_a_circuit(judged: Judged) -> None:
-    """The judge goes round each circuit without a driver; it passes all of its branches, and no other."""
+    """The judge follows each circuit without a driver; it passes all branches of it, and no other."""
     some = np.arange(0, len(judged.theta), 2)
     plan = judged.plan.taken(some)
     passed, back = circuit(plan, judged.q[some])
@@ -124,7 +124,7 @@ def test_motion_through_dead_positions_stays_on_a_circuit(judged: Judged) -> Non
 
 
 def _branches_of(linkage: Any, own: int) -> set[int]:
-    """All branches of a circuit but those of the shortest ranges."""
+    """All branches of a circuit, without the shortest ranges."""
     found = set()
     for assembly, second in np.ndindex(2, 2):
         place = (1 - 2 * assembly, 1 - 2 * second)
@@ -245,7 +245,7 @@ def test_the_second_loop_alone_makes_several_ranges_of_one_turn() -> None:
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_circuit_continues_through_a_dead_position_of_the_first_loop(side: int) -> None:
-    """A second loop with room everywhere: one circuit for each of its assemblies, of both of the first."""
+    """A second loop that always closes: one circuit for each of its assemblies, with both of the first."""
     linkage = SixBar((0, 0), (4, 0), 2, 2, 3, c=(1, 0), d=(2, 0), r5=6, r6=5.99, hosts=(3, 1), assembly=side)
     np.testing.assert_allclose(
         driver_ranges(linkage), driver_ranges(FourBar((0, 0), (4, 0), 2, 2, 3)), atol=1e-12
@@ -258,7 +258,7 @@ def test_a_circuit_continues_through_a_dead_position_of_the_first_loop(side: int
     ("hosts", "d", "far"), [((3, 1), (5, 1), True), ((4, 1), (1, -3), False), ((3, 1), (-2, 2), False)]
 )
 def test_both_loops_dead_together(hosts: tuple[int, int], d: tuple[float, float], far: bool) -> None:
-    """The second loop is just stretched or folded where the first one stops: one assembly gets there."""
+    """The second loop is just stretched or folded where the first one stops: one assembly reaches it."""
     four = FourBar((0, 0), (4, 0), 2, 2, 3)
     _, high = dead_ends(four, *driver_ranges(four)[0])
     state = solve_position(four, high)
@@ -269,7 +269,7 @@ def test_both_loops_dead_together(hosts: tuple[int, int], d: tuple[float, float]
     r5, r6 = (0.6 * apart, 0.4 * apart) if far else (1.7 * apart, 0.7 * apart)
     linkage = SixBar((0, 0), (4, 0), 2, 2, 3, c=c, d=d, r5=r5, r6=r6, hosts=hosts)
     reaching = [side for side in (1, -1) if _last_end(linkage.changed(assembly=side)) > high - 1e-9]
-    assert len(reaching) == 1  # the other one would have to go through the second loop's dead position
+    assert len(reaching) == 1  # the other one would have to pass a dead position of the second loop
     own = linkage.changed(assembly=reaching[0])
     assert _last_end(own) == pytest.approx(high, abs=1e-12)
     assert len(set(circuit_index(own, high - 1e-3, reaching[0], [1, -1]).tolist())) == 1
@@ -300,7 +300,7 @@ def test_two_intervals_of_one_circuit() -> None:
 
 
 def test_a_driver_of_half_a_turn() -> None:
-    """r1^2 + r2^2 = (r3 + r4)^2: the diagonal is longest where the driver stands square to the ground."""
+    """r1^2 + r2^2 = (r3 + r4)^2: the diagonal is longest where the driver is square to the ground."""
     linkage = SixBar((0, 0), (3, 0), 4, 2.5, 2.5, c=(1, 0), d=(9, 0), r5=9, r6=6, hosts=(3, 1))
     np.testing.assert_allclose(driver_ranges(linkage)[0], [-np.pi / 2, np.pi / 2], atol=1e-12)
     assert not full_rotation(linkage)
@@ -336,7 +336,7 @@ def test_nearly_a_change_point_is_two_dead_positions() -> None:
 
 
 def test_a_through_o4_of_an_inverted_slider_crank() -> None:
-    """No offset and r2 = r1: A meets O4 where the driver points there, and the rod may turn there at will."""
+    """No offset and r2 = r1: A meets O4 where the driver points there, and the rod is free to turn."""
     linkage = InvertedSliderCrank((0, 0), (2, 0), 2, 0)
     np.testing.assert_allclose(np.ptp(driver_ranges(linkage)[0]), TURN)
     assert not full_rotation(linkage)

@@ -1,4 +1,4 @@
-"""Transmission angles: against published figures, and worst values against fine sweeps."""
+"""Transmission angles compared with published figures, worst values with fine sweeps."""
 
 from collections.abc import Callable
 from typing import Any
@@ -23,7 +23,7 @@ Sweep = Callable[[FourBar, float, float], tuple[float, float]]
 
 @pytest.fixture(scope="module")
 def least_of_sweep(close_loop: Brute) -> Sweep:
-    """Least min(mu, pi - mu) of a fine sweep (0 where the loop is open), and how far it may lie above."""
+    """Least min(mu, pi - mu) of a fine sweep, 0 where the loop is open, and the error of that."""
 
     def sweep(linkage: FourBar, start: float, end: float) -> tuple[float, float]:
         a, b, _ = close_loop(linkage, np.linspace(start, end, 20001), 1)

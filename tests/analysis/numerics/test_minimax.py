@@ -1,4 +1,4 @@
-"""Least peaks: Chebyshev's, and those that no other parameters beat."""
+"""Least peaks: Chebyshev's, and a kinked curve."""
 
 import numpy as np
 import pytest

@@ -61,7 +61,7 @@ def test_the_highest_of_several_stretches() -> None:
 
 
 def test_many_curves_are_refined_at_their_own_places() -> None:
-    """Asked for once at the same places for all, then for each at its own."""
+    """Evaluated once at common places, then for each curve at its own."""
     centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
 
     def curves(x: Floats) -> Floats:
@@ -82,7 +82,7 @@ def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
 
 
 def test_rows_that_repeat_their_last_place_are_unchanged() -> None:
-    """Three maxima, the last end among them, which must not take the place of the others."""
+    """Three maxima, one at the end, which must not displace the others."""
 
     def curves(x: Floats) -> Floats:
         return np.stack([np.sin(3 * x) + x, np.cos(5 * x)])

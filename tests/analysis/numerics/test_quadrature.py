@@ -1,4 +1,4 @@
-"""Integrals with a known value: smooth, narrow, with kinks, jumps and poles, and those that there are not."""
+"""Integrals with a known value: smooth, narrow, with kinks, jumps and poles, and divergent ones."""
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ def test_kinks_and_jumps_wherever_they_lie(at: float) -> None:
 
 @pytest.mark.parametrize("h", [1e-2, 1e-3, 1e-6])
 def test_a_narrow_peak(h: float) -> None:
-    """1 / ((x - 0.3)^2 + h^2) has an arctangent for integral."""
+    """1 / ((x - 0.3)^2 + h^2) has an arctangent as integral."""
     found = integrate(lambda x: 1 / ((x - 0.3) ** 2 + h**2), [0.0, 1.0])
     exact = (np.arctan(0.7 / h) + np.arctan(0.3 / h)) / h
     assert abs(found.total - exact) <= max(found.error, 1e-14 * exact)
@@ -37,7 +37,7 @@ def test_a_table_of_loads() -> None:
 
 
 def test_divergent_integrals_are_detected() -> None:
-    """1 / x grows by the same with each halving, 1 / sqrt(x) by less and less."""
+    """1 / x grows equally with each halving, 1 / sqrt(x) less and less."""
     found = integrate(lambda x: np.stack([1 / x, x**-1.5, 1 / np.sqrt(x)]), [0.0, 1.0])
     assert np.isinf(found.error[:2]).all()
     assert abs(found.total[2] - 2) <= found.error[2] < 1e-7

@@ -1,4 +1,4 @@
-"""Derivatives of functions of time: against those worked out by hand, and between functions."""
+"""Derivatives of functions of time, compared with those worked out by hand and between functions."""
 
 import math
 from collections.abc import Callable
