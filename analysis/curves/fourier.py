@@ -93,7 +93,7 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
         coefficients=coefficients,
         error_max=miss.max(axis=0),
         error_rms=np.sqrt((miss**2).mean(axis=0)),
-        content=_shares(power := _powers(coefficients), power.sum()),
+        content=_content(coefficients),
     )
 
 
@@ -167,7 +167,7 @@ def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
         coefficients=found,
         error_max=np.sqrt(np.where(largest <= rounding, 0.0, largest)),
         error_rms=np.sqrt(np.where(mean <= rounding, 0.0, mean)),
-        content=_shares(_powers(found), mean[0]),
+        content=_content(found, mean[0]),
     )
 
 
@@ -204,16 +204,13 @@ def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
     return fourier_series(solve_position(linkage, np.arange(count) * TURN / count).p)
 
 
-def _powers(coefficients: ComplexArray) -> FloatArray:
-    """Squared amplitudes of the harmonics from 1, both senses together."""
+def _content(coefficients: ComplexArray, total: float | None = None) -> FloatArray:
+    """Squared amplitudes of the harmonics from 1, both senses together, as shares of `total` or their sum."""
     power = np.abs(coefficients) ** 2
     middle = len(power) // 2
-    return np.asarray(power[middle + 1 :] + power[:middle][::-1])
-
-
-def _shares(power: FloatArray, total: float) -> FloatArray:
+    both = power[middle + 1 :] + power[:middle][::-1]
     with np.errstate(invalid="ignore"):
-        return np.asarray(power / total)
+        return np.asarray(both / (both.sum() if total is None else total))
 
 
 def _refuse_swings(linkage: Linkage) -> None:

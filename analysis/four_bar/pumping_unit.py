@@ -197,15 +197,9 @@ def reducer_torque(
     (8500.0, 20857.142857)
     """
     factor, net = np.asarray(torque_factor), np.asarray(load) - unit.structural_unbalance
-    counterbalance = unit.sense * balance_moment(unit, crank)
+    phase = np.asarray(crank) + np.radians(unit.counterbalance_phase_deg)
+    counterbalance = unit.sense * unit.counterbalance * np.sin(phase)
     rating = np.nan if unit.rating is None else unit.rating
     with np.errstate(divide="ignore", invalid="ignore"):
         permissible = (rating + counterbalance) / factor + unit.structural_unbalance
     return ReducerTorque(net, counterbalance, factor * net - counterbalance, permissible)
-
-
-def balance_moment(unit: PumpingUnitSpec, crank: npt.ArrayLike) -> FloatArray:
-    """Clockwise moment of the counterbalance at crank angles of the API, shape (...), N m."""
-    phase = np.asarray(crank) + np.radians(unit.counterbalance_phase_deg)
-    moment: FloatArray = unit.counterbalance * np.sin(phase)
-    return moment

@@ -35,7 +35,9 @@ def lowest(
         step = np.clip(-_quotient(current[1], _curvature(current)), -reach, reach)
         tried = np.clip(angle + step, low, high)
         fresh = unknown.model(tried)
-        better = _better(current, fresh)
+        with np.errstate(invalid="ignore"):  # where the values agree to rounding, the slope decides
+            level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
+        better = (fresh[0] < current[0]) | level
         moved = np.abs(tried - angle)
         reach = np.where(better, np.maximum(reach, 2 * moved), moved / 4)
         angle = np.where(better, tried, angle)
@@ -132,13 +134,6 @@ def _curvature(model: Model) -> FloatArray:
     _, _, second, positive = model
     with np.errstate(invalid="ignore"):
         return np.where(second > 0.01 * positive, second, positive)
-
-
-def _better(current: Model, fresh: Model) -> BoolArray:
-    # Where the values agree to rounding, the slope decides.
-    with np.errstate(invalid="ignore"):
-        level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
-    return (fresh[0] < current[0]) | level
 
 
 def _better_rows(current: Model, fresh: Model, angle: FloatArray, tried: FloatArray) -> BoolArray:
