@@ -35,14 +35,7 @@ from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, flywheel_speed, size_flywheel
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.joints import Joint
-from grashof.analysis.forces.loads import (
-    AppliedForce,
-    AppliedMoment,
-    Friction,
-    Loads,
-    Spring,
-    TorsionSpring,
-)
+from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import (
     WEIGHTLESS,
     Body,

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import (
-    Curve,
-    Quantity,
-    dense_samples,
-    motion_between,
-    unwrapped,
-)
+from grashof.analysis.mechanism.extremes import Curve, Quantity, dense_samples, motion_between, unwrapped
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage

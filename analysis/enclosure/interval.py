@@ -141,7 +141,7 @@ class Centred:
         return Centred.of(self.mid / other.mid, over, slope, self.half)
 
     def root(self) -> Centred:
-        """Square root, of what is not negative."""
+        """Square root of a function that is not negative."""
         over = self.over.root()
         return Centred.of(self.mid.root(), over, self.slope / (over + over), self.half)
 

@@ -8,12 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.analysis import driver_ranges, solve_position
-from grashof.analysis.curves.fit import (
-    NotAFunctionWarning,
-    coupler_fit_r2,
-    fit_polynomial,
-    regression,
-)
+from grashof.analysis.curves.fit import NotAFunctionWarning, coupler_fit_r2, fit_polynomial, regression
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar, ProblemError
 

@@ -6,12 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.analysis import solve_position
-from grashof.analysis.curves.line_and_circle import (
-    along_path,
-    best_circle,
-    best_line,
-    circularity,
-)
+from grashof.analysis.curves.line_and_circle import along_path, best_circle, best_line, circularity
 from grashof.problems import FourBar, ProblemError
 
 ANGLES = st.floats(-np.pi, np.pi)

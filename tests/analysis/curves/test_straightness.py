@@ -4,13 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from grashof.analysis import (
-    BestLine,
-    driver_ranges,
-    solve_position,
-    straightest_half_turn,
-    straightness,
-)
+from grashof.analysis import BestLine, driver_ranges, solve_position, straightest_half_turn, straightness
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import AssemblyError, FourBar, ProblemError, load_linkage_spec
 
