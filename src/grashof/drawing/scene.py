@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.analysis.mechanism.position import places
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Link, Mechanism
