@@ -57,22 +57,6 @@ def test_luggage_states_the_shipped_problem(
 
 
 @pytest.mark.study
-def test_benchmark_measures(
-    script: Script, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    benchmark = script("benchmark_motion")
-    # Areas kept out and worker processes have tests of their own, and so have the other records.
-    monkeypatch.setattr(benchmark, "luggage_keep_out", lambda: None)
-    monkeypatch.setattr(benchmark, "luggage_time", lambda workers, runs: None)
-    monkeypatch.setattr(benchmark, "RECORDS", benchmark.RECORDS[2:3])
-    assert benchmark.main(["--planted", "1", "--runs", "1", "--sets", "100"]) == 0
-    said = capsys.readouterr().out
-    assert "planted: 1 of 1 solved" in said
-    assert "limit 12: 30.17" in said
-    assert "five poses, 100 random sets" in said
-
-
-@pytest.mark.study
 def test_own_task_holds_its_own_constraints(tmp_path: Path) -> None:
     """In a process of its own, as a user runs it."""
     said = run("own_task.py", "mine.csv", cwd=tmp_path)
@@ -104,16 +88,6 @@ def test_an_analysis_module_beside_the_script_does_no_harm(tmp_path: Path) -> No
     assert done.stdout == "verify\n"
 
 
-def test_benchmark_of_the_analysis_agrees_with_the_plain_form(
-    script: Script, capsys: pytest.CaptureFixture[str]
-) -> None:
-    script("benchmark_analysis").main(["--angles", "2000", "--linkages", "50", "--runs", "1"])
-    said = capsys.readouterr().out
-    difference = float(said.split("largest difference ")[1].split()[0])
-    assert difference < 1e-12
-    assert "50 linkages at 64 angles" in said
-
-
 @pytest.mark.study
 def test_pictures_of_the_pages_are_made(
     script: Script, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -130,14 +104,6 @@ def test_pictures_of_the_pages_are_made(
     shown = {name for page in pages for name in re.findall(r"\]\(\.\./([\w.-]+)\)", page)}
     assert {"luggage.png", "luggage.gif", "design-space.png"} < made <= shown
     assert (SCRIPTS.parent / "docs" / "luggage.gif").stat().st_size < 600_000
-
-
-@pytest.mark.slow
-def test_benchmark_of_the_page_measures(script: Script, capsys: pytest.CaptureFixture[str]) -> None:
-    script("benchmark_report").main(["--designs", "60", "--runs", "1"])
-    said = capsys.readouterr().out
-    assert "luggage, 60 designs" in said
-    assert float(said.split()[-2]) < 1  # MB
 
 
 @pytest.mark.study

@@ -28,7 +28,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before NumPy is load
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402
-from limited_tasks import problem_of  # noqa: E402
+from limited import problem_of  # noqa: E402
 from peers import PEERS, LeftOutError  # noqa: E402
 
 from grashof import load, synthesize  # noqa: E402
