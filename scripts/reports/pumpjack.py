@@ -1,5 +1,6 @@
 """The report on a pumpjack: what it shows and prints, with right figures."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -37,13 +38,9 @@ _DENSE = 7201
 ROD_UP, ROD_DOWN, SOFT = 20e3, 9e3, 0.1
 _BESIDE = 0.05  # m: so near a cross its name is that of the dot
 _CROSS: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "x",
-    "markersize": 7,
-    "markeredgewidth": 1.6,
-    "color": "#b03a2e",
+    "linestyle": "none", "marker": "x", "markersize": 7, "markeredgewidth": 1.6, "color": "#b03a2e",
     "zorder": 9,
-}
+}  # fmt: skip
 
 
 def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
@@ -71,33 +68,22 @@ class AsPublished:
         """At the driver angles of a state, shape (N,)."""
         way = linkage.o4 - state.a.position
         theta4 = state.theta4 - (state.theta3 - np.arctan2(way[:, 1], way[:, 0]))
+        lengths, angles = (linkage.r2, linkage.r3, linkage.r4), (state.theta2, state.theta3, theta4)
         two, three, four = (
-            float(length) * np.exp(1j * angle)
-            for length, angle in (
-                (linkage.r2, state.theta2),
-                (linkage.r3, state.theta3),
-                (linkage.r4, theta4),
-            )
+            float(length) * np.exp(1j * angle) for length, angle in zip(lengths, angles, strict=True)
         )
         omega3, omega4 = _two(1j * three, -1j * four, -1j * two * state.omega2)
-        alpha3, alpha4 = _two(
-            1j * three, -1j * four, two * state.omega2**2 + three * omega3**2 - four * omega4**2
-        )
+        push = two * state.omega2**2 + three * omega3**2 - four * omega4**2
+        alpha3, alpha4 = _two(1j * three, -1j * four, push)
         r4 = float(linkage.r4)
-        return cls(
-            np.degrees(np.unwrap(theta4)),
-            omega3,
-            alpha3,
-            r4 * np.abs(omega4),
-            r4 * np.hypot(omega4**2, alpha4),
-        )
+        speed, acceleration = r4 * np.abs(omega4), r4 * np.hypot(omega4**2, alpha4)
+        return cls(np.degrees(np.unwrap(theta4)), omega3, alpha3, speed, acceleration)
 
 
 def _two(first: np.ndarray, second: np.ndarray, right: np.ndarray) -> tuple[FloatArray, FloatArray]:
     """Real x and y with x first + y second = right, complex; shape (N,)."""
-    matrix = np.stack([np.stack([each.real, each.imag], -1) for each in (first, second)], -1)
-    solved = np.linalg.solve(matrix, np.stack([right.real, right.imag], -1)[..., None])[..., 0]
-    return solved[:, 0], solved[:, 1]
+    over = (first.conj() * second).imag
+    return (right.conj() * second).imag / over, (first.conj() * right).imag / over
 
 
 class Pumpjack:
@@ -161,9 +147,8 @@ class Pumpjack:
         }  # fmt: skip
         upright = self.state(90.0)
         for name, masses in (("system", self.bars), ("system_whole", self.whole)):
-            found |= dict(
-                zip((f"{name}_x", f"{name}_y"), system_centre(masses, upright).position, strict=True)
-            )
+            x, y = system_centre(masses, upright).position
+            found |= {f"{name}_x": x, f"{name}_y": y}
         for link, name in ((3, "coupler"), (4, "beam")):
             centre = upright.point(link, self.bars.of(link).centre).position
             found |= {f"{name}_x": float(centre[0]), f"{name}_y": float(centre[1])}
@@ -230,40 +215,12 @@ class Pumpjack:
         seconds = TURN / self.omega2
         return Made({"": figure, "moving": draw_motion(self.spec, seconds=seconds, fps=12.5, annotated=True)})
 
-    def theta2(self) -> Made:
-        """The sawtooth."""
-        return shown(self.history.plots["theta2-over-time"])
-
-    def angles(self) -> Made:
-        """theta3 and theta4."""
-        plot = self.history.plots["angles-over-time"]
-        return shown(lines(plot, besides={"theta4 as published": self.wrong.theta4_deg}))
-
-    def place(self) -> Made:
-        """P."""
-        return shown(self.history.plots["p-place-over-time"])
-
-    def omega3(self) -> Made:
-        """Angular velocity of the coupler."""
-        return self._rate(
-            "angular-velocity-over-time", ["omega3"], {"omega3 as published": self.wrong.omega3}
-        )
-
-    def alpha3(self) -> Made:
-        """Angular acceleration of the coupler."""
-        besides = {"alpha3 as published": self.wrong.alpha3}
-        return self._rate("angular-acceleration-over-time", ["alpha3"], besides)
-
-    def speeds(self) -> Made:
-        """Of A and B."""
-        return self._rate("speed-over-time", ["A", "B"], {"B as published": self.wrong.speed})
-
-    def accelerations(self) -> Made:
-        """Of A and B."""
-        return self._rate("acceleration-over-time", ["A", "B"], {"B as published": self.wrong.acceleration})
-
-    def _rate(self, key: str, wanted: list[str], besides: dict[str, FloatArray]) -> Made:
-        return shown(lines(self.history.plots[key], wanted, besides))
+    def over_time(self, key: str, wanted: Sequence[str] = (), name: str = "", published_as: str = "") -> Made:
+        """Lines of a plot over time; with a name also the report's line, an attribute of `AsPublished`."""
+        plot = self.history.plots[f"{key}-over-time"]
+        if not name:
+            return shown(plot)
+        return shown(lines(plot, wanted, {f"{name} as published": getattr(self.wrong, published_as)}))
 
     def strokes(self) -> Made:
         """The horsehead's height over time, and how long it takes up and down."""

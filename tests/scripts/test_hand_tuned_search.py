@@ -110,5 +110,5 @@ def test_it_prints_what_guesses_come_to(script: ModuleType, capsys: pytest.Captu
     said = capsys.readouterr().out
     assert all(f"│ T{number} " in said for number in range(2, 7))
     assert "all 1560 pairs" in said.replace("\n", " ")
-    assert "one mind on 100 of 100" in said
+    assert "agrees on 100 of 100" in said
     assert re.search(r"grashof.synthesize: \d\d designs", said)
