@@ -20,7 +20,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", choices=FAMILIES, help="this kind alone")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--patience", type=int, default=6, help="so many loops without a new one end it")
+    parser.add_argument(
+        "--patience", type=int, default=6, help="consecutive loops without a new one after which it stops"
+    )
     options = parser.parse_args(argv)
     for name, family in FAMILIES.items():
         if options.only not in (None, name):

@@ -3,7 +3,7 @@
     python scripts/fuzz.py                    # 10 000 mutants
     python scripts/fuzz.py --show FILE        # examine a finding again
 
-Every mutant loads, or `ProblemError` states what is wrong, in a line for each error. A problem that loads
+Every mutant loads, or `ProblemError` states each error in a line of its own. A problem that loads
 is the same when written and read again. A share of the problems, of up to a hundred targets, are
 searched briefly, and every design is judged once more from its numbers alone; a share of the linkages are
 reported on. Exit code 1: something was found.
@@ -90,7 +90,7 @@ def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Findin
         return found
     except TooLongError:
         return Finding(HANG, traceback.format_exc())
-    except Exception:  # noqa: BLE001  (this is what is looked for)
+    except Exception:  # noqa: BLE001  (findings)
         return Finding(TRACEBACK, traceback.format_exc())
     return None
 

@@ -248,7 +248,7 @@ class Mutator:
 
 
 def _json_text(document: dict[str, Any]) -> str:
-    """The same as JSON; Python writes no number of thousands of digits unless it is told to."""
+    """The same as JSON, with numbers of thousands of digits, which Python writes on demand alone."""
     before = sys.get_int_max_str_digits()
     sys.set_int_max_str_digits(0)
     try:

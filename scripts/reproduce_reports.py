@@ -52,9 +52,9 @@ def pumpjack() -> list[Row]:
     stroke = output_stroke(linkage)
     ends = np.sort(solve_kinematics(linkage, stroke.theta2, omega2).b.acceleration_magnitude)[::-1]
     a = solve_kinematics(linkage, 0.0, omega2).a
-    bars, whole = bodies(spec)
+    bars, full = bodies(spec)
     upright = solve_kinematics(linkage, np.pi / 2, omega2)
-    centre, centre_whole = (_pair(system_centre(masses, upright).position) for masses in (bars, whole))
+    centre, centre_full = (_pair(system_centre(masses, upright).position) for masses in (bars, full))
     return [
         (
             "omega3 max / min, rad/s", "0.67 / -1.91", f"{omega3.high:.6f} / {omega3.low:.6f}",
@@ -70,12 +70,12 @@ def pumpjack() -> list[Row]:
         ("rocker swing, deg", "69.2 (from its code)", f"{np.degrees(stroke.swing):.6f}", "as omega3"),
         (
             "system COM at theta2 = 90 deg", "(2.92, 3.19)",
-            f"{centre}; with the full beam A + C {centre_whole}",
+            f"{centre}; with the full beam A + C {centre_full}",
             "coupler assumed horizontal; one link's centre used as the next one's joint",
         ),
         (
             "moving mass, kg", "3941.98",
-            f"{bars.total:.2f} for the links simulated; {whole.total:.2f} with the full beam",
+            f"{bars.total:.2f} for the links simulated; {full.total:.2f} with the full beam",
             f"beam length 7.62 used, rocker is {linkage.r4:.6f}",
         ),
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""The package as a whole: its map of folders, its layers, what importing it costs."""
+"""The package as a whole: its map of folders, its layers, the cost of importing it."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""The generated reference: every key, column, option and public name is there, and is told what it means."""
+"""The generated reference: every key, column, option and public name is there, and has a meaning."""
 
 import doctest
 import re
@@ -35,11 +35,11 @@ TABLES = [(f"{file}: {path}", table) for file, tables in FILES.items() for path,
 
 @pytest.mark.parametrize(("path", "table"), TABLES, ids=[path for path, _ in TABLES])
 def test_every_key_has_a_value_and_a_sentence(path: str, table: type) -> None:
-    told = keys.keys_of(table)
-    assert [key.name for key in told] == list(table.model_fields)  # type: ignore[attr-defined]
-    assert [key.name for key in told if not key.value or not key.text.endswith(".")] == []
+    listed_keys = keys.keys_of(table)
+    assert [key.name for key in listed_keys] == list(table.model_fields)  # type: ignore[attr-defined]
+    assert [key.name for key in listed_keys if not key.value or not key.text.endswith(".")] == []
     assert [
-        key.name for key in told if re.match("Built-in|Represent", key.text)
+        key.name for key in listed_keys if re.match("Built-in|Represent", key.text)
     ] == []  # of Python's own types
 
 

@@ -1,6 +1,6 @@
 """Measure Grashof and what a user would take instead on the same tasks, judged by one judge.
 
-    pip install '.[bench]' && python scripts/benchmarks/benchmark.py --out benchmark
+    pip install '.[bench]' && python scripts/benchmarks/compare.py --out benchmark
 
 One after another in one process, single-threaded. Of every run: processor time to the first design that the
 judge accepts within 1 % of the least error that any run found (of exact tasks: to rounding), how many
@@ -44,7 +44,7 @@ LIMITED = Path(__file__).parents[2] / "tests" / "data" / "limited.json"
 
 
 def tasks() -> dict[str, Problem]:
-    """All tasks; what is only ranked, such as masses, is left out."""
+    """All tasks, without data for ranking alone, such as masses."""
     rng = np.random.default_rng(17)
     found = {name: load(name) for name in ("luggage", "path-8-points", "path-18-timed", "path-ellipse")}
     found["six-point line"] = load("path-vertical-line")
@@ -63,8 +63,8 @@ def tasks() -> dict[str, Problem]:
 def judged(problem: Problem, linkage: Linkage) -> float:
     """The error of a linkage that meets all requirements, length or rad; infinite of others.
 
-    Exactness is asked for afterwards: least squares counts here as what it is. Of a function whose greatest
-    error is to be least it is that one over the whole range, not at the pairs alone.
+    Exactness is required afterwards, so least squares counts here by its error. The greatest error of a
+    function is that over the full range, not at the pairs alone.
     """
     task, wanted = problem.task, replace(problem.requirements, exact=False)
     verdict = verify(linkage, task, wanted)
@@ -76,7 +76,7 @@ def judged(problem: Problem, linkage: Linkage) -> float:
 
 
 def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]:
-    """What a package finds, and when."""
+    """The linkages that a package finds, and the times."""
     found: list[tuple[float, Linkage]] = []
     begun, wall = process_time(), perf_counter()
     signal.setitimer(signal.ITIMER_PROF, OVERTIME * budget)
@@ -130,8 +130,8 @@ def reached(problem: Problem, one: dict[str, Any], best: float) -> float:
 def table(runs: dict[str, Any], problems: dict[str, Problem]) -> str:
     """A row for each task and package.
 
-    The time to the first design is that expected with restarts: all that the seeds spend until then, or in
-    vain, over the number of those that come to one. Else medians over the seeds.
+    The time to the first design is that expected with restarts: the time that all seeds spend until then, or
+    in vain, over the number of seeds with a design. Else medians over the seeds.
     """
     lines = [
         "| task | package | least error / size | first, s | in all, s | seeds | distinct | usable |",
@@ -179,7 +179,7 @@ def best_of(runs: dict[str, Any], task: str) -> float:
 
 
 def draw_profile(runs: dict[str, Any], problems: dict[str, Problem], path: Path) -> None:
-    """Share of runs that a package does within so many times the time of the fastest package."""
+    """Share of runs that a package does within a multiple of the time of the fastest package."""
     from matplotlib.figure import Figure
 
     cases = sorted({tuple(key.split("|")[::2]) for key in runs})
@@ -210,7 +210,7 @@ def draw_profile(runs: dict[str, Any], problems: dict[str, Problem], path: Path)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run what is asked for, and write the table."""
+    """Run the chosen packages on the chosen tasks, and write the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("benchmark"))
     parser.add_argument("--seeds", type=int, default=10)
@@ -225,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     problems = {name: each for name, each in tasks().items() if given.tasks is None or name in given.tasks}
     peers = given.packages or list(PEERS)
     load("luggage")
-    PEERS["Grashof"](tasks()["luggage"], 0, 1.0, lambda _: None)  # what loads once is not measured
+    PEERS["Grashof"](tasks()["luggage"], 0, 1.0, lambda _: None)  # imports are not measured
     for seed in range(given.seeds):
         for task, problem in problems.items():
             for peer in peers:

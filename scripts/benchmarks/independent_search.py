@@ -5,7 +5,7 @@ closed by the elbow formula, every limit is a residual once it is overstepped, a
 improves many random starts at once, with differences for derivatives. Sequential quadratic programming
 (SLSQP of scipy) brings the best under their limits, and `grashof.analysis.judge.verify` judges them.
 
-It is plain, to hold the package's own search against. It knows free and timed points met in order, and poses
+It is plain, a reference for the package's own search. It knows free and timed points met in order, and poses
 with position and angle; no areas to keep out of and no constraints of one's own.
 """
 
@@ -20,7 +20,7 @@ from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 TURN, STARTS, POLISHED = 2 * np.pi, 800, 40
-# So far inside its limits a design is made, sizes and rad (the judge forgives 1e-9); step of differences.
+# Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
@@ -66,7 +66,7 @@ class Aim:
 
     @property
     def whole_turn(self) -> bool:
-        """Whether the transmission angle counts over the whole turn."""
+        """Whether the transmission angle counts over the full turn."""
         return self.closed or self.wanted.transmission_over == "cycle"
 
 
@@ -139,7 +139,7 @@ def places(aim: Aim, designs: Designs) -> Places:  # closure: RRR
 
 
 def misses(aim: Aim, at: Places) -> FloatArray:
-    """What is squared: weighted distances of points, and turns of poses as lengths; shape (B, M)."""
+    """Terms of the sum of squares: weighted distances of points, turns of poses as lengths; shape (B, M)."""
     gap = (at.p - aim.points) * aim.root_weights
     parts = [gap.real, gap.imag]
     if aim.turned:
@@ -313,7 +313,7 @@ def distinct(aim: Aim, designs: Designs, cost: FloatArray) -> Designs:
 def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
     """A design brought under its limits, and its sum of squares; infinite where that fails.
 
-    `steady` asks for the driver angles nearest to their targets where limits depend on them.
+    `steady` requires the driver angles nearest to their targets where limits depend on them.
     """
     last: dict[bytes, tuple[FloatArray, ...]] = {}
 
@@ -371,7 +371,7 @@ class Best:
 
 
 def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None:
-    """The best design from so many random starts, or None where the judge accepts none.
+    """The best design from random starts, or None where the judge accepts none.
 
     Parameters
     ----------
@@ -382,7 +382,7 @@ def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None
     Raises
     ------
     ValueError
-        The problem asks for something that this search does not know.
+        The problem has a requirement that this search does not know.
     """
     aim = Aim.of(problem)
     designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))

@@ -1,4 +1,4 @@
-"""What benchmarks share: their cases, and times in words."""
+"""Shared by the benchmarks: cases, and times in words."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass

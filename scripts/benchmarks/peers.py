@@ -1,6 +1,6 @@
-"""What a user would take instead of Grashof: general solvers on the usual formulation, and other packages.
+"""Alternatives to Grashof: general solvers on the usual formulation, and other packages.
 
-Each tells of linkages as it finds them, for `benchmark.py`, which judges them, and goes on with other starts
+Each reports linkages as it finds them to `compare.py`, which judges them, and continues with other starts
 until its time is over. Each is used as its documentation recommends; what it cannot express is left out.
 """
 
@@ -62,22 +62,22 @@ def starts(
 
 def grashof(problem: Problem, seed: int, budget: float, found: Found) -> None:
     """Grashof with its defaults; it ends by itself."""
-    told: set[str] = set()
+    reported: set[str] = set()
 
-    def tell(progress: Progress) -> None:
+    def report(progress: Progress) -> None:
         for each in progress.designs:
-            if each.id not in told:
-                told.add(each.id)
+            if each.id not in reported:
+                reported.add(each.id)
                 found(each.linkage)
 
     del budget
-    for each in synthesize(problem, seed=seed, progress=tell).top(200).candidates:
-        if each.id not in told:
+    for each in synthesize(problem, seed=seed, progress=report).top(200).candidates:
+        if each.id not in reported:
             found(each.linkage)
 
 
 def scipy_least_squares(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """Trust-region reflective from random starts, by turns with the limits as penalties and without them."""
+    """Trust-region reflective from random starts, alternately with limits as penalties and without them."""
     task = formulated(problem)
     for number, (_, choice, x) in enumerate(starts(task, seed, budget)):
         given = task, choice, WEIGHT * (number % 2)
@@ -221,7 +221,7 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
                     Choice(float(made.assembly), choice.way, 1.0),
                 )
                 error = float(np.abs(formulation.residuals(*known)).max())
-                if error < least:  # of so many the best ones
+                if error < least:  # only the best of many
                     least = error
                     found(made)
         return

@@ -129,7 +129,7 @@ def stroke(number: int) -> bool:
 
 
 def of_poses(draw: Callable[[int], Problem], count: int, seed: int) -> Iterator[str]:
-    """What is proven of four poses; tasks that stay open, each with its reason."""
+    """Claims proven of four poses; tasks that stay open, each with its reason."""
     claims, seconds = Counter[Claim](), []
     for number in range(seed, seed + count):
         proof, took = timed(lambda: proven(draw(number)), process_time)  # noqa: B023

@@ -35,7 +35,7 @@ class Item:
     make : str
         The method that makes the counterpart.
     reported, right, wrong : str
-        What the report shows or prints, what is right, with names of figures in braces, and what was wrong.
+        Content of the report, the right figures, by their names in braces, and the error.
     args : sequence
         Of the method.
     """
@@ -79,7 +79,7 @@ def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     sources: dict[str, Pumpjack | Luggage] = {"pumpjack": Pumpjack(), "luggage": Luggage()}
-    told: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
+    entries_of: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
     written: list[Path] = []
     for item in items():
         source = sources[item.report]
@@ -89,7 +89,7 @@ def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
             made = getattr(source, item.make)(*item.args)
         pictures, tables = _write(folder, item.stem, made)
         written += [*pictures, *(path for path, _ in tables)]
-        told[item.report].append(
+        entries_of[item.report].append(
             {
                 "item": item,
                 "right": item.right.format(**source.numbers),
@@ -99,7 +99,7 @@ def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
             }
         )
     pages = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined)
-    page = pages.get_template("page.html").render(reports=REPORTS, told=told)
+    page = pages.get_template("page.html").render(reports=REPORTS, entries_of=entries_of)
     (folder / "index.html").write_text(page, encoding="utf-8")
     return [*written, folder / "index.html"]
 
@@ -128,7 +128,7 @@ def _inline(path: Path) -> dict[str, str]:
 
 
 def _short(table: pd.DataFrame) -> dict[str, Any]:
-    """Headings and cells of a table that is short enough to be read; else only how long it is."""
+    """Headings and cells of a short table; of a long one only its length."""
     if len(table) > _ROWS:
         return {"columns": [], "rows": [], "count": len(table)}
     cells = [[_cell(value) for value in row] for row in table.itertuples(index=False)]

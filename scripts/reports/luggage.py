@@ -1,4 +1,4 @@
-"""The report on unloading luggage: what it shows and prints, with right figures."""
+"""The report on unloading luggage: its items with right figures."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -46,7 +46,7 @@ class Luggage:
 
     @cached_property
     def verdict(self) -> Verdict:
-        """What the judge says, at a tolerance that the residuals allow."""
+        """The verdict, at a tolerance that the residuals allow."""
         wanted = replace(self.problem.requirements, tolerance=2e-6)
         return verify(self.linkage, self.problem.task, wanted)
 
@@ -112,7 +112,7 @@ class Luggage:
 
     @cached_property
     def numbers(self) -> dict[str, float | str]:
-        """All that the words of the items quote."""
+        """The figures that the texts of the items quote."""
         found: dict[str, float | str] = {
             "step": float(np.degrees(published.STEP)),
             "low_1": 100 * (1 - published.STEP / published.H),
@@ -152,7 +152,7 @@ class Luggage:
         return found | {f"slope_{str(path)[-1]}": float(slope) for path, slope in slopes}
 
     def _residuals(self) -> tuple[float, float]:
-        """Root of the sum of squares of what each dyad leaves open at the driver angles printed."""
+        """Root of the sum of squares of the gaps of each dyad at the driver angles printed."""
         task, first = self.problem.task, solve_position(self.linkage, self.verdict.theta2[0])
         place = task.positions @ np.array([1, 1j])
         body = np.exp(1j * (task.angles - task.angles[0])) - 1
@@ -186,7 +186,7 @@ class Luggage:
         return Made({"": figure}, {"": Analysis.of(self.spec, at_deg=tuple(angles)).tables["positions"]})
 
     def guess(self, name: str) -> Made:
-        """A guess of the report: what BFGS makes of it, and what the judge says of that."""
+        """A guess of the report, its dyads by BFGS, and the verdict on them."""
         each = next(each for each in self.guesses if each.guess.name == name)
         rows = []
         sides = ("left", each.guess.left, each.left), ("right", each.guess.right, each.right)
@@ -215,7 +215,7 @@ class Luggage:
         return Made({} if figure is None else {"": figure}, tables)
 
     def result(self) -> Made:
-        """Table 7 beside the catalogue's linkage, and what the report does not say of it."""
+        """Table 7 beside the catalogue's linkage, and its errors, which the report does not state."""
         left, right = self._residuals()
         lengths = [float(length) for length in self.linkage.lengths]
         state = solve_position(self.linkage, self.verdict.theta2)
@@ -225,10 +225,10 @@ class Luggage:
         printed = [*published.RESIDUALS, published.R1, published.R2, published.R3, published.R4]
         ours = [left, right, *lengths]
         for name, given, found in (("beta", published.BETA, driver), ("gamma", published.GAMMA, output)):
-            for number, (told, angle) in enumerate(zip(given, found, strict=True), start=1):
+            for number, (given_angle, angle) in enumerate(zip(given, found, strict=True), start=1):
                 names.append(f"{name}{number}, deg")
-                printed.append(told)
-                ours.append(float(angle + 360 * round((told - angle) / 360)))
+                printed.append(given_angle)
+                ours.append(float(angle + 360 * round((given_angle - angle) / 360)))
         table = pd.DataFrame({"quantity": names, "printed": printed, "catalogue": ours})
         errors = pd.DataFrame(
             {
@@ -304,10 +304,11 @@ class Luggage:
     def torque_over(self, range_: str) -> Made:
         """The drive torque over the report's samples, with its extremes, over a fine turn, or on the job."""
         samples = self.start + published.STEP * np.arange(published.SAMPLES)
+        begin, end = self.verdict.theta2[[0, -1]]
         theta2, over = {
             "samples": (samples, COUNTED),
             "turn": (np.linspace(0, TURN, 1441), DRIVER_ANGLE),
-            "job": (np.linspace(*self.verdict.theta2[[0, -1]], 481), COUNTED),
+            "job": (np.linspace(begin, end, 481), COUNTED),
         }[range_]
         levels = (
             dict(zip(("greatest", "least"), published.TORQUE, strict=False)) if range_ == "samples" else {}

@@ -1,4 +1,4 @@
-"""The report on a pumpjack: what it shows and prints, with right figures."""
+"""The report on a pumpjack: its items with right figures."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -44,7 +44,7 @@ _CROSS: dict[str, Any] = {
 
 
 def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
-    """The links as bars of 0.2 x 0.2 m, link 4 from O4 to B; and with the whole beam, A + C long."""
+    """The links as bars of 0.2 x 0.2 m, link 4 from O4 to B; and with the full beam, A + C long."""
     linkage = spec.four_bar
     bars = uniform_bars(linkage, np.array(published.DENSITIES) * published.SIDE**2)
     length = float(linkage.r4) + (spec.output_arm or 0.0)
@@ -55,7 +55,7 @@ def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsPublished:
-    """What the report's code computes, with theta_s + mu for theta4 in place of theta3 + mu."""
+    """Results of the report's code, with theta_s + mu for theta4 in place of theta3 + mu."""
 
     theta4_deg: FloatArray
     omega3: FloatArray
@@ -95,7 +95,7 @@ class Pumpjack:
             self.spec, seconds=published.SECONDS, step=published.TIME_STEP, start_deg=published.START_DEG,
             at_deg=published.PICTURES,
         )  # fmt: skip
-        self.bars, self.whole = bodies(self.spec)
+        self.bars, self.full = bodies(self.spec)
 
     @property
     def linkage(self) -> FourBar:
@@ -109,7 +109,7 @@ class Pumpjack:
 
     @cached_property
     def wrong(self) -> AsPublished:
-        """What the report's code computes at its samples."""
+        """Results of the report's code at its samples."""
         theta2 = np.radians(self.history.tables["over-time"]["theta2_total_deg"])
         return AsPublished.of(self.linkage, solve_kinematics(self.linkage, theta2, self.omega2))
 
@@ -119,7 +119,7 @@ class Pumpjack:
 
     @cached_property
     def numbers(self) -> dict[str, float | str]:
-        """All that the words of the items quote."""
+        """The figures that the texts of the items quote."""
         linkage, stroke = self.linkage, output_stroke(self.linkage)
         found: dict[str, float | str] = {}
         for name, of in {
@@ -142,11 +142,11 @@ class Pumpjack:
             "rotation_pi": published.SECONDS * self.omega2 / np.pi, "swing": float(np.degrees(stroke.swing)),
             "time_ratio": float(stroke.time_ratio), "up": up, "down": down,
             "slower": "slower" if down > up else "faster",
-            "mass": float(self.bars.total), "mass_whole": float(self.whole.total),
+            "mass": float(self.bars.total), "mass_whole": float(self.full.total),
             "r4": float(linkage.r4), "beam": float(linkage.r4) + (self.spec.output_arm or 0.0),
         }  # fmt: skip
         upright = self.state(90.0)
-        for name, masses in (("system", self.bars), ("system_whole", self.whole)):
+        for name, masses in (("system", self.bars), ("system_whole", self.full)):
             x, y = system_centre(masses, upright).position
             found |= {f"{name}_x": x, f"{name}_y": y}
         for link, name in ((3, "coupler"), (4, "beam")):
@@ -241,11 +241,11 @@ class Pumpjack:
         return time, arm * (angle - angle.min()), arm * state.omega4
 
     def masses(self) -> Made:
-        """Volumes, densities, masses; with link 4 alone and with the whole beam."""
+        """Volumes, densities, masses; with link 4 alone and with the full beam."""
         lengths = {"crank": self.linkage.r2, "coupler": self.linkage.r3, "rocker, O4 to B": self.linkage.r4}
         named = [*zip(lengths.items(), published.DENSITIES, strict=True)]
-        whole = float(self.linkage.r4) + (self.spec.output_arm or 0.0)
-        named += [(("whole beam, A + C", np.asarray(whole)), published.DENSITIES[2])]
+        beam = float(self.linkage.r4) + (self.spec.output_arm or 0.0)
+        named += [(("whole beam, A + C", np.asarray(beam)), published.DENSITIES[2])]
         rows = []
         for (name, length), density in named:
             volume = float(length) * published.SIDE**2
@@ -254,7 +254,7 @@ class Pumpjack:
         totals = pd.DataFrame(
             {
                 "moving mass": ["links simulated", "with the whole beam", "as published"],
-                "kg": [float(self.bars.total), float(self.whole.total), float(published.MASS)],
+                "kg": [float(self.bars.total), float(self.full.total), float(published.MASS)],
             }
         )
         return Made(tables={"": pd.DataFrame(rows), "total": totals})
@@ -267,14 +267,14 @@ class Pumpjack:
             for link, name in ((2, "crank"), (3, "coupler"), (4, "beam"))
         }
         right["system"] = system_centre(self.bars, state).position
-        right["system with the whole beam"] = system_centre(self.whole, state).position
-        told = {**published.CENTRES, "system with the whole beam": published.SYSTEM}
+        right["system with the whole beam"] = system_centre(self.full, state).position
+        theirs = {**published.CENTRES, "system with the whole beam": published.SYSTEM}
         with rc_context(STYLE):
             figure = Figure(figsize=(WIDTH, 6.6), layout="constrained")
             axes = plot_linkage(self.spec, theta2=np.pi / 2, ax=figure.subplots())
-            _mark(axes, right, told)
+            _mark(axes, right, theirs)
         rows = [
-            {"centre of": name, "x_m": place[0], "y_m": place[1], **_as_published(told.get(name))}
+            {"centre of": name, "x_m": place[0], "y_m": place[1], **_as_published(theirs.get(name))}
             for name, place in right.items()
         ]
         return Made({"": figure}, {"": pd.DataFrame(rows)})
@@ -304,10 +304,10 @@ class Pumpjack:
         # The rope leaves the horsehead at the same distance from O4 at every angle: a moment of its tension.
         loads = Loads(gravity=gravity, moments=(AppliedMoment(4, pull),))
         turn = self.state(np.linspace(0, 360, 720, endpoint=False))
-        balanced = balance_torque(turn, self.whole, loads, radius=float(self.linkage.r2))
+        balanced = balance_torque(turn, self.full, loads, radius=float(self.linkage.r2))
         state = self.state(angle_deg)
         before, after = (
-            inverse_dynamics(state, masses, loads).torque for masses in (self.whole, balanced.masses)
+            inverse_dynamics(state, masses, loads).torque for masses in (self.full, balanced.masses)
         )
         return before, after, balanced.crank_weight
 
@@ -331,7 +331,7 @@ class Pumpjack:
         return Made({"": figure}, {"": table[table["theta2_deg"] == theta2_deg]})
 
 
-def _mark(axes: Axes, right: dict[str, FloatArray], told: dict[str, tuple[float, float]]) -> None:
+def _mark(axes: Axes, right: dict[str, FloatArray], theirs: dict[str, tuple[float, float]]) -> None:
     """Centres as dots, and as crosses where the report has them."""
     for number, (name, place) in enumerate(right.items()):
         marker = "o" if not name.startswith("system") else "Ds"[name != "system"]
@@ -339,7 +339,7 @@ def _mark(axes: Axes, right: dict[str, FloatArray], told: dict[str, tuple[float,
             *place[:, None], linestyle="none", marker=marker, markersize=7, markerfacecolor=f"C{number}",
             markeredgecolor="black", label=f"centre: {name}", zorder=8,
         )  # fmt: skip
-    for number, (name, cross) in enumerate(told.items()):
+    for number, (name, cross) in enumerate(theirs.items()):
         axes.plot(*np.array(cross)[:, None], **_CROSS, label="as published" if number == 0 else None)
         if np.hypot(*(right[name] - cross)) > _BESIDE:
             words = name.removesuffix(" with the whole beam")

@@ -1,4 +1,4 @@
-"""The checker of certificates confirms what is proven, and finds what was tampered with."""
+"""The checker of certificates confirms what is proven, and finds tampering."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hand-tuned search: what the report's guesses come to; pairs judged at once as one by one."""
+"""The hand-tuned search: the report's guesses; pairs judged at once as one by one."""
 
 from __future__ import annotations
 
@@ -68,14 +68,14 @@ def test_a_dyad_closes_where_its_residual_says(script: ModuleType, luggage: Prob
 def test_outcomes_are_told(script: ModuleType, luggage: Problem) -> None:
     each = script.tried(luggage, script.GUESSES[4])
 
-    def told(**changed: bool) -> str:
+    def described(**changed: bool) -> str:
         verdict: Verdict = replace(each.verdict, **changed)
         return str(script.outcome(replace(each, verdict=verdict)))
 
-    assert "circuit defect" in told(circuit_ok=False, branch_ok=False)
-    assert "branch defect" in told(branch_ok=False)
-    assert "out of order" in told(order_ok=False)
-    assert "over the turn" not in told(full_rotation=False)
+    assert "circuit defect" in described(circuit_ok=False, branch_ok=False)
+    assert "branch defect" in described(branch_ok=False)
+    assert "out of order" in described(order_ok=False)
+    assert "over the turn" not in described(full_rotation=False)
 
 
 @pytest.mark.study

@@ -66,7 +66,7 @@ def script(scripts: None) -> ModuleType:
 
 @pytest.fixture(scope="module")
 def sources(scripts: None) -> dict[str, Any]:
-    """What makes the items of either report."""
+    """The makers of the items of either report."""
     return {
         "pumpjack": import_module("reports.pumpjack").Pumpjack(),
         "luggage": import_module("reports.luggage").Luggage(),
@@ -130,7 +130,7 @@ def test_it_prints_them(
 
 
 def test_every_figure_and_table_of_the_reports_is_listed() -> None:
-    """The lists of both: figures and tables by number, and what is printed or said besides."""
+    """The lists of both: figures and tables by number, and statements besides."""
     found = {
         name: Counter(item.figure for item in ITEMS if item.report == name)
         for name in ("pumpjack", "luggage")
@@ -151,7 +151,7 @@ def test_every_figure_and_table_of_the_reports_is_listed() -> None:
 def test_each_has_its_counterpart(item: Any, sources: dict[str, Any]) -> None:
     for words in (item.title, item.reported, item.right, item.wrong):
         assert len(words) > 5
-    # Right figures are in braces; a decimal of the report's own stands in what it prints alone.
+    # Right figures are in braces; decimals of the report occur in `reported` alone.
     plain = re.sub(r"{[^}]*}", "", item.right + item.wrong)
     assert re.findall(r"\d\.\d", plain) == []
     source = sources[item.report]
@@ -177,12 +177,12 @@ def drawn(axes: Axes) -> bool:
 
 def test_the_curves_as_published_are_those_of_the_code_of_the_report(sources: dict[str, Any]) -> None:
     """Its wrong theta4 put into the right equations gives what its code gives at its 301 samples."""
-    wrong, told = sources["pumpjack"].wrong, GOLDEN["report_figures"]["pumpjack"]["code_301_samples"]
+    wrong, published = sources["pumpjack"].wrong, GOLDEN["report_figures"]["pumpjack"]["code_301_samples"]
     for values, key in (
         (np.radians(wrong.theta4_deg), "theta4"), (wrong.omega3, "theta3dot"), (wrong.alpha3, "theta3ddot"),
         (wrong.speed, "vC"), (wrong.acceleration, "aC"),
     ):  # fmt: skip
-        assert [values.min(), values.max()] == pytest.approx(told[key], rel=1e-8)
+        assert [values.min(), values.max()] == pytest.approx(published[key], rel=1e-8)
 
 
 def test_words_quote_the_figures_of_the_audit(sources: dict[str, Any]) -> None:

@@ -23,7 +23,7 @@ SCRIPTS = Path(__file__).parents[2] / "scripts"
 
 
 def run(script: str, *arguments: str, cwd: Path) -> str:
-    """What a script prints in a process of its own."""
+    """The output of a script in a process of its own."""
     command = [sys.executable, str(SCRIPTS / script), *arguments]
     return subprocess.run(command, cwd=cwd, check=True, capture_output=True, text=True).stdout
 
