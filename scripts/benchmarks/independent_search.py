@@ -10,6 +10,7 @@ with position and angle; no areas to keep out of and no constraints of one's own
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,12 @@ class Aim:
     timing: FloatArray
     closed: bool
     wanted: Requirements
+    turned: bool
+    "Whether the targets have angles."
+    timed: bool
+    "Whether the driver rotations are prescribed."
+    over_turn: bool
+    "Whether the transmission angle counts over the full turn."
 
     @classmethod
     def of(cls, problem: Problem) -> "Aim":
@@ -50,41 +57,24 @@ class Aim:
         middle, size = complex(places.mean()), task.size
         if not (task.is_whole or task.only_points):
             raise ValueError("poses with free parts are not known here")
-        points, length, weights = (places - middle) / size, task.angle_length / size, np.sqrt(task.weights)
-        timing = task.driver_turns
-        return cls(size, middle, points, task.angles, weights, length, timing, task.closed, wanted)
-
-    @property
-    def turned(self) -> bool:
-        """Whether the targets have angles."""
-        return not np.isnan(self.angles).any()
-
-    @property
-    def timed(self) -> bool:
-        """Whether the driver rotations are prescribed."""
-        return not np.isnan(self.timing).any()
-
-    @property
-    def whole_turn(self) -> bool:
-        """Whether the transmission angle counts over the full turn."""
-        return self.closed or self.wanted.transmission_over == "cycle"
+        return cls(
+            size, middle, (places - middle) / size, task.angles, np.sqrt(task.weights),
+            task.angle_length / size, task.driver_turns, task.closed, wanted,
+            turned=not np.isnan(task.angles).any(), timed=not np.isnan(task.driver_turns).any(),
+            over_turn=task.closed or wanted.transmission_over == "cycle",
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Designs:
-    """A batch of designs being improved.
-
-    Parameters
-    ----------
-    x : ndarray, shape (B, n)
-        O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles.
-    elbow, sense : ndarray, shape (B,)
-        +1 or -1: side of B on A-O4, and sense of the driver.
-    """
+    """A batch of B designs being improved."""
 
     x: FloatArray
+    "(B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles."
     elbow: FloatArray
+    "(B,): side of B on A-O4, +1 or -1."
     sense: FloatArray
+    "(B,): of the driver, +1 or -1."
 
     def __getitem__(self, rows: IntArray | slice) -> "Designs":
         return Designs(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -195,7 +185,7 @@ def transmission(aim: Aim, at: Places) -> list[FloatArray]:
     least = np.radians(aim.wanted.transmission_min_deg) + INSIDE
     square, product = at.r3**2 + at.r4**2, 2 * at.r3 * at.r4 * np.cos(least)
     shortest, longest = np.abs(at.r1 - at.r2), at.r1 + at.r2
-    if not aim.whole_turn:
+    if not aim.over_turn:
         # Driver angles from the ground line; A passes it within the motion or not.
         around = (at.theta2 - np.angle(at.o4 - at.o2)) / TURN
         low, high = around.min(axis=1, keepdims=True), around.max(axis=1, keepdims=True)
@@ -213,7 +203,7 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     places of A and B are limited, a design may not gain by others.
     """
     boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box())
-    if aim.whole_turn and not boxed:
+    if aim.over_turn and not boxed:
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2
     down = (coupler.conj() * output).imag
@@ -315,22 +305,18 @@ def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
 
     `steady` requires the driver angles nearest to their targets where limits depend on them.
     """
-    last: dict[bytes, tuple[FloatArray, ...]] = {}
 
-    def rows(x: FloatArray, part: int) -> FloatArray:
-        if x.tobytes() not in last:
-            last.clear()
-            designs = replace(design, x=x[None]).nudged()
-            at = places(aim, designs)
-            last[x.tobytes()] = misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
-        return last[x.tobytes()][part]
+    @lru_cache(maxsize=1)
+    def batch(key: bytes) -> tuple[FloatArray, FloatArray, FloatArray]:
+        designs = replace(design, x=np.frombuffer(key)[None]).nudged()
+        at = places(aim, designs)
+        return misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
 
     def value(x: FloatArray, part: int) -> FloatArray:
-        found: FloatArray = rows(x, part)[0]
-        return found
+        return batch(x.tobytes())[part][0]
 
     def change(x: FloatArray, part: int) -> FloatArray:
-        found: FloatArray = (rows(x, part)[1:] - value(x, part)).T / NUDGE
+        found: FloatArray = (batch(x.tobytes())[part][1:] - value(x, part)).T / NUDGE
         return found
 
     def square(x: FloatArray) -> float:
@@ -371,18 +357,9 @@ class Best:
 
 
 def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None:
-    """The best design from random starts, or None where the judge accepts none.
+    """The best design of a least-squares problem from random starts; None where the judge accepts none.
 
-    Parameters
-    ----------
-    problem : Problem
-        With ``exact = false``.
-    starts, seed : int
-
-    Raises
-    ------
-    ValueError
-        The problem has a requirement that this search does not know.
+    ValueError: the problem has a requirement that this search does not know.
     """
     aim = Aim.of(problem)
     designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))
