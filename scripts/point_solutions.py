@@ -7,6 +7,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     options = parser.parse_args(argv)
     for name in (NINE, *FAMILIES) if options.only is None else (options.only,):
-        rng, more = np.random.default_rng(options.seed), {}
+        rng = np.random.default_rng(options.seed)
+        more: dict[str, Any] = {}
         if name == NINE:
             displacements, first = monodromy.general_problem(rng)
         else:

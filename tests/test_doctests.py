@@ -11,7 +11,7 @@ import pytest
 # By name: in an editable install the packages lie in folders of their own, not below `grashof`.
 PACKAGES = ("grashof", "grashof.problems", "grashof.analysis", "grashof.synth")
 ELSEWHERE = {"grashof.synth.theory.nine_points"}  # its tests have computed the same linkages
-SEARCHING = {"grashof.synth.merging", "grashof.synth.shards"}
+SEARCHING = {f"grashof.synth.{name}" for name in ("merging", "prove", "results.advice", "shards", "track")}
 WITH_EXAMPLES = sorted({
     module.name
     for package in PACKAGES

@@ -313,7 +313,8 @@ def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
         return misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
 
     def value(x: FloatArray, part: int) -> FloatArray:
-        return batch(x.tobytes())[part][0]
+        found: FloatArray = batch(x.tobytes())[part][0]
+        return found
 
     def change(x: FloatArray, part: int) -> FloatArray:
         found: FloatArray = (batch(x.tobytes())[part][1:] - value(x, part)).T / NUDGE
