@@ -134,9 +134,12 @@ def scipy_differential_evolution(problem: Problem, seed: int, budget: float, fou
         found(task.linkage(solved.x, choice))
 
 
-def _pymoo(
-    make: Callable[[FloatArray], Any], problem: Problem, seed: int, budget: float, found: Found
-) -> None:
+def pymoo(
+    name: str, options: Callable[[FloatArray], dict[str, Any]], problem: Problem, seed: int, budget: float,
+    found: Found,
+) -> None:  # fmt: skip
+    """An algorithm of pymoo, 400 generations, restarted from random points."""
+    algorithm = getattr(import_module(f"pymoo.algorithms.soo.nonconvex.{name.lower()}"), name)
     base: Any = import_module("pymoo.core.problem").ElementwiseProblem
     minimized = import_module("pymoo.optimize").minimize
     task = formulated(problem)
@@ -150,23 +153,11 @@ def _pymoo(
             out["F"] = cost(x, task, self.choice)
 
     for rng, choice, x in starts(task, seed, budget):
-        solved = minimized(Linkages(choice), make(x), ("n_gen", 400), seed=int(rng.integers(1 << 30)))
+        solved = minimized(
+            Linkages(choice), algorithm(**options(x)), ("n_gen", 400), seed=int(rng.integers(1 << 30))
+        )
         if solved.X is not None:
             found(task.linkage(np.asarray(solved.X), choice))
-
-
-def pymoo_de(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """Differential evolution of pymoo, population 100, 400 generations, restarted."""
-    de = import_module("pymoo.algorithms.soo.nonconvex.de").DE
-
-    _pymoo(lambda _: de(pop_size=100), problem, seed, budget, found)
-
-
-def pymoo_cmaes(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """CMA-ES of pymoo with its own restarts from a random point."""
-    cmaes = import_module("pymoo.algorithms.soo.nonconvex.cmaes").CMAES
-
-    _pymoo(lambda start: cmaes(x0=start, restarts=2), problem, seed, budget, found)
 
 
 def fourbarhinge(problem: Problem, seed: int, budget: float, found: Found) -> None:
@@ -264,8 +255,8 @@ PEERS: dict[str, Callable[[Problem, int, float, Found], None]] = {
     "scipy least_squares": scipy_least_squares,
     "scipy SLSQP": scipy_slsqp,
     "scipy differential_evolution": scipy_differential_evolution,
-    "pymoo DE": pymoo_de,
-    "pymoo CMA-ES": pymoo_cmaes,
+    "pymoo DE": partial(pymoo, "DE", lambda _: {"pop_size": 100}),
+    "pymoo CMA-ES": partial(pymoo, "CMAES", lambda start: {"x0": start, "restarts": 2}),
     "fourbarhinge": fourbarhinge,
     "pylinkage": pylinkage,
 }
