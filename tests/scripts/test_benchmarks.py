@@ -6,9 +6,8 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -24,30 +23,23 @@ from grashof.problems.files.toml_file import document_of
 ROOT = Path(__file__).parents[2]
 BENCHMARKS, DATA = ROOT / "scripts" / "benchmarks", ROOT / "tests" / "data"
 PLANTED = FourBar((0, 0), (100, 0), 40, 120, 80, (60, 50))
+Script = Callable[[str], ModuleType]
 LIMITS: dict[str, Any] = {"exact": False, "rotatability": "crank-rocker", "transmission_min_deg": 25}
 
 
-@pytest.fixture(scope="module")
-def imported() -> Iterator[None]:
-    """The benchmarks as modules."""
-    with pytest.MonkeyPatch.context() as patched:
-        patched.syspath_prepend(BENCHMARKS)
-        yield
-
-
 @pytest.fixture
-def independent(imported: None, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    module = import_module("independent_search")
+def independent(script: Script, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    module = script("independent_search")
     monkeypatch.setattr(module, "POLISHED", 12)  # enough for easy tasks, and fast
     return module
 
 
 @pytest.fixture
-def run(imported: None, capsys: pytest.CaptureFixture[str]) -> Any:
+def run(script: Script, capsys: pytest.CaptureFixture[str]) -> Any:
     """The output of some cases of a benchmark."""
 
     def printed(name: str, only: str, count: int) -> str:
-        assert import_module("run").main([name, "--only", only, "--count", str(count)]) == 0
+        assert script("run").main([name, "--only", only, "--count", str(count)]) == 0
         return capsys.readouterr().out
 
     return printed
@@ -124,8 +116,8 @@ def test_best_designs_known_are_accepted_and_as_good_as_stated(file: str) -> Non
 
 
 @pytest.mark.slow
-def test_the_benchmark_of_limits_measures(run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    limited = import_module("limited")
+def test_the_benchmark_of_limits_measures(run: Any, script: Script, monkeypatch: pytest.MonkeyPatch) -> None:
+    limited = script("limited")
     monkeypatch.setattr(limited, "synthesize", partial(limited.synthesize, effort=0.2))
     assert "1 of 1 within 2 %" in run("limited", "random", 1)
 
@@ -137,9 +129,9 @@ def test_benchmarks_of_searches_measure(run: Any) -> None:
 
 
 def test_the_benchmark_of_kinematics_agrees_with_the_plain_form(
-    run: Any, monkeypatch: pytest.MonkeyPatch
+    run: Any, script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(import_module("kinematics"), "RUNS", 1)
+    monkeypatch.setattr(script("kinematics"), "RUNS", 1)
     said = run("kinematics", "link", 500)
     assert float(said.split("largest difference ")[1].split()[0]) < 1e-12
     assert "500 linkages at 64 angles" in said
@@ -152,8 +144,8 @@ def test_the_benchmark_of_the_page_measures(run: Any) -> None:
     assert float(said.split()[-2]) < 1  # MB
 
 
-def test_the_exponent_of_costs_is_that_of_a_power(imported: None) -> None:
-    exponent, sizes = import_module("costs").exponent, (4, 40, 400)
+def test_the_exponent_of_costs_is_that_of_a_power(script: Script) -> None:
+    exponent, sizes = script("costs").exponent, (4, 40, 400)
     assert exponent(sizes, [3 * size**1.7 for size in sizes]) == pytest.approx(1.7)
     assert exponent(sizes, [0.0, 2.0, 20.0]) == pytest.approx(1.0)
     assert np.isnan(exponent(sizes, [0.0, 0.0, 1.0]))

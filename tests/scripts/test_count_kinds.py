@@ -1,9 +1,7 @@
 """Code that knows the kinds of linkage by name is found, and does not grow."""
 
 import ast
-from collections.abc import Iterator
-from importlib import import_module
-from pathlib import Path
+from collections.abc import Callable
 from types import ModuleType
 
 import pytest
@@ -91,10 +89,8 @@ NOT_ASKING = (
 
 
 @pytest.fixture(scope="module")
-def count_kinds() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patched:
-        patched.syspath_prepend(Path(__file__).parents[2] / "scripts")
-        yield import_module("count_kinds")
+def count_kinds(script: Callable[[str], ModuleType]) -> ModuleType:
+    return script("count_kinds")
 
 
 @pytest.mark.parametrize("way", ASKING)

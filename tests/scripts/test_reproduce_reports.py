@@ -7,7 +7,7 @@ import base64
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -52,25 +52,16 @@ LUGGAGE = [
 
 
 @pytest.fixture(scope="module")
-def scripts() -> Iterator[None]:
-    """The scripts as modules."""
-    with pytest.MonkeyPatch.context() as patched:
-        patched.syspath_prepend(SCRIPTS)
-        yield
-
-
-@pytest.fixture(scope="module")
-def script(scripts: None) -> ModuleType:
-    return import_module("reproduce_reports")
-
-
-@pytest.fixture(scope="module")
-def sources(scripts: None) -> dict[str, Any]:
+def sources(script: Callable[[str], ModuleType]) -> dict[str, Any]:
     """The makers of the items of either report."""
     return {
-        "pumpjack": import_module("reports.pumpjack").Pumpjack(),
-        "luggage": import_module("reports.luggage").Luggage(),
-    }
+        "pumpjack": script("reports.pumpjack").Pumpjack(), "luggage": script("reports.luggage").Luggage()
+    }  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def reports(script: Callable[[str], ModuleType]) -> ModuleType:
+    return script("reproduce_reports")
 
 
 def listed() -> list[Any]:
@@ -83,11 +74,11 @@ ITEMS = listed()
 
 
 def test_both_tables_are_those_of_the_audit_and_are_printed(
-    script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    reports: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     written: dict[str, Any] = {}
-    monkeypatch.setattr(script, "write_folder", lambda _, rows: written.update(rows) or [Path("index.html")])
-    assert script.main(["--out", str(tmp_path)]) == 0
+    monkeypatch.setattr(reports, "write_folder", lambda _, rows: written.update(rows) or [Path("index.html")])
+    assert reports.main(["--out", str(tmp_path)]) == 0
     assert [row[:3] for row in written["pumpjack"]] == PUMPJACK
     rows = written["luggage"]
     assert [row[:3] for row in rows] == LUGGAGE
@@ -98,11 +89,11 @@ def test_both_tables_are_those_of_the_audit_and_are_printed(
         assert any(all(cell in line for cell in row) for line in printed), row
 
 
-def test_the_parametric_fit_by_a_second_method(script: ModuleType) -> None:
+def test_the_parametric_fit_by_a_second_method(reports: ModuleType) -> None:
     """Link 3's figure is not link 4's, as the audit has it: its error is that of the two others added up."""
     fine, off = np.linspace(0, 30, 3001), []
-    for track, true in zip(script._tracks(script.ELEVEN), script._tracks(fine), strict=True):
-        off.append(np.polynomial.Chebyshev.fit(script.ELEVEN, track[:, 0] + 1j * track[:, 1], 4)(fine))
+    for track, true in zip(reports._tracks(reports.ELEVEN), reports._tracks(fine), strict=True):
+        off.append(np.polynomial.Chebyshev.fit(reports.ELEVEN, track[:, 0] + 1j * track[:, 1], 4)(fine))
         off[-1] -= true[:, 0] + 1j * true[:, 1]
     assert [round(float(np.abs(each).max()), 4) for each in off] == [0.0031, 0.0103, 0.0098]
     np.testing.assert_allclose(off[1], off[0] + off[2], rtol=0, atol=1e-12)
@@ -213,8 +204,8 @@ def test_words_quote_the_figures_of_the_audit(sources: dict[str, Any]) -> None:
 
 
 @pytest.mark.study
-def test_the_folder_has_them_all(script: ModuleType, tmp_path: Path) -> None:
-    assert script.main(["--out", str(tmp_path / "made")]) == 0
+def test_the_folder_has_them_all(reports: ModuleType, tmp_path: Path) -> None:
+    assert reports.main(["--out", str(tmp_path / "made")]) == 0
     folder = tmp_path / "made"
     page = (folder / "index.html").read_text(encoding="utf-8")
     assert "http" not in page

@@ -31,13 +31,9 @@ def run(script: str, *arguments: str, cwd: Path) -> str:
 Script = Callable[[str], ModuleType]
 
 
-@pytest.fixture
-def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Script:
-    """A script as a module, in an empty folder: a process of its own spends its time on imports."""
+@pytest.fixture(autouse=True)
+def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(SCRIPTS)
-    monkeypatch.syspath_prepend(SCRIPTS / "benchmarks")
-    return import_module
 
 
 @pytest.mark.slow
