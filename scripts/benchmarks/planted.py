@@ -112,7 +112,8 @@ def solved(
 ) -> Iterator[str]:
     """How many tasks are solved, and in what time; a failure below this share."""
     met, seconds = 0, list[float]()
-    synthesize(draw(np.random.default_rng([*series, seed])), **options)  # programmes are built
+    with suppress(ProblemError):  # programmes are built
+        synthesize(draw(np.random.default_rng([*series, seed])), **options)
     for number in range(seed, seed + count):
         problem = draw(np.random.default_rng([*series, number]))
         designs: tuple[Candidate, ...] = ()

@@ -101,7 +101,7 @@ WIDER = {"r2": [0.2, 8.0], "coupler_arms": [0.3, 9.0]}
         (changed(["pairs", 1, "transmission"], lambda old: old[:-1]), "pairs without a reason: 1,"),
         # A leaf that holds a part of the curve.
         (changed(["rectangles", lambda one: child(one, "either"), 4], lambda old: old / 2), "halves: "),
-        (reason_changed, "pairs dropped by lengths: 1 not confirmed"),
+        study(reason_changed, "pairs dropped by lengths: 1 not confirmed"),
         (changed(["tubes", first_piece, 4], lambda old: 0.9 * old), "tubes: "),
         (changed(["limits"], lambda old: old | WIDER), "not cover every place that the arms reach"),
         (changed(["first"], lambda old: old[:-1]), "neither dropped, nor kept, nor halved"),
