@@ -164,13 +164,9 @@ def drawn_curves(count: int, seed: int) -> Iterator[str]:
 
 
 def _case(
-    name: str,
-    usual: int,
-    draw: Callable[..., Problem],
-    *sizes: Any,
-    series: Sequence[int] = (0,),
+    name: str, usual: int, draw: Callable[..., Problem], *sizes: Any, series: Sequence[int] = (0,),
     **options: Any,
-) -> Case:
+) -> Case:  # fmt: skip
     def measure(count: int, seed: int) -> Iterator[str]:
         return solved(lambda rng: draw(rng, *sizes), series, count, seed, **options)
 

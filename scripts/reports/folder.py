@@ -27,17 +27,10 @@ Row = tuple[str, str, str, str]
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A figure, table or statement of a report, and its counterpart.
+    """A figure, table or statement of a report, and its counterpart, made by the method `make` with `args`.
 
-    Parameters
-    ----------
-    report, figure, id, title : str
-    make : str
-        The method that makes the counterpart.
-    reported, right, wrong : str
-        Content of the report, the right figures, by their names in braces, and the error.
-    args : sequence
-        Of the method.
+    `reported` is the content of the report, `right` states right figures, by their names in braces, and `wrong`
+    the error.
     """
 
     report: str
@@ -63,19 +56,9 @@ def items() -> list[Item]:
 
 
 def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
-    """Write the counterparts of all items, and index.html.
+    """Write the counterparts of all items, and index.html; the files, the page last.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if it is not there; files of the same names are replaced.
-    rows : mapping
-        The table of published and right values, by report.
-
-    Returns
-    -------
-    list of Path
-        The files, the page last.
+    Files of the same names are replaced. `rows` is the table of published and right values, by report.
     """
     folder.mkdir(parents=True, exist_ok=True)
     sources: dict[str, Pumpjack | Luggage] = {"pumpjack": Pumpjack(), "luggage": Luggage()}
