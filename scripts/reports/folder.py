@@ -23,14 +23,15 @@ _ROUNDING = 1e-14  # of values about 1: less is shown as 0
 _ROWS = 30  # of a table on the page; the CSV has them all
 COLUMNS = ("quantity", "as published", "right", "cause")
 Row = tuple[str, str, str, str]
+Sources = Mapping[str, Pumpjack | Luggage]  # by report
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
     """A figure, table or statement of a report, and its counterpart, made by the method `make` with `args`.
 
-    `reported` is the content of the report, `right` states right figures, by their names in braces, and `wrong`
-    the error.
+    `reported` is the content of the report, `right` states the right figures, by their names in braces, and
+    `wrong` the error.
     """
 
     report: str
@@ -55,13 +56,12 @@ def items() -> list[Item]:
     return [Item(**given) for given in tomllib.loads(text)["item"]]
 
 
-def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
+def write_folder(folder: Path, sources: Sources, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
     """Write the counterparts of all items, and index.html; the files, the page last.
 
     Files of the same names are replaced. `rows` is the table of published and right values, by report.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    sources: dict[str, Pumpjack | Luggage] = {"pumpjack": Pumpjack(), "luggage": Luggage()}
     entries_of: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
     written: list[Path] = []
     for item in items():

@@ -74,10 +74,15 @@ ITEMS = listed()
 
 
 def test_both_tables_are_those_of_the_audit_and_are_printed(
-    reports: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+    reports: ModuleType, sources: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
     written: dict[str, Any] = {}
-    monkeypatch.setattr(reports, "write_folder", lambda _, rows: written.update(rows) or [Path("index.html")])
+    for name, source in sources.items():
+        monkeypatch.setattr(reports, name.capitalize(), lambda source=source: source)
+    monkeypatch.setattr(
+        reports, "write_folder", lambda *given: written.update(given[-1]) or [Path("index.html")]
+    )
     assert reports.main(["--out", str(tmp_path)]) == 0
     assert [row[:3] for row in written["pumpjack"]] == PUMPJACK
     rows = written["luggage"]
@@ -92,7 +97,9 @@ def test_both_tables_are_those_of_the_audit_and_are_printed(
 def test_the_parametric_fit_by_a_second_method(reports: ModuleType) -> None:
     """Link 3's figure is not link 4's, as the audit has it: its error is that of the two others added up."""
     fine, off = np.linspace(0, 30, 3001), []
-    for track, true in zip(reports._tracks(reports.ELEVEN), reports._tracks(fine), strict=True):
+    for track, true in zip(
+        reports.tracks(reports.ELEVEN).values(), reports.tracks(fine).values(), strict=True
+    ):
         off.append(np.polynomial.Chebyshev.fit(reports.ELEVEN, track[:, 0] + 1j * track[:, 1], 4)(fine))
         off[-1] -= true[:, 0] + 1j * true[:, 1]
     assert [round(float(np.abs(each).max()), 4) for each in off] == [0.0031, 0.0103, 0.0098]
