@@ -124,7 +124,7 @@ class Checker(CirclePoints):
         return (made[0], made[1]), (made[2], made[3]), gone
 
     def pair(self, pairs: Ints, reason: str) -> Test:
-        """The test of pairs of pieces by lengths alone, by what they transmit, or by both."""
+        """The test of pairs of pieces by lengths alone, by transmission, or by both."""
 
         def test(n: Ints, s: Floats, ds: Floats, t: Floats, dt: Floats) -> Bools:
             za, ca, gone = self.side(pairs[n, 0], s, ds, other=False)

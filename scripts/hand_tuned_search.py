@@ -4,7 +4,7 @@
 
 The report guesses a dyad (a link W that turns by beta with the driver, an arm Z that turns with the box),
 improves the guess by a quasi-Newton method until the closure equations have no residual, does so again for
-the second dyad, and looks at what the two do together. It says that four guesses failed and the fifth worked.
+the second dyad, and looks at their linkage. It says that four guesses failed and the fifth worked.
 Here each of them is run and judged by `grashof.analysis.verify`; then many random guesses are, every one
 paired with every other.
 """

@@ -77,6 +77,6 @@ def circle_of_modules() -> list[str]:
 
 
 def circle_of_rooms() -> list[str]:
-    """Rooms that import from one that imports from them; what a layer shows to others is none."""
+    """Rooms that import from one that imports from them; the `__init__` of a layer is not a room."""
     layers = set(LAYERS)
     return circle({name: others - layers for name, others in imports_of_rooms().items()})

@@ -55,7 +55,7 @@ def test_every_column_has_a_row() -> None:
     assert set(COLUMNS) <= set(listed)
 
 
-def test_every_command_and_option_is_told() -> None:
+def test_every_command_and_option_has_a_meaning() -> None:
     page = command_line.commands_page()
     for name, command in typer.main.get_command(app).commands.items():  # type: ignore[attr-defined]
         section = page.split(f"## grashof {name}\n")[1].split("\n## ")[0]

@@ -47,7 +47,7 @@ SHARED: dict[str, dict[str, Any]] = {
 def searched(
     name: str, count: int, seed: int, *, wanted: Requirements | None = None, enough: int | None = None
 ) -> Iterator[str]:
-    """One search for each of some seeds: what the first finds, and times of all."""
+    """One search for each of some seeds: the designs of the first, and times of all."""
     problem = load(name)
     problem = replace(problem, requirements=wanted or problem.requirements)
     synthesize(problem, enough=1, effort=0.2)  # programmes are built
@@ -85,7 +85,7 @@ def triplets(count: int, seed: int) -> Iterator[str]:
 def processes(name: str, count: int, seed: int, *, workers: int = 2) -> Iterator[str]:
     """Time of a search on two processes over that on one, and that of two searches at once, for each.
 
-    The second is what the machine gives: no way to share one search can do better.
+    The second is the limit of the machine: no way to share one search can do better.
     """
     times: dict[int, list[float]] = {1: [], workers: []}
     problem, tables, limit = load(name), set(), []

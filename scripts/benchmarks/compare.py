@@ -1,4 +1,4 @@
-"""Measure Grashof and what a user would take instead on the same tasks, judged by one judge.
+"""Measure Grashof and its alternatives on the same tasks, judged by one judge.
 
     pip install '.[bench]' && python scripts/benchmarks/compare.py --out benchmark
 

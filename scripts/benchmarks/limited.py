@@ -80,7 +80,7 @@ def against_known(path: Path, seeds: int, count: int, seed: int) -> Iterator[str
 
 
 def efforts(count: int, seed: int) -> Iterator[str]:
-    """Effort 1 against effort 10: what the greater one finds that the lesser one missed."""
+    """Effort 1 against effort 10: designs that the lesser one missed."""
     ratios = list[float]()
     for task in [*tasks(KNOWN), *tasks(RANDOM)][:count]:
         problem = problem_of(task["toml"], task["name"])

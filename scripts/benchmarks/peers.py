@@ -1,7 +1,7 @@
 """Alternatives to Grashof: general solvers on the usual formulation, and other packages.
 
 Each reports linkages as it finds them to `compare.py`, which judges them, and continues with other starts
-until its time is over. Each is used as its documentation recommends; what it cannot express is left out.
+until its time is over. Each is used as its documentation recommends, on the tasks that it can express.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class LeftOutError(Exception):
 
 
 def penalised(x: FloatArray, task: Formulation, choice: Choice, weight: float = WEIGHT) -> FloatArray:
-    """The residuals and, weighted, what the limits lack."""
+    """The residuals and, weighted, the excess over the limits."""
     lack = np.maximum(task.limits(x, choice) + MARGIN, 0)
     return np.concatenate([task.residuals(x, choice) / task.scale, weight * lack])
 

@@ -16,7 +16,7 @@ MASSES = given_masses(LUGGAGE, [m for m, _ in BARS], [m * length**2 / 12 for m, 
 # Its 101 samples run over the job and a full turn; curves are fitted through eleven of the first thirty-one.
 SAMPLES, STEP = 101, (2 * np.pi + JOB) / 100
 ELEVEN = np.arange(0.0, 31.0, 3.0)
-H = np.radians(5)  # what it divides differences by
+H = np.radians(5)  # its divisor of differences
 GRAVITY = 9.81  # m/s2, which it leaves out
 
 # Table 7: driver and coupler angles in deg.

@@ -57,7 +57,7 @@ def test_a_dyad_closes_where_its_residual_says(hand: ModuleType, luggage: Proble
     assert state.theta3 + found.linkage.body_angle == pytest.approx(0, abs=1e-12)
 
 
-def test_outcomes_are_told(hand: ModuleType, luggage: Problem) -> None:
+def test_defects_are_named_in_the_outcome(hand: ModuleType, luggage: Problem) -> None:
     each = hand.tried(luggage, hand.GUESSES[4])
 
     def described(**changed: bool) -> str:
