@@ -11,9 +11,8 @@ from grashof.analysis.cylinder.travel import Travel
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import AppliedForce, Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.mechanism.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.analysis.mechanism.position import Position
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray

@@ -13,7 +13,7 @@ from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)

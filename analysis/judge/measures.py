@@ -20,7 +20,7 @@ from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
 from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.requirements.quantities import Limit, Needs, Over, Quantity
+from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
 from grashof.problems.values.units import Unit
 
@@ -214,7 +214,9 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
     "angle_error_max": partial(_angle_error, np.nanmax),
     "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),
-    "transmission": lambda values: values[values.problem.requirements.meant(QUANTITIES["transmission"]).key],
+    "transmission": lambda values: values[
+        values.problem.requirements.as_required(QUANTITIES["transmission"]).key
+    ],
     **{(key := f"transmission_min_{over}"): attrgetter(f"verdict.{key}") for over in ("task", "cycle")},
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
@@ -298,11 +300,11 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             continue
         if not values.problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
-        if limit.quantity.over is Over.TASK and not joined:
+        if limit.quantity.over is Scope.TASK and not joined:
             continue
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
-        quantity, ranges = wanted.meant(limit.quantity), wanted.ranges(name)
+        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place
                 continue
@@ -318,7 +320,7 @@ def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> floa
     """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
     low, high = allowed
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
-        return 0.0 if limit.quantity.over is Over.TARGETS else np.inf
+        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
     if limit.kind.is_angle:
         return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
     miss = max(low - value, value - high)

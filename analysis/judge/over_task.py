@@ -14,10 +14,9 @@ from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
 from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers
-from grashof.analysis.mechanism.driver_samples import close_samples
+from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers, mean_in_time
+from grashof.analysis.mechanism.even_motion import close_samples
 from grashof.analysis.mechanism.kinematics import solve_kinematics
-from grashof.analysis.mechanism.means import mean_in_time
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task

@@ -15,6 +15,7 @@ from grashof.analysis.judge.measures import SLACK, Values, missed
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
     branch_index,
     circuit_index,
@@ -24,7 +25,6 @@ from grashof.analysis.mechanism.mobility import (
     rotatability,
 )
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.reach import diagonal, reach_box
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task

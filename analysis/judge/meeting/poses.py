@@ -13,7 +13,7 @@ from grashof.analysis.judge.meeting.task_motion import (
     squares,
     task_motion,
 )
-from grashof.analysis.mechanism.driver_samples import closer_at_ends
+from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task
