@@ -29,6 +29,7 @@ from grashof.problems.values.dynamics.load_specs import (
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
+pytestmark = pytest.mark.extra
 mujoco: Any = pytest.importorskip("mujoco")
 
 CRANK_ROCKER = FourBar((0.2, -0.1), (1.2, 0.3), 0.35, 1.1, 0.8, (0.5, 0.3))
