@@ -26,7 +26,7 @@ from grashof import load
 from grashof.problems.files.on_disk import write_whole
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.synth.search.chunks import AHEAD, chunk, which
+from grashof.synth.search.chunks import AHEAD, arguments, chunk
 from grashof.synth.search.journal import content_of
 from grashof.synth.search.plain import plain
 from grashof.synth.shards import Plan
@@ -51,10 +51,10 @@ def measured(name: str, count: int) -> Measured:
     (scaled,) = plan.problems
     ledger = plan.ledger(scaled, count)
     made, taken, steps = [], [], []
-    chunk(scaled, 0, *which(problem.search, plan.starts))  # programmes are built with the first one
+    chunk(scaled, 0, *arguments(problem.search, plan.starts))  # programmes are built with the first one
     for number in range(1, count + 1):
         since = process_time()
-        one = chunk(scaled, number, *which(problem.search, plan.starts))
+        one = chunk(scaled, number, *arguments(problem.search, plan.starts))
         made.append(process_time() - since)
         sent = pickle.dumps(one)
         since = process_time()

@@ -47,12 +47,12 @@ _BEFORE = {
         "caution": "caution",
     },
 }
-# What those of them are that their words do not tell.
+# Explanations of columns beyond their words.
 ABOUT = {
     "rank": "place in the list, from 1",
     "id": "name of the design, the same in every list that has it: `candidates.json#df2467fa`",
     "family": "id of the best of the designs that are like this one",
-    "region": "number of the connected set of designs that it lies in, from 1; of four poses of a four-bar",
+    "region": "number of the connected set of designs that contains it, from 1; of four poses of a four-bar",
     "grashof_class": "crank-rocker, double-crank and so on; with a slide crank-shaper, Whitworth and so on",
     "direction": "from the first target to the last",
     "assembly": "B left (+1) or right (-1) of the line from A to O4",
@@ -60,7 +60,7 @@ ABOUT = {
     "cognate_of": "id of the design that has the same coupler curve",
     "start": "which one it came from",
     "iterations": "that Ipopt needed",
-    "best_at": "what a design is best at, such as the least error; `objective` for the best one by the "
+    "best_at": "the strength of a design, such as the least error; `objective` for the best one by the "
     "objective where it does not come first",
     "caution": "why a design comes after all others, such as its size; empty for those that do not",
 }
@@ -124,12 +124,12 @@ def to_frame(problem: Problem, candidates: Sequence[Candidate]) -> pd.DataFrame:
 
 
 def known(value: Any) -> bool:
-    """Whether a row has this; what is infinite is known."""
+    """Whether a row has this value; an infinite one is known."""
     return value is not None and value == value
 
 
 def facts(candidate: Candidate) -> dict[str, Any]:
-    """What a design is called and what it is like, by column; None where it is unknown."""
+    """Names and classes of a design, by column; None where unknown."""
     verdict = candidate.verdict
     driven = {} if verdict.cylinder is None else {"cylinder_on": verdict.cylinder.on}
     return {

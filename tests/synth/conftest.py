@@ -28,7 +28,7 @@ STEPS = 3000  # of the driver between two targets; three times as many over the 
 
 @dataclass(frozen=True)
 class Findings:
-    """What the independent judge finds: errors in sizes and rad, transmission in deg."""
+    """Findings of the independent judge: errors in sizes and rad, transmission in deg."""
 
     position_error: float
     angle_error: float
@@ -122,7 +122,7 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
 
 @dataclass(frozen=True)
 class PathFindings:
-    """What the independent judge finds at the driver angles of a verdict: lengths in sizes, angles in deg."""
+    """Findings of the independent judge at the driver angles of a verdict: sizes and deg."""
 
     errors: FloatArray
     in_order: bool
@@ -239,8 +239,22 @@ def path_scaled() -> Callable[..., tuple[ScaledProblem, FourBar]]:
 PairsOf: TypeAlias = Callable[[ScaledProblem], Screened]
 
 
+def once(of: PairsOf) -> PairsOf:
+    """The same pairs for the same task and requirements: to trace curves takes longer than a solve."""
+    known: dict[tuple[bytes, str], Screened] = {}
+
+    def found(scaled: ScaledProblem) -> Screened:
+        key = scaled.targets.tobytes() + scaled.turns.tobytes(), repr(scaled.wanted)
+        if key not in known:
+            known[key] = of(scaled)
+        return known[key]
+
+    return found
+
+
 @pytest.fixture(scope="session")
 def feasible_pairs() -> PairsOf:
+    @once
     def of(scaled: ScaledProblem) -> Screened:
         dyads = trace_four_pose_curves(scaled.motion, reach=6.0, lines=200, cell=0.03)
         return screen(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=60_000)
@@ -250,6 +264,7 @@ def feasible_pairs() -> PairsOf:
 
 @pytest.fixture(scope="session")
 def all_pairs() -> PairsOf:
+    @once
     def of(scaled: ScaledProblem) -> Screened:
         dyads = trace_four_pose_curves(scaled.motion, reach=5.0, lines=40, cell=0.1)
         return near_misses(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=20_000)

@@ -15,6 +15,8 @@ from grashof.synth import Candidate
 DOOR = MotionTask.from_degrees([[0, 1.05, 90], [-0.2, 1.75, 125], [-0.95, 2.12, 180]])
 FREE = MotionTask(DOOR.positions, [np.pi / 2, np.nan, np.pi])
 
+pytestmark = pytest.mark.usefixtures("small_search")
+
 
 def slides_along(found: list[Candidate], angle_deg: float) -> bool:
     """Whether B of every design moves on a line of that direction, from where it is at the poses alone."""
@@ -27,6 +29,7 @@ def slides_along(found: list[Candidate], angle_deg: float) -> bool:
     return True
 
 
+@pytest.mark.quick("whole-180", "one angle free-0")
 @pytest.mark.parametrize("angle_deg", [180, 0])
 @pytest.mark.parametrize("task", [DOOR, FREE], ids=["whole", "one angle free"])
 def test_a_door_on_a_level_track(task: MotionTask, angle_deg: float) -> None:
@@ -53,6 +56,7 @@ def test_a_door_on_a_level_track_with_its_pivots_in_zones() -> None:
         assert -0.3 - 1e-9 <= each.linkage.o2[0] <= 0.3 + 1e-9  # type: ignore[attr-defined]
 
 
+@pytest.mark.quick("4", "5")
 @pytest.mark.parametrize("poses", [3, 4, 5])
 def test_planted_directions_are_met(poses: int) -> None:
     task, linkage = planted_motion(np.random.default_rng([2, poses]), poses, mechanism="slider-crank")
@@ -92,17 +96,18 @@ def test_a_range_of_directions_is_kept_and_used() -> None:
     assert np.ptp(apart) > 5
 
 
-def test_a_range_of_the_ground_counts_alike_by_whole_turns() -> None:
+def test_ranges_of_the_ground_angle_are_equal_modulo_a_turn() -> None:
     task = MotionTask.from_degrees([[0, 0, 0], [30, 20, 25], [70, 25, 60], [90, 10, 85]])
     found = [
         synthesize(
             Problem(task=task, requirements=Requirements(rotatability="any", ground_angle_deg=allowed)),
-            enough=10,
+            starts=16,
+            enough=3,
         )
         for allowed in ((-10.0, 20.0), (350.0, 380.0))
     ]
     here, there = ([each.linkage for each in one.candidates] for one in found)
-    assert len(here) >= 10
+    assert len(here) >= 3
     theta1 = np.degrees([float(linkage.theta1) for linkage in here])
     assert theta1.min() >= -10 - 1e-6
     assert theta1.max() <= 20 + 1e-6

@@ -111,12 +111,12 @@ def test_pareto_marks(frame: pd.DataFrame) -> None:
         assert row.pareto == (not better.any())
 
 
-def test_what_has_no_meaning_stays_empty(frame: pd.DataFrame) -> None:
+def test_meaningless_columns_stay_empty(frame: pd.DataFrame) -> None:
     assert frame[[name for name in WITHOUT_MEANING if name != "caution"]].isna().all(axis=None)
     assert frame.drop(columns=WITHOUT_MEANING).notna().all(axis=None)
 
 
-def test_what_a_design_is_best_at_is_told(luggage_result: Result, luggage: Problem) -> None:
+def test_the_strength_of_a_design_is_listed(luggage_result: Result, luggage: Problem) -> None:
     first, second = luggage_result.candidates[:2]
     told = to_frame(luggage, (replace(first, best_at="least error"), second))["best_at"]
     assert told[0] == "least error"

@@ -1,4 +1,4 @@
-"""The user's own constraints: what is refused, before anything is solved."""
+"""The user's own constraints: unusable ones are refused before anything is solved."""
 
 from typing import Any
 
@@ -31,7 +31,7 @@ THREE = Problem(task=MotionTask.from_degrees([[0, 0, 0], [2, 1, 20], [3, 3, 50]]
         (lambda design: design.r9, "fails on symbols: .*r9"),
     ],
 )
-def test_what_is_no_amount_is_refused_in_one_line(constraint: Any, said: str) -> None:
+def test_unusable_amounts_are_refused_in_one_line(constraint: Any, said: str) -> None:
     with pytest.raises(ProblemError, match=f"constraint <lambda> {said}") as caught:
         synthesize(THREE, constraints=[constraint])
     assert "\n" not in str(caught.value)
@@ -55,6 +55,6 @@ def test_no_time(options: dict[str, Any], said: str) -> None:
         synthesize(THREE, **options)
 
 
-def test_a_name_is_no_problem() -> None:
+def test_a_name_is_not_accepted_as_a_problem() -> None:
     with pytest.raises(ProblemError, match="problem is a str; it must be a Problem, such as load gives"):
         synthesize("luggage")  # type: ignore[arg-type]

@@ -154,7 +154,7 @@ def test_the_length_of_an_angle_weighs_angles_against_places() -> None:
 def test_exact_tasks_with_free_parts_keep_their_targets(
     poses: int, places: list[int], angles: list[int]
 ) -> None:
-    """From a linkage that is a little off: what is given is met, and transmission is no worse for it."""
+    """From a linkage slightly off: the given parts are met, and transmission is no worse."""
     met = usable = 0
     for seed in range(8):
         rng = np.random.default_rng([72, seed])

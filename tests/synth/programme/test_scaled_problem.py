@@ -1,4 +1,4 @@
-"""From pivots in the frame of the search back to linkages: what is put in comes out."""
+"""From pivots in the frame of the search back to linkages."""
 
 from collections.abc import Callable
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""What designs of a function are said to be best at, and which relaxations a list without designs names."""
+"""Strengths of designs of a function, and relaxations that an empty list names."""
 
 from dataclasses import replace
 from typing import Any
@@ -12,6 +12,8 @@ from grashof.analysis.judge.planted import planted_function
 from grashof.problems import FunctionTask, Problem, Requirements
 from grashof.synth import Candidate
 from grashof.synth.results.choice import best_at
+
+pytestmark = pytest.mark.usefixtures("small_search")
 
 
 def test_errors_of_rounding_are_all_the_least() -> None:
@@ -40,7 +42,7 @@ def test_errors_are_angles_whatever_the_size() -> None:
 
 
 def test_a_list_offers_more_transmission_for_more_error() -> None:
-    best, *others = synthesize(Problem(task=SIX)).candidates
+    best, *others = synthesize(Problem(task=SIX), effort=0.4).candidates
     assert best.best_at == "least error"
     transmission = [float(np.degrees(one.verdict.transmission_min_task)) for one in others]
     assert "transmission from 60 deg" in {one.best_at for one in others}
@@ -50,6 +52,7 @@ def test_a_list_offers_more_transmission_for_more_error() -> None:
 FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
 
 
+@pytest.mark.quick("transmission_min_deg")
 @pytest.mark.parametrize(
     ("task", "wanted", "key"),
     [
@@ -57,6 +60,7 @@ FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
         (FIVE, {"transmission_min_deg": 40.0}, "transmission_min_deg"),
         (FIVE, {"link_ratio_max": 1.5}, "link_ratio_max"),
     ],
+    ids=["structural_error_max_deg", "transmission_min_deg", "link_ratio_max"],
 )
 def test_the_relaxation_that_is_named_would_do(task: FunctionTask, wanted: dict[str, Any], key: str) -> None:
     problem = Problem(task=task, requirements=Requirements(**wanted))
@@ -75,7 +79,7 @@ def long_coupler(design: Design) -> Any:
 
 
 def test_a_users_own_constraint_is_relaxed() -> None:
-    found = synthesize(Problem(task=FIVE), constraints=[long_coupler])
+    found = synthesize(Problem(task=FIVE), constraints=[long_coupler], effort=0.4)
     assert not found.candidates
     allowed = float(found.note.split("constraint long_coupler up to ")[1].split()[0])
     assert found.nearest[0].linkage.r3 + allowed >= 20.0  # type: ignore[attr-defined]

@@ -82,7 +82,7 @@ def test_where_least_squares_finds_nothing_either_it_is_not_promised() -> None:
 
 
 @pytest.mark.study
-def test_what_least_squares_lacks_is_named_where_no_single_requirement_does() -> None:
+def test_defects_of_least_squares_are_named_where_no_single_requirement_would_do() -> None:
     """A tray through four poses under tight limits: of each way that the note names there is a design."""
     tray = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]])
     frame = Box((0, 30), (-60, -20))
@@ -123,7 +123,7 @@ def test_a_time_limit_leaves_the_explanation_out() -> None:
 
 
 @pytest.mark.slow
-def test_the_time_that_the_explanation_takes_is_told(relaxing_only: Callable[..., None]) -> None:
+def test_the_time_of_the_explanation_is_reported(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("link_length")
     result = synthesize(replace(load("luggage"), requirements=Requirements(link_length=(0.3, 1.5))), starts=4)
     assert "link_length up to" in repr(result)

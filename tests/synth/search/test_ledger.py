@@ -12,7 +12,7 @@ from grashof import load
 from grashof.synth.designs.judging import judged, judged_again
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
-from grashof.synth.search.chunks import chunk, which
+from grashof.synth.search.chunks import arguments, chunk
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Chunk, Ledger, nearest_of_kinds
 
@@ -80,9 +80,9 @@ def test_misses_are_bounded_by_kind(
 
 
 @pytest.mark.slow
-def test_chunks_add_up_to_what_they_hold(scaled: ScaledProblem) -> None:
+def test_chunks_add_up(scaled: ScaledProblem) -> None:
     search = scaled.problem.search
-    some = [chunk(scaled, number, *which(search, 5)) for number in range(3)]
+    some = [chunk(scaled, number, *arguments(search, 5)) for number in range(3)]
     ledger = Ledger(scaled, search, "")
     for one in some:
         ledger.absorb(one)

@@ -29,7 +29,7 @@ class Dwell(Task):
 
     @property
     def timing(self) -> FloatArray:  # type: ignore[override]
-        return np.linspace(0, self.rise + self.rest, 17)
+        return np.linspace(0, self.rise + self.rest, 9)
 
     @property
     def closed(self) -> bool:  # type: ignore[override]
@@ -41,7 +41,7 @@ class Dwell(Task):
 
     @property
     def positions(self) -> FloatArray:
-        return np.full((17, 2), np.nan)
+        return np.full((9, 2), np.nan)
 
     @property
     def outputs(self) -> FloatArray:
@@ -59,15 +59,15 @@ class Dwell(Task):
         return self
 
 
-def test_a_dwell_is_searched_judged_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dwell_is_searched_judged_and_described(monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(HOW_MET, dict)
     monkeypatch.setitem(HOW_MET, Dwell, HOW_MET[FunctionTask])
     task = Dwell(*np.radians([40, 120, 40]).tolist())
     problem = Problem(task=task, requirements=Requirements(transmission_min_deg=20))
-    found = synthesize(problem, seed=0, effort=0.3, workers=1)
+    found = synthesize(problem, seed=0, effort=0.2, workers=1)
     pairs = FunctionTask(task.timing, task.outputs)
-    same = synthesize(Problem(task=pairs, requirements=problem.requirements), seed=0, effort=0.3, workers=1)
+    same = synthesize(Problem(task=pairs, requirements=problem.requirements), seed=0, effort=0.2, workers=1)
     assert len(found) > 2
     assert [one.linkage for one in found.candidates] == [one.linkage for one in same.candidates]
     assert "turn_deg = 40.0\n" in problem_toml(problem)
-    assert "dwell through 17 places" in summary(problem)[0] + summary(problem)[1]
+    assert "dwell through 9 places" in summary(problem)[0] + summary(problem)[1]

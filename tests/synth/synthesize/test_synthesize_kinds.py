@@ -209,7 +209,7 @@ def has_r4(design: Any) -> Any:
     return design.r4 - 1
 
 
-def test_what_a_kind_has_not_is_refused_in_own_functions() -> None:
+def test_missing_parts_of_a_kind_are_refused_in_own_functions() -> None:
     task, _ = planted_motion(np.random.default_rng([2, 3]), 3, mechanism="slider-crank")
     with pytest.raises(ProblemError, match="constraint has_r4 fails on symbols"):
         synthesize(Problem(task=task, mechanism="slider-crank"), constraints=[has_r4])

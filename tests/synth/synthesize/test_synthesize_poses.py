@@ -1,7 +1,6 @@
-"""Any number of poses from problem to list: planted and noisy ones, free parts, and what is in the way."""
+"""Any number of poses from problem to list: planted and noisy ones, free parts, and obstacles."""
 
 from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import replace
 from itertools import combinations
 from typing import Any
@@ -224,11 +223,3 @@ def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     result = synthesize(Problem(task=task, requirements=EXACT), constraints=[too_long], starts=8)
     assert len(result) == 0
     assert "; this alone would do: constraint too_long up to 1010 instead of 0" in result.note
-
-
-@pytest.mark.slow
-def test_workers_change_nothing(tmp_path: Any, other_process: Executor) -> None:
-    problem, _ = noisy(1, 6)
-    for name, executor in (("here", None), ("there", other_process)):
-        synthesize(problem, effort=0.2, executor=executor).to_csv(tmp_path / name)
-    assert (tmp_path / "here").read_bytes() == (tmp_path / "there").read_bytes()

@@ -1,4 +1,4 @@
-"""How a search runs: where, how long, in what order, with what told on the way."""
+"""How a search runs: where, how long, in what order, with which reports."""
 
 import subprocess
 import sys
@@ -26,7 +26,6 @@ from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.searches import Run
 from grashof.synth.search.workers import solved_there
-from grashof.synth.starts.exact_poses import FewPoses
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -150,7 +149,7 @@ def test_progress_has_the_designs_that_are_chosen_from(name: str, monkeypatch: p
 
 
 @pytest.mark.slow
-def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path: Path) -> None:
+def test_reported_designs_of_a_stopped_search_make_a_list(luggage: Problem, tmp_path: Path) -> None:
     seen: list[Progress] = []
     stopped = synthesize(luggage, progress=seen.append, stop=lambda: len(seen) > 1)
     assert not stopped.complete
@@ -162,7 +161,7 @@ def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path:
 
 
 def of_two_poses(luggage: Problem) -> Problem:
-    """The same with its first two poses, so that no proof says at once that there is no design."""
+    """The problem with its first two poses, so that no proof excludes designs at once."""
     task = luggage.task
     rows = np.column_stack([task.positions, np.degrees(task.angles)])[:2]
     return replace(luggage, task=MotionTask.from_degrees(rows))
@@ -223,7 +222,7 @@ def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
 
 
 def test_stopped_before_anything_was_found(luggage: Problem) -> None:
-    """What a quick pass found is tried, and no more where that is a design."""
+    """Starts of a quick pass are tried, and no more where they give a design."""
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 2
@@ -232,22 +231,14 @@ def test_stopped_before_anything_was_found(luggage: Problem) -> None:
     assert result.ended == "the search ended after 2 of 200 solves: it was stopped"
 
 
-def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the screening found is tried, and no more."""
+def test_stopped_after_a_quick_pass_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Starts of the screening are tried, and no more."""
     monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "QUICK_PAIRS", 1)
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 8
     assert 1 <= len(result) <= 8
     assert not result.complete
-
-
-@pytest.mark.slow
-def test_a_glance_takes_nothing_from_the_list(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    with_glance = {each.id for each in synthesize(luggage).candidates}
-    monkeypatch.setattr(FewPoses, "quick_pass", lambda *_: None)
-    without = {each.id for each in synthesize(luggage).candidates}
-    assert without <= with_glance
 
 
 def test_stopped_with_nothing(luggage: Problem) -> None:

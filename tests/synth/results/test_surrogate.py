@@ -1,4 +1,4 @@
-"""Short tasks that stand in for long ones: their errors tell those on all targets."""
+"""Short surrogates of long tasks: their errors give those on all targets."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import MotionTask, PathTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.results.stand_in import FEW, LONG, StandIn
+from grashof.synth.results.surrogate import FEW, LONG, Surrogate
 
 MANY = 3 * LONG
 
@@ -30,21 +30,21 @@ def result(request: pytest.FixtureRequest) -> Result:
 
 @pytest.mark.quick("path")
 @pytest.mark.slow
-def test_the_error_on_all_targets_is_that_of_the_stand_in_and_the_least(result: Result) -> None:
+def test_the_error_on_all_targets_is_that_of_the_surrogate_and_the_least(result: Result) -> None:
     scaled = ScaledProblem.of(result.problem)
     least = result.least_error / result.problem.task.size
     best = min(result.candidates, key=lambda one: one.error(result.problem))
-    stand_in = StandIn.of(scaled, best, least)
-    few = stand_in.scaled.problem
+    surrogate = Surrogate.of(scaled, best, least)
+    few = surrogate.scaled.problem
     assert len(few.task) == FEW
     for one in result.candidates:
-        added = stand_in.taken(one).error(few) * few.task.size / result.problem.task.size
+        added = surrogate.taken(one).error(few) * few.task.size / result.problem.task.size
         assert np.hypot(least, added) == pytest.approx(one.error(result.problem), rel=0.1)
 
 
 @pytest.mark.quick("path")
 @pytest.mark.slow
-def test_what_is_offered_is_judged_on_all_targets(result: Result) -> None:
+def test_offered_designs_are_judged_on_all_targets(result: Result) -> None:
     least = min(one.error(result.problem) for one in result.candidates)
     offered = [one for one in result.candidates if "within" in one.best_at]
     assert offered
@@ -56,14 +56,14 @@ def test_what_is_offered_is_judged_on_all_targets(result: Result) -> None:
         assert one.error(result.problem) <= 2 * least * (1 + 1e-6)
 
 
-def test_short_tasks_and_those_with_constraints_of_the_user_stand_for_themselves() -> None:
+def test_short_tasks_and_those_with_user_constraints_have_no_surrogate() -> None:
     task, linkage = planted_motion(np.random.default_rng(0), LONG + 1)
     problem = Problem(task=task, requirements=Requirements(exact=False))
     short = Problem(task=MotionTask(task.positions[1:], task.angles[1:]), requirements=problem.requirements)
     own = (lambda design: design.r2 - 1,)
     for scaled in (ScaledProblem.of(short), ScaledProblem.of(problem, own)):
-        stand_in = StandIn.of(scaled, None, 0.1)  # type: ignore[arg-type]
-        assert stand_in.is_itself
-        assert stand_in.scaled is scaled
-        assert stand_in.most_error(0.3, 1.0) == 0.3
+        surrogate = Surrogate.of(scaled, None, 0.1)  # type: ignore[arg-type]
+        assert surrogate.is_itself
+        assert surrogate.scaled is scaled
+        assert surrogate.most_error(0.3, 1.0) == 0.3
     assert linkage.shape == ()
