@@ -67,27 +67,24 @@ def fixes_angle(wanted: Requirements, key: str) -> bool:
 def loosest(problem: Problem, key: str) -> Requirements:
     """The requirements of a problem without one of them, or with it as loose as is reasonable."""
     wanted = problem.requirements
-    if key == "constraints":
-        return wanted
-    given = getattr(wanted, key)
-    loose: Any = None
-    usual = (
-        LIMITS["link_length" if key in FourBar.mechanism.lengths else key].usual if key in LIMITS else None
-    )
-    if usual is not None:
-        low, high = (problem.task.size * share for share in usual)
-        loose = (min(low, given[0]), max(high, given[1]))
-    if key in LIMITS and LIMITS[key].kind is Kind.WORD:
-        loose = LIMITS[key].widest
-    others = {
+    limit = LIMITS.get("link_length" if key in FourBar.mechanism.lengths else key)
+    changed: dict[str, Any] = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
         "keep_out": (),
         **dict.fromkeys(UNSMOOTH, False),
     }
-    changed: dict[str, Any] = {key: others.get(key, loose)}
-    return replace(wanted, **changed)
+    if key == "constraints":
+        return wanted
+    if key in changed:
+        return replace(wanted, **{key: changed[key]})
+    if limit is not None and limit.usual is not None:
+        given, (low, high) = getattr(wanted, key), (problem.task.size * share for share in limit.usual)
+        changed[key] = (min(low, given[0]), max(high, given[1]))
+    elif limit is not None and limit.kind is Kind.WORD:
+        changed[key] = limit.widest
+    return replace(wanted, **{key: changed.get(key)})
 
 
 def relaxation(
@@ -147,30 +144,25 @@ def _changes(
         yield {"constraints": eased}, " with ".join(words)
     elif key == "keep_out":
         yield _areas_drawn_in(wanted, missed)
-    elif kind is Kind.BETWEEN:
-        reached = _reaching(asked, found)
-        yield {key: reached}, _range_words(key, asked, reached)
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
-    elif kind is Kind.DIRECTION and isinstance(asked, tuple):
-        reached = _turned_to(asked, found[0], problem.period(LIMITS[key].quantity.key))
+    elif isinstance(asked, tuple):
+        if kind is Kind.DIRECTION:  # the nearer end, deg
+            low, high = map(np.radians, asked)
+            period = problem.period(LIMITS[key].quantity.key)
+            off = float(np.degrees(turned_beyond(np.radians(found[0]), (low, high), period)))
+            found = [asked[off > 0] + off]
+        reached = _reaching(asked, found)
         yield {key: reached}, _range_words(key, asked, reached)
     elif kind is not None and kind.is_angle:
-        off = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
-        angle = float(f"{asked + np.degrees(off):.12g}")
+        turn = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
+        angle = float(f"{asked + np.degrees(turn):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
     else:
         value = max(_rounded(found[0], asked), 0.0)
         yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
-
-
-def _turned_to(asked: Limits, found: float, period: float) -> Limits:
-    """A range of angles in deg with its nearer end moved to an angle."""
-    low, high = map(np.radians, asked)
-    off = float(np.degrees(turned_beyond(np.radians(found), (low, high), period)))
-    return _reaching(asked, [asked[off > 0] + off])
 
 
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> Iterator[tuple[dict[str, Any], str]]:
@@ -210,13 +202,10 @@ def _areas_drawn_in(wanted: Requirements, missed: list[Defect]) -> tuple[dict[st
 
 
 def _reaching(given: Limits, found: list[float]) -> Limits:
-    """Limits widened to hold values, rounded outwards."""
+    """Limits widened to contain values, rounded outwards."""
     low, high = given
-    below, above = [value for value in found if value < low], [value for value in found if value > high]
-    return (
-        _rounded(min(below), low) if below else low,
-        _rounded(max(above), high) if above else high,
-    )
+    least, most = min([low, *found]), max([high, *found])
+    return _rounded(least, low) if least < low else low, _rounded(most, high) if most > high else high
 
 
 def _rounded(value: float, asked: float) -> float:
@@ -230,9 +219,6 @@ def _rounded(value: float, asked: float) -> float:
 
 
 def _range_words(name: str, given: Limits, reached: Limits) -> str:
-    words = []
-    if reached[0] < given[0]:
-        words.append(f"from {reached[0]:.10g} instead of {given[0]:g}")
-    if reached[1] > given[1]:
-        words.append(f"up to {reached[1]:.10g} instead of {given[1]:g}")
+    ends = zip(("from", "up to"), reached, given, strict=True)
+    words = [f"{way} {new:.10g} instead of {old:g}" for way, new, old in ends if new != old]
     return f"{name} {' and '.join(words)}"

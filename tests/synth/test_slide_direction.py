@@ -1,5 +1,6 @@
 """Slider-cranks through poses with a prescribed direction of the slide."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements, SliderCrank
+from grashof.problems import Box, FunctionTask, MotionTask, PathTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import turned_from
 from grashof.synth import Candidate
 
@@ -97,7 +98,7 @@ def test_a_range_of_directions_is_kept_and_used() -> None:
 
 
 def test_ranges_of_the_ground_angle_are_equal_modulo_a_turn() -> None:
-    task = MotionTask.from_degrees([[0, 0, 0], [30, 20, 25], [70, 25, 60], [90, 10, 85]])
+    task = PathTask([[0, 0], [30, 20], [60, 28], [90, 25], [110, 12]])
     found = [
         synthesize(
             Problem(task=task, requirements=Requirements(rotatability="any", ground_angle_deg=allowed)),
@@ -114,12 +115,15 @@ def test_ranges_of_the_ground_angle_are_equal_modulo_a_turn() -> None:
     np.testing.assert_allclose([each.r2 for each in there], [each.r2 for each in here], rtol=1e-6)
 
 
-def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end() -> None:
+def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end(
+    relaxing_only: Callable[..., None],
+) -> None:
+    relaxing_only("slide_angle_deg")
     task, linkage = planted_motion(np.random.default_rng([2, 5]), 5, mechanism="slider-crank")
     angle = float(np.degrees(linkage.slide_angle))  # the only one
     allowed = (angle + 1.0, angle + 3.0)
     wanted = Requirements(exact=True, slide_angle_deg=allowed, transmission_min_deg=0)
-    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted))
+    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted), starts=8)
     assert not result.candidates
     reached = float(result.note.split("slide_angle_deg from ")[1].split()[0])
     assert reached == pytest.approx(angle, abs=0.01)

@@ -1,12 +1,13 @@
 """A kind of task that the package does not have takes its value and a row of the judge."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 import pytest
 
 from grashof import synthesize
+from grashof.analysis import verify
 from grashof.analysis.judge.how_met import HOW_MET
 from grashof.problems import FunctionTask, Problem, Requirements, Task
 from grashof.problems.files.problem_writing import problem_toml
@@ -66,8 +67,9 @@ def test_a_dwell_is_searched_judged_and_described(monkeypatch: pytest.MonkeyPatc
     problem = Problem(task=task, requirements=Requirements(transmission_min_deg=20))
     found = synthesize(problem, seed=0, effort=0.2, workers=1)
     pairs = FunctionTask(task.timing, task.outputs)
-    same = synthesize(Problem(task=pairs, requirements=problem.requirements), seed=0, effort=0.2, workers=1)
     assert len(found) > 2
-    assert [one.linkage for one in found.candidates] == [one.linkage for one in same.candidates]
+    for one in found.candidates:
+        assert verify(one.linkage, pairs, problem.requirements).ok
+        assert one.error(problem) == pytest.approx(one.error(replace(problem, task=pairs)), rel=1e-12)
     assert "turn_deg = 40.0\n" in problem_toml(problem)
     assert "dwell through 9 places" in summary(problem)[0] + summary(problem)[1]
