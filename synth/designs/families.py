@@ -24,6 +24,8 @@ ALIKE = 0.05  # share of the largest number of two designs by which they differ 
 # Of the size of the task, between joints: near one another, and as good as in one place; deg.
 AKIN, SHARED, SAME_ANGLE = 0.15, 0.03, 1.0
 OBJECTIVE = "objective"
+# In sizes of the task; rad of the driver; rad over the turn of a full crank; as `rotatability_margin`.
+MOST_SIZE, LEAST_ROTATION, LEAST_TRANSMISSION, LEAST_MARGIN = 3.0, np.radians(15.0), np.radians(15.0), 0.01
 
 
 def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
@@ -127,10 +129,6 @@ def _shape(signatures: FloatArray) -> tuple[FloatArray, FloatArray]:
     pivots = np.hypot(signatures[:, [0, 2]], signatures[:, [1, 3]])
     reach: FloatArray = np.abs(np.concatenate([shape, pivots], axis=1)).max(axis=1)
     return shape, reach
-
-
-# In sizes of the task; rad of the driver; rad over the turn of a full crank; as `rotatability_margin`.
-MOST_SIZE, LEAST_ROTATION, LEAST_TRANSMISSION, LEAST_MARGIN = 3.0, np.radians(15.0), np.radians(15.0), 0.01
 
 
 def caution(problem: Problem, candidate: Candidate) -> str:

@@ -17,6 +17,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import overdue
 
 ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ
+MISSED = {"within", "angle_within_deg", "exact"}  # requirements of defects where a target is missed
 
 
 def judged(
@@ -120,9 +121,6 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
 def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
     """The design with its value under the user's own objective, where there is one."""
     return candidate if scaled.own_objective is None else candidate.valued(scaled.own_objective)
-
-
-MISSED = {"within", "angle_within_deg", "exact"}  # requirements of defects where a target is missed
 
 
 def shares(problem: Problem, verdict: Verdict) -> tuple[float, float]:

@@ -19,6 +19,8 @@ Fill: TypeAlias = Callable[[ScaledProblem, Start], Any]
 
 ZERO, NONNEGATIVE = (0.0, 0.0), (0.0, np.inf)
 FREE = (-np.inf, np.inf)
+FULL = 64  # unknowns: a row that depends on more of them is a full one
+STOPPED = "User_Requested_Stop"  # Ipopt's return status
 
 
 def always(low: float, high: float) -> Fill:
@@ -159,10 +161,6 @@ class Programme:
             least, most = limits(scaled, start)
             low[place], high[place] = max(low[place], least), min(high[place], most)
         return low, high
-
-
-FULL = 64  # unknowns: a row that depends on more of them is a full one
-STOPPED = "User_Requested_Stop"  # Ipopt's return status
 
 
 def jacobian_by_rows(stated: Mapping[str, ca.SX]) -> ca.Function:

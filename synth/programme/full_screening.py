@@ -15,6 +15,10 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, inside, points_kept_out
 
+_SAMPLES = 13  # driver angles, the targets' ends among them
+_ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
+_ROWS = 4000  # linkages at a time
+
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages with these violations added."""
@@ -54,11 +58,6 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
     amount: FloatArray = np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
     return amount
-
-
-_SAMPLES = 13  # driver angles, the targets' ends among them
-_ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
-_ROWS = 4000  # linkages at a time
 
 
 def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:

@@ -40,6 +40,8 @@ MOST_ITERATIONS = 150
 MENDING = 60  # iterations of a near miss mended in place, which takes a dozen where it succeeds
 PATIENCE = (250, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
 SLIGHT = 1e-6  # weight of the error beside the slack
+SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
+EXCHANGES = 4  # times at most that a solve is repeated
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,10 +170,6 @@ def _stated(
         if not form.exact:  # of equal slack the smaller error
             cost += SLIGHT * targets.error_scale * square(form, x, places, targets)
     return build, cost
-
-
-SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
-EXCHANGES = 4  # times at most that a solve is repeated
 
 
 def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:

@@ -31,6 +31,7 @@ _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_O
 # The place in CasADi's source with which its messages begin.
 _PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
+_WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols; both do what 3.7.2 did
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,9 +228,6 @@ def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
     if not count or (count > 1 and not kind.several):
         given = counted(count, "value") if count else "nothing"
         raise ProblemError(f"{name} gives {given}; {wanted}")
-
-
-_WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols; both do what 3.7.2 did
 
 
 @contextmanager

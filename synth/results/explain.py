@@ -32,6 +32,9 @@ SHOWN = 8  # least-squares designs that stand for the nearest
 _WOULD, _BETWEEN = " alone would do", "; "
 ALTERNATIVES = 6  # that the note names
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
+GOOD = float(np.radians(40))  # transmission angle that textbooks recommend (Norton, sec. 3.3)
+LITTLE = float(np.radians(1))  # below it more digits are shown
+_HALVINGS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,11 +204,6 @@ def _missed(scaled: ScaledProblem, candidate: Candidate) -> str:
     if "rotatability" in missed and scaled.wanted.rotatability is not Rotatability.ANY:
         less = '; rotatability = "any" requires less'
     return " and ".join(map(str, defects)) + less
-
-
-GOOD = float(np.radians(40))  # transmission angle that textbooks recommend (Norton, sec. 3.3)
-LITTLE = float(np.radians(1))  # below it more digits are shown
-_HALVINGS = 12
 
 
 def advice(problem: Problem) -> str:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import ProblemError
-from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.full_screening import fully_screened
@@ -151,11 +150,9 @@ def rejudged(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages judged again, by the requirements of another problem with the same task."""
     if not len(linkages):
         return linkages
-    o2, o4, a, b, p = linkages.points.T
-    counted: FloatArray = np.take_along_axis(linkages.theta2, np.argsort(linkages.visit, axis=1), axis=1)
-    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * counted)
-    at_b = at_a + linkages.coupler
-    at_p = at_a + ((p - a) / (b - a))[:, None] * linkages.coupler
+    o2, o4, _, _, p = linkages.points.T
+    in_order = np.argsort(linkages.visit, axis=1)[None]
+    at_a, at_b, at_p = np.take_along_axis(linkages.track, in_order, axis=2)
     found = Configurations(
         o2, o4, at_a, at_b, linkages.visit, linkages.theta2, linkages.direction, linkages.kind
     )

@@ -68,7 +68,7 @@ def loosest(problem: Problem, key: str) -> Requirements:
     """The requirements of a problem without one of them, or with it as loose as is reasonable."""
     wanted = problem.requirements
     limit = LIMITS.get("link_length" if key in FourBar.mechanism.lengths else key)
-    changed: dict[str, Any] = {
+    loose: dict[str, Any] = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
@@ -77,14 +77,13 @@ def loosest(problem: Problem, key: str) -> Requirements:
     }
     if key == "constraints":
         return wanted
-    if key in changed:
-        return replace(wanted, **{key: changed[key]})
-    if limit is not None and limit.usual is not None:
+    if key not in loose and limit is not None and limit.usual is not None:
         given, (low, high) = getattr(wanted, key), (problem.task.size * share for share in limit.usual)
-        changed[key] = (min(low, given[0]), max(high, given[1]))
+        loose[key] = (min(low, given[0]), max(high, given[1]))
     elif limit is not None and limit.kind is Kind.WORD:
-        changed[key] = limit.widest
-    return replace(wanted, **{key: changed.get(key)})
+        loose[key] = limit.widest
+    changed: dict[str, Any] = {key: loose.get(key)}
+    return replace(wanted, **changed)
 
 
 def relaxation(

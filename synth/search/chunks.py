@@ -20,6 +20,11 @@ from grashof.synth.theory.stopping import raise_if_stopped, stop_requested
 CHUNK = "chunk"  # kind of step
 CHUNKS = 4  # of a search of effort 1 in shards, among which its solves are divided
 AHEAD = 3  # chunks begun for each process before it is known that they are wanted
+# Solves between two looks at the verified designs, fixed, so that workers change nothing: of exact designs,
+# and of least squares, where every look may spare solves.
+BATCH, BATCH_LEAST_SQUARES = 16, 8
+EARLY = 2  # first solves after which progress is reported; nothing is decided there
+LAST = 8  # solves at most of a search that is stopped before it has a design
 
 
 def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
@@ -75,13 +80,6 @@ def _made(work: Work, scaled: ScaledProblem, *given: Any) -> Chunk:
         return work.made(chunk, scaled, *given)
     except CrashError:
         return _made_by(work, scaled, *given)
-
-
-# Solves between two looks at the verified designs, fixed, so that workers change nothing: of exact designs,
-# and of least squares, where every look may spare solves.
-BATCH, BATCH_LEAST_SQUARES = 16, 8
-EARLY = 2  # first solves after which progress is reported; nothing is decided there
-LAST = 8  # solves at most of a search that is stopped before it has a design
 
 
 def solve_round(found: Round, ledger: Ledger, run: Run) -> None:

@@ -104,7 +104,7 @@ class OnExecutor(Work):
         self._solves: dict[int, tuple[Future[list[Attempt]], int, Proposal]] = {}
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
-        """Attempts from starts, without those that end the process that makes them."""
+        """Attempts from starts; `CRASHED` is the status of one that ends the process that makes it."""
         made = []
         for number, start in enumerate(starts):
             try:

@@ -201,14 +201,6 @@ def test_the_mechanical_advantage_is_kept_above_its_limit(kind: str) -> None:
     assert min(kept) >= least * (1 - 1e-6)
 
 
-@pytest.mark.study
-def test_the_mechanical_advantage_as_a_goal() -> None:
-    problem, search = TASKS["poses met"]
-    strong = replace(problem, objective=Objective(transmission=0, mechanical_advantage=1))
-    free, best = (values_of(each, "mechanical_advantage", **search) for each in (problem, strong))
-    assert best[0] >= max(free) * (1 - 1e-6)
-
-
 @pytest.mark.quick("b-poses met")
 @pytest.mark.quick("a-poses met")
 @pytest.mark.parametrize("kind", ["poses met", "poses fitted"])

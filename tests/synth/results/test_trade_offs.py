@@ -143,7 +143,7 @@ def test_least_squares_that_meets_every_target_hints_at_exact_designs() -> None:
     luggage = load("luggage")
     fitted = replace(luggage, requirements=replace(luggage.requirements, exact=False))
     assert synthesize(fitted).ended.endswith(
-        "; every target can be met, and without exact = false more such designs are looked for"
+        "; every target can be met, and without exact = false the search is for more such designs"
     )
 
 

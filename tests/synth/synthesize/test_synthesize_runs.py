@@ -1,7 +1,5 @@
 """How a search runs: where, how long, in what order, with which reports."""
 
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -111,18 +109,6 @@ def test_a_lost_executor_is_an_error_of_the_surroundings(
         synthesize(luggage, starts=10, executor=executor)
 
 
-@pytest.mark.slow
-def test_progress_grows_until_enough(luggage: Problem) -> None:
-    seen: list[Progress] = []
-    result = synthesize(luggage, enough=25, progress=seen.append)
-    assert len(seen) >= 2
-    assert [step.solved for step in seen] == sorted({step.solved for step in seen})
-    assert [step.verified for step in seen] == sorted(step.verified for step in seen)
-    assert all(step.solved <= step.starts and step.enough == 25 for step in seen)
-    assert seen[-1].verified == len(result) >= 25
-    assert seen[-2].verified < 25
-
-
 def same_designs(first: Sequence[Candidate], second: Sequence[Candidate]) -> bool:
     return [one.id for one in first] == [one.id for one in second]
 
@@ -170,7 +156,9 @@ def of_two_poses(luggage: Problem) -> Problem:
 def test_enough_is_enough(luggage: Problem) -> None:
     seen: list[Progress] = []
     synthesize(luggage, enough=8, progress=seen.append)
-    assert [step.solved for step in seen][:2] == [2, 8]  # a batch is no greater than enough
+    solved, verified = [step.solved for step in seen], [step.verified for step in seen]
+    assert (solved, verified) == (sorted(set(solved)), sorted(verified))
+    assert solved[:2] == [2, 8]  # a batch does not exceed enough
     assert seen[-1].solved <= 16
     assert seen[-2].verified < 8 <= seen[-1].verified
     assert seen[0].starts == luggage.search.starts > 16
@@ -189,7 +177,7 @@ def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPat
     assert seen[0].starts == luggage.search.starts > 16
 
 
-@pytest.mark.parametrize("starts", [1, 5, 17])
+@pytest.mark.parametrize("starts", [1, 17])
 def test_no_more_solves_than_starts(luggage: Problem, starts: int) -> None:
     executor = Inline()
     result = synthesize(luggage, starts=starts, executor=executor)
@@ -234,6 +222,7 @@ def test_stopped_before_anything_was_found(luggage: Problem) -> None:
 def test_stopped_after_a_quick_pass_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     """Starts of the screening are tried, and no more."""
     monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "QUICK_PAIRS", 1)
+    monkeypatch.setattr(import_module("grashof.synth.theory.stopping"), "GRACE", 60.0)  # on a busy machine
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 8
@@ -254,22 +243,3 @@ def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
     assert not result.complete
     assert executor.jobs == 2
     assert synthesize(luggage, starts=3, time_limit=1000).complete
-
-
-THREADS = """
-from concurrent.futures import ThreadPoolExecutor
-from grashof import load, synthesize
-
-problem = load("luggage")
-alone = [each.id for each in synthesize(problem, starts=8).candidates]
-with ThreadPoolExecutor(2) as pool:
-    solved_there = synthesize(problem, starts=8, executor=pool)
-    both = [pool.submit(synthesize, problem, starts=8) for _ in range(2)]
-    found = [solved_there, *(each.result() for each in both)]
-assert all([each.id for each in result.candidates] == alone for result in found)
-"""
-
-
-@pytest.mark.slow
-def test_threads_do_not_crash_the_interpreter() -> None:
-    subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)
