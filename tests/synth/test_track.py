@@ -108,7 +108,7 @@ def test_fitted_functions_are_followed_to_the_least_error_nearby() -> None:
     task = FunctionTask.from_degrees([0, 15, 30, 45, 60, 75], [0, 12, 22, 30, 36, 40])
     problem = Problem(task=task)
     there = replace(problem, task=replace(task, outputs=1.01 * task.outputs))
-    designs = synthesize(problem).candidates
+    designs = synthesize(problem, effort=0.5).candidates
     after = track(designs, there)
     assert all(one.verdict.ok for one in after)
     least = min(one.error(there) for one in after)

@@ -181,14 +181,14 @@ FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
 )
 def test_the_relaxation_that_is_named_would_do(task: FunctionTask, wanted: dict[str, Any], key: str) -> None:
     problem = Problem(task=task, requirements=Requirements(**wanted))
-    found = synthesize(problem)
+    found = synthesize(problem, effort=0.3)
     assert not found.candidates
     assert f"{key} " in found.note
     said = found.note.split(f"{key} ")[1].removeprefix("up to ")
     value = float(said.split()[0])
     ranges = isinstance(wanted[key], tuple)
     looser = replace(problem.requirements, **{key: (0.0, value) if ranges else value})
-    assert synthesize(replace(problem, requirements=looser)).best.verdict.ok
+    assert synthesize(replace(problem, requirements=looser), effort=0.3).best.verdict.ok
 
 
 def long_coupler(design: Design) -> Any:

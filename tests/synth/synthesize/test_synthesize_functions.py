@@ -142,7 +142,7 @@ def test_boxes_lengths_and_senses_are_kept() -> None:
         transmission_min_deg=30, driver_sense="cw",
     )  # fmt: skip
     task = FunctionTask.from_degrees([0, 45, 90], [0, 31, 80])
-    result = synthesize(Problem(task=task, requirements=wanted, length_unit="mm"), enough=4)
+    result = synthesize(Problem(task=task, requirements=wanted, length_unit="mm"), enough=4, effort=0.3)
     assert len(result) >= 4
     for each in result.candidates:
         assert each.verdict.direction == -1
