@@ -99,10 +99,6 @@ class Form:
         heavy = any(QUANTITIES[key].needs is Needs.DYNAMICS for key in made.along)
         return made if heavy else replace(made, loading=None)
 
-    def places_of(self, name: str) -> int:
-        """Number of places at which a point is held in free regions."""
-        return 1 if name in self.kind.linkage.mechanism.ground else self.targets
-
 
 def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
     """Fields whose limits can bind; the ratio of links cannot where lengths are close enough."""

@@ -10,8 +10,8 @@ import numpy as np
 from grashof.problems import ProblemError
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
-from grashof.synth.programme.full_screening import fully_screened
 from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.provers import bounds_before
 from grashof.synth.quantities.scaled_problem import ScaledProblem

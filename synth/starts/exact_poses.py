@@ -18,8 +18,8 @@ import numpy as np
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.checks import counted
-from grashof.synth.programme.full_screening import fully_screened
 from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.coupler_search import searched_round

@@ -16,7 +16,7 @@ MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
 @dataclass(frozen=True, slots=True)
-class PolishTargets:
+class Wish:
     """What has to be met exactly, at N targets."""
 
     points: ComplexArray  # (N,), sizes
@@ -39,7 +39,7 @@ class Polished:
 
 
 def polish_path(
-    points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, wish: PolishTargets
+    points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, wish: Wish
 ) -> Polished:
     """Newton's method for the targets, each step of least norm, from a design as `Polished` has it.
 
@@ -72,7 +72,7 @@ def polish_path(
 
 
 def _linearised(
-    unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, wish: PolishTargets
+    unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, wish: Wish
 ) -> tuple[tuple[ComplexArray, ComplexArray], FloatArray, FloatArray]:
     """Points at the first target, coupler at all; misses (M,), and their derivative (M, 11).
 
@@ -107,20 +107,20 @@ def _linearised(
     )
 
 
-def _target_of_rows(wish: PolishTargets) -> IntArray:
+def _target_of_rows(wish: Wish) -> IntArray:
     """The target that each miss is of, shape (M,)."""
     points, turns = np.flatnonzero(wish.has_point), np.flatnonzero(wish.has_turn)
     return np.concatenate([points, points, turns])
 
 
-def _spread(jacobian: FloatArray, wish: PolishTargets) -> FloatArray:
+def _spread(jacobian: FloatArray, wish: Wish) -> FloatArray:
     """The derivative by each driver angle in a column of its own, shape (M, 10 + N)."""
     by_angles = np.zeros((len(jacobian), len(wish.points)))
     by_angles[np.arange(len(jacobian)), _target_of_rows(wish)] = jacobian[:, 10]
     return np.concatenate([jacobian[:, :10], by_angles], axis=1)
 
 
-def _eliminated(jacobian: FloatArray, residual: FloatArray, wish: PolishTargets) -> FloatArray:
+def _eliminated(jacobian: FloatArray, residual: FloatArray, wish: Wish) -> FloatArray:
     """The step of least squares for many targets, shape (10 + N,): without driver angles, then these.
 
     What a driver angle can do is taken out of the rows of its target, in time and memory as the targets

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from grashof.synth.programme.full_screening import fully_screened
 from grashof.synth.programme.start import Round
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.selection import feasible_starts, scores, starts_of

@@ -12,8 +12,8 @@ import numpy as np
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.full_screening import fully_screened
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart

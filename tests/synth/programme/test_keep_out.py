@@ -12,8 +12,8 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.programme.full_screening import depth_on_the_way
 from grashof.synth.programme.start import Start
+from grashof.synth.programme.whole_screening import depth_on_the_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.finder import finder_for
