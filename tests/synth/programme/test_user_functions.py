@@ -101,6 +101,7 @@ def test_every_design_holds_the_constraint(kind: str, without: Result) -> None:
     assert {candidate.id for candidate in result.candidates} != {found.id for found in without.candidates}
 
 
+@pytest.mark.slow
 def test_two_at_once_hold_both() -> None:
     result = synthesize(THREE, constraints=[level, short_driver], enough=6)
     assert len(result) >= 6

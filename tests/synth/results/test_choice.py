@@ -158,6 +158,7 @@ def test_errors_are_angles_whatever_the_size() -> None:
     assert found.least_error == pytest.approx(least, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_list_offers_more_transmission_for_more_error() -> None:
     best, *others = synthesize(Problem(task=SIX), effort=0.4).candidates
     assert best.best_at == "least error"

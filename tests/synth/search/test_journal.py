@@ -40,7 +40,7 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended
 
 
-@pytest.mark.quick("poses fitted", "limit positions")
+@pytest.mark.quick("poses fitted")
 @pytest.mark.usefixtures("small_search")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_killed_search_resumes_to_the_same_list(

@@ -51,7 +51,7 @@ def check_exact(result: Result, judge: Judge) -> None:
     assert all(one.id != other.id for one, other in combinations(result.candidates, 2))
 
 
-@pytest.mark.quick("0-3", "0-6", "0-12", "1-3", "1-6", "1-12")
+@pytest.mark.quick("0-3", "0-6", "1-12")
 @pytest.mark.parametrize("poses", [2, 3, 5, 6, 8, 12])
 @pytest.mark.parametrize("seed", range(2))
 def test_planted_poses_are_met_exactly(poses: int, seed: int, independent_judge: Judge) -> None:
@@ -151,7 +151,7 @@ MIXES: dict[str, tuple[int, list[int], list[int]]] = {
 }
 
 
-@pytest.mark.quick("7 poses, 4 angles free", "3 poses, a place and an angle free")
+@pytest.mark.quick("3 poses, a place and an angle free")
 @pytest.mark.parametrize("mix", MIXES)
 def test_poses_with_free_parts_are_met_exactly(mix: str) -> None:
     poses, places, angles = MIXES[mix]
