@@ -31,7 +31,7 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Studies are slow; of a `quick` test all cases but those that it names are studies; browsers are extra."""
+    """Studies are slow; cases that a `quick` test does not name are studies; tests in a browser are extra."""
     known: dict[str, set[str]] = {}
     named: dict[str, set[str]] = {}
     for item in items:

@@ -18,7 +18,7 @@ from grashof.problems.values.checks import counted
 if TYPE_CHECKING:
     from grashof.output.drawing import Drawer
     from grashof.synth import Result
-    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.run import Progress
 
 
@@ -36,7 +36,7 @@ def solve(problem: Problem, text: str, options: SolveOptions) -> Exit:
 def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> Exit:
     from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
-    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.history import Ending
     from grashof.synth.search.journal import remove_record
 
@@ -62,7 +62,7 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
     ):
         deliver = partial(_deliver, text=text, settings=settings, folder=folder, drawings=options.drawings,
                           interrupted=interrupted, drawing=drawing)  # fmt: skip
-        so_far = SoFar(problem)
+        so_far = ReportedDesigns(problem)
         try:
             found = _found(problem, options, settings, search, record, interrupted, so_far)
         except Exception:  # it is reported after the list
@@ -80,7 +80,7 @@ def _found(
     search: Search,
     record: Path,
     interrupted: Interruption,
-    so_far: SoFar,
+    so_far: ReportedDesigns,
 ) -> Result:
     """What the search comes to; `settings` gets the number of workers that a scheduler has."""
     from grashof.output.cluster import cluster
@@ -202,11 +202,13 @@ def solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions)
             stop=interrupted,
         )
     counts = f"{counted(made.solved, 'solve')}, {counted(made.designs, 'verified design')}"
-    next_step = f"grashof merge {folder} makes the list" if made.whole else "the same command goes on with it"
+    next_step = (
+        f"grashof merge {folder} makes the list" if made.complete else "the same command goes on with it"
+    )
     say(f"shard {shard}: {made.chunks} of {counted(made.of, 'chunk')}, {counts}; {next_step}", err=True)
     if interrupted():
         return interrupted.code
-    return Exit.OK if made.whole else Exit.NO_DESIGN
+    return Exit.OK if made.complete else Exit.NO_DESIGN
 
 
 def merge(folder: Path, options: MergeOptions) -> Exit:

@@ -1,4 +1,4 @@
-"""The cylinder of a design: the best one for its task motion, where the problem asks for one."""
+"""The cylinder of a design: the best one for its task motion, where the problem requests one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OF_LINK2 = {"same_branch", "order"}  # and one on link 3 or 4 alone
 
 
 def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylinder | None:
-    """The best cylinder for a linkage judged without one, if one is asked for and found."""
+    """The best cylinder for a linkage judged without one, if one is requested and found."""
     left = {each.requirement for each in verdict.defects if not each.requirement.startswith(_OWN)}
     if problem.driver is None:
         return None
