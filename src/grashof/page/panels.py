@@ -1,4 +1,4 @@
-"""The tables of motion and forces as sections: what the page of an analysis shows before all others."""
+"""The tables of motion and forces as sections, the first on the page of an analysis."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from grashof.survey.report import LinkageReport
 
 _RATES = ("velocity", "s"), ("acceleration", "s²")
 _MU = {"mu_deg": "μ", "mu_2_deg": "μ of loop 2"}
-# Of a plot: key, title, unit, and the columns with their labels.
+# Key, title and unit of a plot, and its columns with their labels.
 Panel = tuple[str, str, str, Mapping[str, str]]
 
 
 def motion_sections(report: LinkageReport) -> list[Section]:
-    """Sections of plots alone, of every column of motion and forces over the driver angle that there is.
+    """Sections with plots only, of all columns of motion and forces over the driver angle.
 
     >>> from grashof.problems import load_linkage_spec
     >>> from grashof.survey import report_on

@@ -16,7 +16,7 @@ from grashof.analysis.judge.planted import planted_path, random_full_crank
 from grashof.figures import draw_design, save, save_animation
 from grashof.figures.files import draw_motion
 from grashof.figures.parts import BODY, DRIVER, PATH, TARGET, missing_glyphs_unwarned
-from grashof.figures.survey_plots import plots
+from grashof.figures.section_plots import plots
 from grashof.problems import FourBar, LinkageSpec, MotionTask, PathTask, Problem, load
 from grashof.problems.files.published import published
 from grashof.survey import report_on

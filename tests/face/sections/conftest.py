@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from grashof.problems import LinkageSpec, load_linkage_spec
-from grashof.sections import SECTIONS
+from grashof.sections import sections_of
 from grashof.study.asked import Asked
 from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
@@ -27,8 +27,7 @@ def sections() -> Sections:
         spec = load_linkage_spec(linkage) if isinstance(linkage, str) else linkage
         study = LinkageStudy.of(spec, Asked(**asked))
         with dead_positions_unwarned():
-            made = [section for make in SECTIONS if (section := make(study)) is not None]
-        return {section.key: section for section in made}
+            return {section.key: section for section in sections_of(study)}
 
     return of
 

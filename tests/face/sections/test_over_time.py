@@ -11,7 +11,7 @@ from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, stated_m
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
 from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.sections.loads.over_time import sawtooth
+from grashof.sections.over_time import sawtooth
 from grashof.study.asked import Asked
 
 ONE_RANGE = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), "swinging")

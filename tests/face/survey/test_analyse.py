@@ -257,7 +257,7 @@ def test_given_masses_and_payload() -> None:
 @pytest.mark.slow
 def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
     """Rates without bound are cut off, and no warning is given."""
-    from grashof.figures.survey_plots import plots
+    from grashof.figures.section_plots import plots
 
     made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
     files = [tmp_path / f"velocities.{kind}" for kind in ("png", "svg")]

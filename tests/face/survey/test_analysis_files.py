@@ -14,12 +14,12 @@ import pytest
 
 import grashof.figures.files
 from grashof.figures.files import save
-from grashof.figures.survey_plots import section_pictures
+from grashof.figures.section_plots import section_pictures
 from grashof.output.analysis_files import print_report, write_report
 from grashof.output.folder import ANALYSIS_RECORD, is_own_name
 from grashof.output.run_files import write_run
 from grashof.problems import FourBar, load_linkage_spec
-from grashof.sections.mass_centres import mass_centres
+from grashof.sections.places import mass_centres
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 from grashof.synth import Result
 
@@ -58,7 +58,7 @@ def told(jack: LinkageReport) -> LinkageReport:
 def folder(told: LinkageReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("told") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+        patch.setattr("grashof.figures.section_plots.plots", lambda _: [])
         write_report(path, told)
     return path
 

@@ -26,7 +26,7 @@ from grashof.problems import (
 )
 from grashof.study.asked import ON_REQUEST
 from grashof.survey import Asked, LinkageReport, report_on
-from grashof.wording.verdict import judged_for
+from grashof.wording.problem import judged_for
 
 ENGINE, SHAPER = load_linkage_spec("engine"), load_linkage_spec("crank-shaper")
 MASSES = DynamicsSpec(masses=(1, 2, 3), inertias=(100, 1000, 10), speed_rpm=60)
