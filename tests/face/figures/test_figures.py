@@ -1,4 +1,4 @@
-"""Figures show what is true, in the axes given, and nothing else happens."""
+"""Figures are right, are drawn in the given axes, and have no side effects."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def lines(ax: Axes, colour: str) -> list[Any]:
     return [line.get_xydata() for line in ax.lines if to_hex(line.get_color()) == colour]
 
 
-def test_links_are_as_long_as_they_are_and_stand_as_asked() -> None:
+def test_links_have_their_lengths_at_the_given_angles() -> None:
     theta2 = np.radians([10, 130, 250])
     ax = plot_linkage(CRANK_ROCKER, theta2=theta2, ax=axes())
     drivers, outputs, couplers = (lines(ax, c) for c in (parts.DRIVER, parts.OUTPUT, parts.COUPLER))
@@ -238,7 +238,7 @@ def test_a_task_alone_is_drawn_with_what_it_states() -> None:
     assert [text.get_text() for text in some.texts if text.get_text()] == ["1", "3"]
 
 
-def test_without_dynamics_the_colour_tells_nothing_or_the_error(few: Result) -> None:
+def test_without_dynamics_the_colour_shows_nothing_or_the_error(few: Result) -> None:
     plain = replace(few.problem, dynamics=None)
     ax = plot_design_space(replace(few, problem=plain), ax=axes())
     assert len(ax.figure.axes) == 1
@@ -340,7 +340,7 @@ SIGHT = {
 
 
 @pytest.mark.parametrize("who", SIGHT)
-def test_colours_are_told_apart(who: str) -> None:
+def test_colours_are_distinguishable(who: str) -> None:
     colours = (*parts.COLOURS.values(), parts.PATH, parts.TARGET)
     for one, other in combinations(dict.fromkeys(colours), 2):
         assert np.linalg.norm(seen(one, SIGHT[who]) - seen(other, SIGHT[who])) > 15, (one, other)

@@ -1,4 +1,4 @@
-"""What friction takes in a turn, and the efficiency that follows, against sums over dense samples."""
+"""Work of friction in a turn, and the efficiency, compared with sums over dense samples."""
 
 import numpy as np
 import pytest

@@ -50,16 +50,16 @@ def jack() -> LinkageReport:
 
 
 @pytest.fixture(scope="module")
-def told(jack: LinkageReport) -> LinkageReport:
+def report(jack: LinkageReport) -> LinkageReport:
     return replace(jack, sections=(STRENGTH, QUIET, MOTOR, MORE))
 
 
 @pytest.fixture(scope="module")
-def folder(told: LinkageReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("told") / "out"
+def folder(report: LinkageReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "out"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("grashof.figures.section_plots.plots", lambda _: [])
-        write_report(path, told)
+        write_report(path, report)
     return path
 
 
@@ -96,9 +96,9 @@ def test_the_summary_is_json_that_every_reader_knows(folder: Path, jack: Linkage
 
 
 def test_the_terminal_lists_facts_under_titles(
-    told: LinkageReport, capsys: pytest.CaptureFixture[str]
+    report: LinkageReport, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    print_report(told)
+    print_report(report)
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     begin = lines.index(["Strength", "of", "the", "bars", "value", "unit"])
     assert lines[begin + 2 :] == [
