@@ -18,6 +18,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.study.kinds import forces_of, turning
 from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.section import FROM_FIRST_PAIR
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
 from grashof.synth import Candidate
@@ -224,9 +225,6 @@ def _bound(ax: Axes, values: FloatArray) -> None:
         ax.set_ylim(min(low, -0.02 * limit), min(float(known.max()) * 1.05, limit))
 
 
-_OVER = "driver rotation from the first pair (deg)"
-
-
 def plot_function(task: Task, candidate: Candidate, *, ax: Sequence[Axes]) -> None:
     """Wanted and generated output of a design on the first axes, its structural error on the second."""
     output, error = ax
@@ -263,5 +261,5 @@ def plot_wanted(axes: Axes, task: Task, length_unit: str) -> None:
 
 def _label(axes: Axes, words: str, task: Task, length_unit: str) -> None:
     """Label both axes, the vertical one by words with the unit of the output."""
-    axes.set_xlabel(_OVER)
+    axes.set_xlabel(FROM_FIRST_PAIR)
     axes.set_ylabel(f"{words} ({task.counted_in.of(length_unit)})")

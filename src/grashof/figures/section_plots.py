@@ -39,6 +39,13 @@ _AGAIN = (1, 2)
 _MARKERS = "osD^vP*X"
 _LABEL = 42  # characters per line of an axis label
 _CROWD = 6  # number of lines above which the legend has two columns
+_KINEMATIC = {
+    "angles": ("angle",),
+    "velocities": ("angular velocity", "speed"),
+    "accelerations": ("angular acceleration", "acceleration"),
+}
+_SLIDE = {"slide": tuple(SLIDE)}
+_DYNAMIC = {"torque": ("torque",), "forces": ("joint force", "shaking force")}
 
 
 def plot_section(plot: Plot, ax: Axes | None = None) -> Axes:
@@ -138,15 +145,6 @@ def _name(ax: Axes, lines: list[Line2D]) -> None:
     legend = ax.legend(lines, names, loc="best", fontsize="small", ncols=1 + (len(lines) > _CROWD))
     for text in legend.get_texts():
         text.set_parse_math(False)
-
-
-_KINEMATIC = {
-    "angles": ("angle",),
-    "velocities": ("angular velocity", "speed"),
-    "accelerations": ("angular acceleration", "acceleration"),
-}
-_SLIDE = {"slide": tuple(SLIDE)}
-_DYNAMIC = {"torque": ("torque",), "forces": ("joint force", "shaking force")}
 
 
 def plots(report: LinkageReport) -> Iterator[tuple[str, Figure]]:

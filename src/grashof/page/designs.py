@@ -33,6 +33,8 @@ from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row
 
 _SAMPLES = 181
+STEPS = 180
+_ROUNDING = 1e-12  # of a turn
 
 
 def scene_of(problem: Problem) -> dict[str, Any]:
@@ -97,10 +99,6 @@ def _published(problem: Problem) -> dict[str, Any] | None:
         "label": f"{best.method} {best.year}",
         "path": [compact(point) for point in path if np.isfinite(point).all()],
     }
-
-
-STEPS = 180
-_ROUNDING = 1e-12  # of a turn
 
 
 class Travel(NamedTuple):

@@ -31,6 +31,8 @@ from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_extremes, turn_means, turn_peaks, varies
 
 _CERTAIN = 1e-7  # share of the input work: error up to which an efficiency is reported
+_RPM = 60 / TURN
+_SPEED = "speed of the motor (rpm)"
 
 
 def energy_section(study: LinkageStudy) -> Section | None:
@@ -102,10 +104,6 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
         yield Fact(
             "efficiency", "efficiency: work put in that friction leaves", left if left > _CERTAIN else 0.0
         )
-
-
-_RPM = 60 / TURN
-_SPEED = "speed of the motor (rpm)"
 
 
 def motor(study: LinkageStudy) -> Section | None:

@@ -28,6 +28,10 @@ _NOTES = (
     "the driver is free, friction is left out",
     "natural frequencies are of small swings without damping",
 )
+SECONDS = 5.0
+_ROWS = (200, 2000)  # least and greatest number of steps of the table
+_PER_SECOND = 100
+_LONGEST = 3600.0  # s
 
 
 def equilibrium(study: LinkageStudy) -> Section | None:
@@ -78,12 +82,6 @@ def _equilibrium_facts(table: pd.DataFrame) -> Iterator[Fact]:
         if np.isfinite(row["frequency_hz"]):
             label = f"equilibrium {number}: natural frequency"
             yield Fact(f"equilibrium_{number}_frequency", label, float(row["frequency_hz"]), "Hz")
-
-
-SECONDS = 5.0
-_ROWS = (200, 2000)  # least and greatest number of steps of the table
-_PER_SECOND = 100
-_LONGEST = 3600.0  # s
 
 
 def release(study: LinkageStudy) -> Section | None:

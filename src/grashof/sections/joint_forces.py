@@ -11,6 +11,8 @@ from grashof.study.samples import Columns, over_driver, table, tracks
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 
+_EQUATIONS = "equations"
+
 
 def pin_forces(study: LinkageStudy) -> Section | None:
     """Polar plots of the pin forces, in global axes and in the frame of each link; None without masses."""
@@ -51,9 +53,6 @@ def _in_frame(force: FloatArray, theta: FloatArray) -> FloatArray:
     cosine, sine = np.cos(theta), np.sin(theta)
     x, y = force.T
     return np.stack([cosine * x + sine * y, cosine * y - sine * x], axis=-1)
-
-
-_EQUATIONS = "equations"
 
 
 def equations(study: LinkageStudy) -> Section | None:

@@ -19,6 +19,10 @@ from grashof.study.study import LinkageStudy
 
 _NEWTON = "newton-raphson"
 _OTHER = 1.0  # deg from the closed form: beyond it the steps have ended on the other assembly
+_DIFFERENCES = "differences"
+ORDERS = (2, 4)
+_DEGREE, _BESIDE = TURN / 360, 2  # samples on either side of one that order 4 needs
+_ANGULAR, _LINEAR = (("omega", "rad/s"), ("alpha", "rad/s²")), (("velocity", "/s"), ("acceleration", "/s²"))
 
 
 def newton_raphson(study: LinkageStudy) -> Section | None:
@@ -66,12 +70,6 @@ def _unwrapped(angles_deg: np.ndarray) -> np.ndarray:
     unwrapped, known = angles_deg.copy(), np.isfinite(angles_deg)
     unwrapped[known] = np.unwrap(angles_deg[known], period=360)
     return unwrapped
-
-
-_DIFFERENCES = "differences"
-ORDERS = (2, 4)
-_DEGREE, _BESIDE = TURN / 360, 2  # samples on either side of one that order 4 needs
-_ANGULAR, _LINEAR = (("omega", "rad/s"), ("alpha", "rad/s²")), (("velocity", "/s"), ("acceleration", "/s²"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -24,12 +24,12 @@ from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.study.quantities import counted_on, counted_with
 from grashof.study.samples import Columns, curves, over_driver, table
-from grashof.study.section import Fact, Plot, Section
+from grashof.study.section import FROM_FIRST_PAIR, Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
 from grashof.study.turn import degrees, turn_extremes
 
-OVER = "driver rotation from the first pair (deg)"
+_AT_REST = 1e-9  # |omega4 / omega2| below which the output is at rest
 
 
 def function_section(study: LinkageStudy) -> Section | None:
@@ -49,13 +49,13 @@ def function_section(study: LinkageStudy) -> Section | None:
         task.counted_in.of(problem.length_unit),
     )
     output = {"wanted": shown * curves.wanted, "generated": shown * curves.generated}
-    plots = (
-        Plot("function-output", task.output_words, unit, output, places, OVER, bounded=True),
-        Plot(
-            "structural-error", "structural error", unit, {"error": shown * curves.error}, places, OVER,
-            bounded=True,
-        ),
-    )  # fmt: skip
+    plots = tuple(
+        Plot(key, title, unit, lines, places, FROM_FIRST_PAIR, bounded=True)
+        for key, title, lines in (
+            ("function-output", task.output_words, output),
+            ("structural-error", "structural error", {"error": shown * curves.error}),
+        )
+    )
     tables = {} if at_pairs is None else {"function": _pairs(task, verdict, at_pairs)}
     way = "along the slide" if task.travels else "in the sense of the driver"
     between = "between pairs the wanted output is the cubic spline through them"
@@ -148,9 +148,6 @@ def _dwell_facts(study: LinkageStudy, rest: Dwell, number: int, swing: tuple[flo
     if study.sweep.speed_rpm != 0:
         seconds = float(np.degrees(rest.duration)) / 6 / abs(study.sweep.speed_rpm)
         yield Fact(f"dwell{mark}_seconds", f"{what}: time at the driver's speed", seconds, "s")
-
-
-_AT_REST = 1e-9  # |omega4 / omega2| below which the output is at rest
 
 
 def mechanical_advantage(study: LinkageStudy) -> Section:

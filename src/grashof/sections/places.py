@@ -19,6 +19,7 @@ from grashof.study.study import LinkageStudy
 
 _RATES = (("position", "", ""), ("velocity", "velocity", "/s"), ("acceleration", "acceleration", "/s²"))
 _SIZES = {"velocity": "speed", "acceleration": "acceleration"}
+_SMALL = ("_x", "_y")
 
 
 def mass_centres(study: LinkageStudy) -> Section:
@@ -102,9 +103,6 @@ def _centre_motion(study: LinkageStudy, samples: Samples) -> tuple[pd.DataFrame,
         size, key = _SIZES[rate], f"centres-{_SIZES[rate]}"
         plots.append(samples.plot(key, f"{size} of the centres", f"{study.spec.unit}{unit}", each))
     return samples.table(columns), plots
-
-
-_SMALL = ("_x", "_y")
 
 
 def positions(study: LinkageStudy) -> Section | None:

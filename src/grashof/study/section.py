@@ -11,6 +11,7 @@ import pandas as pd
 from grashof.problems.values.arrays import FloatArray
 
 DRIVER_ANGLE = "driver angle theta2 (deg)"
+FROM_FIRST_PAIR = "driver rotation from the first pair (deg)"
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,6 +35,13 @@ from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
 
+# Quantities that a verdict reports besides missed requirements, where they have a value.
+_KEYS = (
+    "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
+    "transmission_min_cycle", "driver_rotation", "output_swing", "stroke", "time_ratio", "size",
+    "torque_peak",
+)  # fmt: skip
+
 
 def ends_with_enough(problem: Problem) -> bool:
     """Whether the search ends once it has enough designs, as it does where it begins with exact ones."""
@@ -264,14 +271,6 @@ def _exactness(problem: Problem) -> str:
 
 def _yes(value: bool) -> str:
     return "yes" if value else "no"
-
-
-# Quantities that a verdict reports besides missed requirements, where they have a value.
-_KEYS = (
-    "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
-    "transmission_min_cycle", "driver_rotation", "output_swing", "stroke", "time_ratio", "size",
-    "torque_peak",
-)  # fmt: skip
 
 
 def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:

@@ -15,6 +15,7 @@ from grashof.synth.proof.claims.proof import Claim, Proof, quantity_of
 _DECIMALS = 2
 _SAME = 1e-9  # deg: rounding
 _NOTHING = 90.0  # deg: a trivial bound
+_NAMED = 2  # designs of each reason, by their ids
 
 
 def proof_line(result: Result) -> str:
@@ -124,9 +125,6 @@ def work_line(proof: Proof) -> str:
     if not second:
         return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
     return f"{first} by {second} pieces of all dyads, {counted(proof.pairs, 'pair')}, {halved}"
-
-
-_NAMED = 2  # designs of each reason, by their ids
 
 
 def enclosure_line(result: Result) -> str:
