@@ -17,7 +17,7 @@ from grashof.problems import Problem, ProblemError, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.study.kinds import forces_of, turning
-from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.quantities import by_range, dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import FROM_FIRST_PAIR
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
@@ -168,10 +168,10 @@ def draw_curves(
 ) -> AxesArray:
     """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
-    theta2 = _by_range(table, "theta2_deg")
+    theta2 = by_range(table, "theta2_deg")
     for axes, (label, every) in zip(rows, panels, strict=True):
         names = {name: _name(sweep, name, words) for name, words in every.items() if name in table}
-        drawn = {name: _by_range(table, name) for name in names}
+        drawn = {name: by_range(table, name) for name in names}
         for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
             axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
         if not sweep.turns and not label.startswith("angle"):
@@ -206,14 +206,6 @@ def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
     if len(rows) != count:
         raise ProblemError(f"ax has {len(rows)} axes; it must have {count}, one for each quantity")
     return rows
-
-
-def _by_range(table: pd.DataFrame, name: str) -> FloatArray:
-    """A column of an analysis, with a gap between the ranges of the driver."""
-    values = table[name].to_numpy(dtype=np.float64)
-    if "range" not in table:
-        return values
-    return np.insert(values, np.flatnonzero(np.diff(table["range"])) + 1, np.nan)
 
 
 def _bound(ax: Axes, values: FloatArray) -> None:

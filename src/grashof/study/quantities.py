@@ -204,6 +204,14 @@ def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFra
     return pd.concat(parts, ignore_index=True)
 
 
+def by_range(table: pd.DataFrame, name: str) -> FloatArray:
+    """A column of a table over the driver angle, with NaN between two ranges, so that lines break."""
+    values = table[name].to_numpy(dtype=np.float64)
+    if "range" not in table:
+        return values
+    return np.insert(values, np.flatnonzero(np.diff(table["range"])) + 1, np.nan)
+
+
 def counted_on(values: FloatArray, period: float) -> FloatArray:
     """Angles along a motion without jumps, the least of them within half a period of zero."""
     known = np.isfinite(values)
