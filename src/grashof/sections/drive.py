@@ -20,7 +20,7 @@ from grashof.analysis import (
     size_flywheel,
     solve_kinematics,
 )
-from grashof.analysis.mechanism.means import mean_in_time
+from grashof.analysis.mechanism.driver_law import mean_in_time
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within

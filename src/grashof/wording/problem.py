@@ -22,7 +22,7 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import kinds_text
-from grashof.problems.values.requirements.quantities import Over
+from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
@@ -102,7 +102,7 @@ def summary(problem: Problem) -> list[str]:
 def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
     """The quantity that a field of the requirements limits, with its limits."""
     limited = wanted.limited[name]
-    quantity = wanted.meant(limited.quantity)
+    quantity = wanted.as_required(limited.quantity)
     sides = {part: limited.range_text(limits) for part, limits in wanted.ranges(name).items()}
     unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
     limits = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
@@ -303,7 +303,7 @@ def verdict_lines(candidate: Candidate, name: str) -> list[str]:
     lines.append(f"  {verdict.grashof_class}; driver {'turns fully' if verdict.full_rotation else 'swings'}")
     for key in _KEYS:
         quantity = QUANTITIES[key]
-        if quantity.over is Over.CYCLE and not verdict.full_rotation:
+        if quantity.over is Scope.CYCLE and not verdict.full_rotation:
             continue
         if candidate.linkage.mechanism.word in quantity.kinds and np.isfinite(value := candidate.values[key]):
             unit = quantity.unit.of(problem.length_unit)
