@@ -115,7 +115,7 @@ def swinging() -> LinkageReport:
 @pytest.fixture(scope="package")
 def inexact() -> Result:
     """Designs by least squares, whose errors differ."""
-    return synthesize(load("path-gait"), starts=10)
+    return synthesize(load("path-gait"), starts=5)
 
 
 @pytest.fixture(scope="package")

@@ -74,7 +74,7 @@ def test_the_linkage_closes_wherever_it_is_dragged(opened: Open, few: Result) ->
 def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open, rocker: FourBar) -> None:
     page = opened("rocker")
     low, high = driver_ranges(rocker)[0]
-    there = np.linspace(0, 3, 11)
+    there = np.linspace(0, 3, 8)
     seen = []
     for _, shown in drag_driver(page, np.concatenate([there, there[::-1], -there, -there[::-1]])):
         assert_closed(rocker, shown)
