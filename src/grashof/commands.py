@@ -358,7 +358,7 @@ def prove(problem: str, options: ProveOptions) -> Exit:
 
 def judge(linkage: str, problem: str) -> Exit:
     """Print the verdict on a linkage that is not out of a search."""
-    from grashof.wording.verdict import judged_for, verdict_lines
+    from grashof.wording.problem import judged_for, verdict_lines
 
     spec = load_linkage_spec(linkage)
     judged = judged_for(load(problem), spec)

@@ -12,7 +12,7 @@ from grashof.output.terminal import print_table
 from grashof.page.search import search_page
 from grashof.problems import load
 from grashof.synth import Result
-from grashof.wording.enclosure import enclosure_line, enclosure_record
+from grashof.wording.proof import enclosure_line, enclosure_record
 
 
 @pytest.fixture

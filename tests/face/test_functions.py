@@ -11,7 +11,7 @@ import pytest
 from grashof import load
 from grashof.figures import plot_task
 from grashof.problems import catalogue, load_linkage_spec
-from grashof.sections.function import function_section
+from grashof.sections.output import function_section
 from grashof.study.asked import Asked
 from grashof.study.study import LinkageStudy
 

@@ -114,7 +114,7 @@ def test_a_run(result: Result, tmp_path: Path) -> None:
 
 @pytest.mark.quick("=1+1", "mm;=1+1")
 def test_an_analysis(spec: LinkageSpec, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])  # they have a test of their own
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])  # they have a test of their own
     write_report(tmp_path / "out", report_on(spec))
     assert {path.name for path in tmp_path.iterdir()} == {"out"}
     assert_no_formulas(tmp_path / "out")
@@ -129,7 +129,7 @@ def test_sections_of_an_analysis(
     plot = Plot("curve", text, text, {text: theta2}, theta2, text, {text: np.ones((1, 2))})
     table = pd.DataFrame({"theta2_deg": [0.0, 1.0], text: [text, text]})
     section = Section("mine", text, (Fact("mine", text, text, text),), {"mine": table}, (plot,), (text,))
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])
     report = replace(report_on(spec), sections=(section,))
     write_report(tmp_path / "out", report, pictures=True)
     assert {path.name for path in tmp_path.iterdir()} == {"out"}
@@ -184,7 +184,7 @@ def test_pictures(few: Result, tmp_path: Path, text: str) -> None:
 def test_a_file_name_stays_in_the_folder(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])
     file = f"{name}.toml"
     (tmp_path / file).write_text("o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n", encoding="utf-8")
     done = grashof("analyse", f"./{file}")

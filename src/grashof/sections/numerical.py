@@ -1,4 +1,4 @@
-"""Central differences of second and fourth order beside the exact rates of angles and centres of mass."""
+"""Numerical methods beside closed forms: positions by Newton-Raphson, rates by central differences."""
 
 from __future__ import annotations
 
@@ -9,25 +9,74 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import Kinematics, central_differences
+from grashof.analysis import Kinematics, central_differences, newton_position
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.sections.mass_centres import centre_labels, centres_of
+from grashof.sections.places import centre_labels, centres_of
 from grashof.study.kinds import turning
 from grashof.study.samples import History, Samples
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
 
-KEY = "differences"
+_NEWTON = "newton-raphson"
+_OTHER = 1.0  # deg from the closed form: beyond it the steps have ended on the other assembly
+_DIFFERENCES = "differences"
 ORDERS = (2, 4)
 _DEGREE, _BESIDE = TURN / 360, 2  # samples on either side of one that order 4 needs
 _ANGULAR, _LINEAR = (("omega", "rad/s"), ("alpha", "rad/s²")), (("velocity", "/s"), ("acceleration", "/s²"))
+
+
+def newton_raphson(study: LinkageStudy) -> Section | None:
+    """Both solutions at every sample, each from its own guess; None unless they are requested."""
+    if not study.asked.wants(_NEWTON):
+        return None
+    samples = Samples.requested(study)
+    theta2 = study.joined([state.theta2 for state in samples.states])
+    exact = np.degrees([study.joined([getattr(s, f"theta{n}") for s in samples.states]) for n in (3, 4)])
+    known = np.isfinite(theta2)
+    found = newton_position(study.four_bar, theta2[known])
+    solved, steps = np.full(exact.shape, np.nan), np.full(theta2.shape, np.nan)
+    solved[:, known], steps[known] = np.degrees([found.theta3, found.theta4]), found.steps
+    off = (solved - exact + 180) % 360 - 180
+    columns = {
+        "theta3_deg": solved[0], "theta4_deg": solved[1], "steps": steps,
+        "theta3_closed_deg": exact[0], "theta4_closed_deg": exact[1],
+        "theta3_difference_deg": off[0], "theta4_difference_deg": off[1],
+    }  # fmt: skip
+    apart = np.abs(off).max(axis=0)
+    same = apart < _OTHER
+    facts = (
+        Fact("newton_steps_max", "Newton-Raphson: most steps", int(np.nanmax(steps)) if known.any() else 0),
+        Fact(
+            "newton_difference_max_deg",
+            "Newton-Raphson: largest difference from the closed form",
+            float(apart[same].max(initial=0.0)),
+            "deg",
+        ),
+    )
+    lines = {"theta3": _unwrapped(solved[0]), "theta4": _unwrapped(solved[1])}
+    plots = (
+        samples.plot("newton-raphson", "angles by Newton-Raphson", "deg", lines),
+        samples.plot("newton-raphson-steps", "Newton-Raphson steps", "", {"steps": steps}),
+    )
+    missed = int((known & ~same).sum())
+    table = samples.table(columns).astype({"steps": int})
+    note = "do not converge, or end on the other assembly: near a dead position the two lie close together"
+    notes = (f"at {missed} of {int(known.sum())} driver angles the steps {note}",) if missed else ()
+    return Section(_NEWTON, "Newton-Raphson", facts, {_NEWTON: table}, plots, notes)
+
+
+def _unwrapped(angles_deg: np.ndarray) -> np.ndarray:
+    """Angles without jumps, where they are known."""
+    unwrapped, known = angles_deg.copy(), np.isfinite(angles_deg)
+    unwrapped[known] = np.unwrap(angles_deg[known], period=360)
+    return unwrapped
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rate:
     """The first or second derivative of positions, exact and by differences of each order, (N,) or (N, 2).
 
-    NaN divides the ranges of the driver, and stands where a difference lacks neighbours on both sides.
+    NaN separates the ranges of the driver, and marks differences without neighbours on both sides.
     """
 
     key: str
@@ -53,13 +102,13 @@ class Rate:
             found |= _components(values, f"order {order}", f"{{axis}}, order {order}")
         return found
 
-    def apart(self, order: int) -> FloatArray:
-        """Distances from the exact values, shape (N,); NaN where there are none."""
+    def deviation(self, order: int) -> FloatArray:
+        """Distance from the exact values, shape (N,); NaN where one is missing."""
         return _size(self.by_order[order] - np.where(np.isfinite(self.exact), self.exact, np.nan))
 
 
 class _Part(NamedTuple):
-    """Samples in equal steps of the driver or of time; `cut` of them at each end are neighbours only."""
+    """Samples in equal steps of driver angle or time; `cut` of them at each end are neighbours only."""
 
     state: Kinematics
     at: FloatArray
@@ -68,37 +117,39 @@ class _Part(NamedTuple):
 
 
 def differences(study: LinkageStudy) -> Section | None:
-    """Differences of theta3, theta4 and the centres of mass, if they are asked for.
+    """Differences of link angles and centres of mass; None unless they are requested.
 
-    Over the driver angle in steps of a degree, or over the history that is asked for, in its steps.
+    Over the driver angle in steps of a degree, or over the requested history in its steps.
     """
-    if not study.asked.wants(KEY):
+    if not study.asked.wants(_DIFFERENCES):
         return None
     title, (samples, parts) = "Central differences", _even_samples(study)
     if min(len(part.at) for part in parts) <= 2 * _BESIDE:
-        return Section(KEY, title, notes=(f"differences need {2 * _BESIDE + 1} samples or more",))
+        return Section(_DIFFERENCES, title, notes=(f"differences need {2 * _BESIDE + 1} samples or more",))
     rates = list(_rates(study, parts))
     columns = {key: values for rate in rates for key, values in rate.columns.items()}
     deviations = _deviations(samples, rates)
-    tables = {KEY: samples.table(columns), f"{KEY}-deviations": deviations}
+    tables = {_DIFFERENCES: samples.table(columns), f"{_DIFFERENCES}-deviations": deviations}
     plots = [
         samples.plot(f"differences-{rate.key.replace('_', '-')}", rate.label, rate.unit, rate.lines)
         for rate in rates
     ]
-    return Section(KEY, title, tuple(_facts(deviations)), tables, tuple(plots), _notes(study))
+    return Section(
+        _DIFFERENCES, title, tuple(_deviation_facts(deviations)), tables, tuple(plots), _notes(study)
+    )
 
 
 def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
-    """What is shown, and the parts of it in equal steps with their neighbours."""
+    """The samples of the table, and its parts in equal steps with their neighbours."""
     if (history := History.of(study)) is not None:
         return Samples.over_time(study, history), [_Part(history.state, history.time, over_time=True)]
-    if study.sweep.turns:  # beyond either end the motion goes on as it began
+    if study.sweep.turns:  # the motion is periodic
         angles = np.linspace(-_BESIDE, 360 + _BESIDE, 361 + 2 * _BESIDE) * _DEGREE
         return Samples.over_driver(study), [_Part(study.sweep.state(angles), angles, _BESIDE)]
     parts = []
     for low, high in study.sweep.ranges:
         steps = max(int((high - low) / _DEGREE), 2 * _BESIDE + 2)
-        angles = np.linspace(low, high, steps + 1)[1:-1]  # in a dead position there is no rate
+        angles = np.linspace(low, high, steps + 1)[1:-1]  # rates are infinite in dead positions
         parts.append(_Part(study.sweep.state(angles), angles))
     return Samples.of(study, tuple(part.state for part in parts)), parts
 
@@ -135,7 +186,7 @@ def _rate(
 
 
 def _by_time(part: _Part, values: FloatArray, derivative: int, order: int) -> FloatArray:
-    """First or second derivative by time: from that by theta2 through the driver's own motion."""
+    """First or second derivative by time: of that by theta2 by the chain rule with the driver's motion."""
     found = central_differences(part.at, values, derivative, order)
     if part.over_time:
         return found
@@ -153,12 +204,12 @@ def _joined(parts: list[_Part], values: list[FloatArray]) -> FloatArray:
 
 
 def _deviations(samples: Samples, rates: list[Rate]) -> pd.DataFrame:
-    """Where each rate by differences is farthest from the exact one, and by which share of its peak."""
+    """The largest deviation of each rate by differences, its place, and its share of the peak."""
     rows = []
     for rate in rates:
         for order in ORDERS:
-            apart = rate.apart(order)
-            worst = int(np.argmax(np.where(np.isfinite(apart), apart, -1.0)))
+            off = rate.deviation(order)
+            worst = int(np.argmax(np.where(np.isfinite(off), off, -1.0)))
             size = _size(rate.exact)
             peak = float(np.max(size[np.isfinite(size)], initial=0.0))
             named: dict[str, object] = {
@@ -167,13 +218,13 @@ def _deviations(samples: Samples, rates: list[Rate]) -> pd.DataFrame:
                 "derivative": rate.derivative,
                 "order": order,
             }
-            share = float(apart[worst]) / peak if peak > 0 else 0.0
+            share = float(off[worst]) / peak if peak > 0 else 0.0
             where = {key: float(values[worst]) for key, values in samples.columns.items()}
-            rows.append(named | {"largest": float(apart[worst]), "share": share} | where)
+            rows.append(named | {"largest": float(off[worst]), "share": share} | where)
     return pd.DataFrame(rows)
 
 
-def _facts(deviations: pd.DataFrame) -> Iterator[Fact]:
+def _deviation_facts(deviations: pd.DataFrame) -> Iterator[Fact]:
     for derivative, name in ((1, "velocities"), (2, "accelerations")):
         for order in ORDERS:
             rows = deviations[(deviations["derivative"] == derivative) & (deviations["order"] == order)]
@@ -188,7 +239,7 @@ def _notes(study: LinkageStudy) -> tuple[str, ...]:
 
 
 def _components(values: FloatArray, name: str, name_of_axis: str) -> dict[str, FloatArray]:
-    """Numbers by their name, shape (N,), or vectors, shape (N, 2), by components."""
+    """Scalars (N,) by their name, or vectors (N, 2) by components."""
     if values.ndim == 1:
         return {name: values}
     return {name_of_axis.format(axis=axis): values[:, index] for index, axis in enumerate("xy")}

@@ -1,4 +1,4 @@
-"""What the bars and pins bear: forces along the bars, stress, deflection, safety."""
+"""Strength of bars and pins: forces along the bars, stress, deflection, safety factors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from grashof.study.study import LinkageStudy
 
 
 def strength(study: LinkageStudy) -> Section | None:
-    """Forces along the bars of their loads; with a section stress, with strengths safety factors."""
+    """Forces along the bars; with a section also stresses, with strengths safety factors."""
     masses, given = study.masses, study.spec.dynamics
     if masses is None or given is None:
         return None
@@ -58,7 +58,7 @@ def _columns(state: Kinematics, structure: Structure) -> Columns:
 
 
 def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
-    """A plot of each measure, a line for each bar or joint."""
+    """A plot for each measure, with a line for each bar or joint."""
     for measures, parts in (
         (
             BAR_MEASURES,

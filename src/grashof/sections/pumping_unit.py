@@ -37,7 +37,7 @@ Load = Callable[[FloatArray, RodMotion], FloatArray]
 
 
 def pumping_unit(study: LinkageStudy) -> Section | None:
-    """Rod motion, torque factors and, with a rod load, the torque of the reducer; None of other linkages."""
+    """Rod motion, torque factors and, with a rod load, the reducer torque; None for other linkages."""
     given, arm = study.spec.pumping_unit, study.spec.output_arm
     if given is None or arm is None:
         return None
@@ -61,7 +61,7 @@ def pumping_unit(study: LinkageStudy) -> Section | None:
 
 
 def _load_of_file(study: LinkageStudy, unit: PumpingUnitSpec, arm: float) -> Load | None:
-    """The forces and moments that the file puts on the beam, as a load on the polished rod."""
+    """The forces and moments of the file on the beam, as a load on the polished rod."""
     loads = replace(study.loads, springs=(), torsion_springs=())
     if 4 not in {force.link for force in loads.forces} | {moment.link for moment in loads.moments}:
         return None
@@ -76,7 +76,7 @@ def _load_of_file(study: LinkageStudy, unit: PumpingUnitSpec, arm: float) -> Loa
 
 @dataclass(frozen=True, slots=True)
 class _Rods:
-    """What the polished rod does and carries."""
+    """Motion and load of the polished rod."""
 
     study: LinkageStudy
     unit: PumpingUnitSpec
@@ -97,7 +97,7 @@ class _Rods:
         return reducer_torque(unit or self.unit, crank, motion.torque_factor * self.metre, load)
 
     def columns(self, crank: FloatArray) -> dict[str, FloatArray]:
-        """By their keys, each of shape (N,); those of the load only where there is one."""
+        """Columns (N,) by key; those of the load only where there is one."""
         motion, found = self.motion(crank), self.reducer(crank)
         columns = {
             "crank_deg": np.degrees(crank).round(9),
@@ -167,7 +167,7 @@ class _Rods:
         return float(mean), float(square)
 
     def _balanced(self) -> tuple[float, float]:
-        """Counterbalance moment, at the same phase, of the least peak torque, and that peak."""
+        """The counterbalance moment, at the same phase, that makes the peak torque least, and that peak."""
         bare, one = replace(self.unit, counterbalance=0.0), replace(self.unit, counterbalance=1.0)
 
         def outermost(curve: Callable[[FloatArray], FloatArray]) -> tuple[float, float]:

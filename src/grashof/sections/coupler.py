@@ -1,6 +1,8 @@
-"""What the plane of the coupler does: its centrodes, inflection circle, and acceleration pole."""
+"""The plane of the coupler: its centrodes and circles; hodographs and jerk of P."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -8,11 +10,12 @@ import pandas as pd
 from grashof.analysis import Kinematics, centrodes, coupler_circles, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.study.samples import Columns, components, curves, over_driver, table, track
-from grashof.study.section import Plot, Section
+from grashof.study.samples import Columns, components, curves, over_driver, table, track, tracks
+from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees, turn_extremes, varies
 
-_SHOWN = 2.0  # times the lengths of the links together: so far from A the pole is drawn
+_SHOWN = 2.0  # times the sum of the link lengths: distance from A up to which the pole is drawn
 _NOTES = (
     "points of the coupler on the inflection circle pass a straight piece of their paths",
     "those on Bresse's circle have no tangential acceleration while the driver turns steadily",
@@ -20,9 +23,9 @@ _NOTES = (
 
 
 def coupler_plane(study: LinkageStudy) -> Section:
-    """Both centrodes; inflection circle and Bresse's at the driver angles asked for."""
+    """Both centrodes, and the inflection circle and Bresse's at the requested driver angles."""
     linkage, unit = study.linkage, study.spec.unit
-    columns = over_driver(study, lambda state: _columns(study, state))
+    columns = over_driver(study, lambda state: _plane_columns(study, state))
     reach = _SHOWN * float(linkage.lengths.sum())
     theta2 = columns["theta2_deg"]
     far = np.hypot(columns["moving_u"], columns["moving_v"]) > reach
@@ -47,7 +50,7 @@ def coupler_plane(study: LinkageStudy) -> Section:
     return Section("coupler-plane", "Centrodes and inflection circle", (), tables, plots, _NOTES)
 
 
-def _columns(study: LinkageStudy, state: Kinematics) -> Columns:
+def _plane_columns(study: LinkageStudy, state: Kinematics) -> Columns:
     rolling, circles = centrodes(study.linkage, state.theta2), coupler_circles(study.linkage, state.theta2)
     return {
         "fixed": rolling.fixed,
@@ -100,7 +103,7 @@ def _circle_plot(study: LinkageStudy, circles: pd.DataFrame) -> Plot:
 
 
 def _arc(pole: FloatArray, centre: FloatArray, a: FloatArray, reach: float) -> FloatArray:
-    """Points of a circle through the pole that lie within reach of A; shape (N, 2)."""
+    """Points of a circle through the pole that lie within `reach` of A, shape (N, 2)."""
     radius, span = float(np.hypot(*(centre - pole))), float(np.hypot(*(pole - a))) + reach
     if not (np.isfinite(radius) and radius > 0):
         return np.full((1, 2), np.nan)
@@ -112,3 +115,46 @@ def _arc(pole: FloatArray, centre: FloatArray, a: FloatArray, reach: float) -> F
     arc = pole + 2 * radius * np.cos(turn)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     near = np.hypot(*(arc - a).T) <= reach
     return np.where(near[:, None], arc, np.nan)
+
+
+def hodographs(study: LinkageStudy) -> Section:
+    """Hodographs of P, its jerk, and the angular jerk of the links after the driver."""
+    columns, unit = over_driver(study, _rates), study.spec.unit
+    of_links = {f"link {link.number}": f"jerk{link.number}" for link in study.linkage.mechanism.links[2:]}
+    of_p = {"x": "p_jerk_x", "y": "p_jerk_y", "size": "p_jerk"}
+    plots = (
+        _hodograph(columns, "velocity", f"{unit}/s"),
+        _hodograph(columns, "acceleration", f"{unit}/s²"),
+        curves(columns, "jerk-of-p", "jerk of P", f"{unit}/s³", of_p),
+        curves(columns, "angular-jerk", "angular jerk", "rad/s³", of_links),
+    )
+    kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
+    return Section(
+        "hodographs", "Hodographs and jerk", tuple(_jerk_facts(study)), {"jerk": table(kept)}, plots
+    )
+
+
+def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:
+    return tracks(columns, f"hodograph-of-{rate}", f"hodograph: {rate} of P", unit, {"P": f"p_{rate}"})
+
+
+def _rates(state: Kinematics) -> Columns:
+    p, links = state.p, state.linkage.mechanism.links[2:]
+    return {
+        "p_velocity": p.velocity,
+        "p_acceleration": p.acceleration,
+        "p_jerk_x": p.jerk[:, 0],
+        "p_jerk_y": p.jerk[:, 1],
+        "p_jerk": np.hypot(p.jerk[:, 0], p.jerk[:, 1]),
+        **{f"jerk{link.number}": state.angular(link.number).jerk + np.zeros(state.shape) for link in links},
+    }
+
+
+def _jerk_facts(study: LinkageStudy) -> Iterator[Fact]:
+    if not study.sweep.turns:  # without limit towards dead positions
+        return
+    found = turn_extremes(study, lambda state: np.hypot(*state.p.jerk.T))
+    yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
+    label = "jerk of P, largest: theta2"
+    if varies(found):
+        yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")

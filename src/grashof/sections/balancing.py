@@ -1,4 +1,4 @@
-"""Counterweights against the force that shakes the ground, and for an even drive torque: before and after."""
+"""Counterweights against the shaking force, and for an even drive torque: before and after."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ _NOTHING = 1e-12  # share of the greatest: rounding
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Way:
-    """Masses with the counterweights of one aim, by the links that they are on."""
+class _Balanced:
+    """Masses with the counterweights for one aim, by the links that carry them."""
 
     masses: Masses
     weights: Mapping[int, Body]
 
 
 def balancing(study: LinkageStudy) -> Section | None:
-    """Counterweights for each aim, and what forces and torque they leave; None unless they are asked for."""
+    """Counterweights for each aim with the remaining forces and torque; None unless they are requested."""
     if not study.asked.balance:
         return None
     masses, loads = study.masses, study.loads
     if masses is None or not masses.total > 0:
         raise ProblemError("balance needs masses; [dynamics] states none")
-    ways, notes = _ways(study, masses, loads)
+    ways, notes = _alternatives(study, masses, loads)
     columns = over_driver(study, lambda state: _columns(state, ways, loads, study.metre))
     plots = [
         curves(columns, key, title, unit, {way: f"{name}_{_KEYS[way]}" for way in ways})
@@ -65,11 +65,13 @@ def balancing(study: LinkageStudy) -> Section | None:
     return Section("balancing", "Balancing", tuple(_facts(study, rows)), tables, tuple(plots), notes)
 
 
-def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, _Way], tuple[str, ...]]:
-    """What is compared, and why less of it where that is so."""
+def _alternatives(
+    study: LinkageStudy, masses: Masses, loads: Loads
+) -> tuple[dict[str, _Balanced], tuple[str, ...]]:
+    """The alternatives that are compared by their aims, and notes with the reason where some are missing."""
     linkage, steady = study.linkage, all(law.motor.steady for law in study.sweep.laws)
     way, note = _against_force(linkage, masses)
-    ways = {_BARE: _Way(masses, {}), _FORCE: way}
+    ways = {_BARE: _Balanced(masses, {}), _FORCE: way}
     notes = [
         note,
         "shaking force and moment are those of inertia; weights and loads are left out",
@@ -89,27 +91,31 @@ def _ways(study: LinkageStudy, masses: Masses, loads: Loads) -> tuple[dict[str, 
     for name, measure in ((_RMS, "rms"), (_PEAK, "peak")):
         try:
             found = balance_turn(linkage, masses, omega2, loads, radius, measure)
-        except ProblemError as error:  # numbers beyond the floats
+        except ProblemError as error:  # numeric overflow
             raise ProblemError(f"balance: the torque is not evened out: {error}") from None
-        ways[name] = _Way(found.masses, {2: found.crank_weight})
+        ways[name] = _Balanced(found.masses, {2: found.crank_weight})
     return ways, tuple(notes)
 
 
-def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Way, str]:
-    """Masses with counterweights against the shaking force, and what to know of them."""
+def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Balanced, str]:
+    """Masses with counterweights against the shaking force, and a note on these."""
     same = "others of the same mass times radius do"
     kind = linkage.mechanism
     if len(kind.dyads) == 1 and not output_turns(kind):
         half = balance_reciprocating(linkage, masses, 0.5)
         what = "what turns with the crank and half of what goes to and fro"
-        return _Way(half.masses, {2: half.crank_weight}), f"the counterweight at r2 is against {what}; {same}"
-    whole = balance_force(linkage, masses)
+        return _Balanced(
+            half.masses, {2: half.crank_weight}
+        ), f"the counterweight at r2 is against {what}; {same}"
+    full = balance_force(linkage, masses)
     place = "r4" if plain(kind) else "r2"
-    weights = {2: whole.crank_weight, 4: whole.output_weight}
-    return _Way(whole.masses, weights), f"counterweights are points at r2 from O2 and {place} from O4; {same}"
+    weights = {2: full.crank_weight, 4: full.output_weight}
+    return _Balanced(
+        full.masses, weights
+    ), f"counterweights are points at r2 from O2 and {place} from O4; {same}"
 
 
-def _columns(state: Kinematics, ways: Mapping[str, _Way], loads: Loads, metre: float) -> Columns:
+def _columns(state: Kinematics, ways: Mapping[str, _Balanced], loads: Loads, metre: float) -> Columns:
     columns: dict[str, FloatArray] = {}
     for name, way in ways.items():
         force, moment, torque = _magnitudes(state, way.masses, loads, metre, signed=True)
@@ -128,7 +134,7 @@ def _magnitudes(
     return rows if signed else np.abs(rows)
 
 
-def _row(study: LinkageStudy, name: str, way: _Way, loads: Loads) -> dict[str, object]:
+def _row(study: LinkageStudy, name: str, way: _Balanced, loads: Loads) -> dict[str, object]:
     row: dict[str, object] = {"aim": name}
     for link in (2, 4):
         weight = way.weights.get(link)

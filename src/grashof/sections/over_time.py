@@ -13,7 +13,7 @@ from grashof.study.study import LinkageStudy
 
 
 def over_time(study: LinkageStudy) -> Section | None:
-    """The history that is asked for, if one is."""
+    """The requested history; None unless it is requested."""
     history = History.of(study)
     if history is None:
         return None
@@ -62,16 +62,16 @@ def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]
 
 
 def _notes(study: LinkageStudy, history: History) -> tuple[str, ...]:
-    if history.whole:
+    if history.complete:
         return ()
     end = f"the history ends after {history.time[-1]:.6g} s"
     return (f"{end}, before the dead position that the driver comes to: it moves {study.reach}",)
 
 
 def sawtooth(time: FloatArray, angle_deg: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """A growing or falling angle (N,) in deg over s, drawn from 0 to 360, up to the very edge at each turn.
+    """An increasing or decreasing angle (N,) in deg over s, reduced to 0 to 360, with breaks between turns.
 
-    There it has three places more: the edge, NaN, the other edge; steps of a turn or more just have a gap.
+    A break adds three points: the edge, NaN, the other edge; steps of a turn or more only have a gap.
 
     >>> time, angle = sawtooth(np.array([0.0, 1.0, 2.0]), np.array([180.0, 300.0, 420.0]))
     >>> time.tolist(), angle.tolist()
