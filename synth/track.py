@@ -19,7 +19,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.scores import same_error
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.starts.design_finder import DesignFinder
 
 _TRADED = 1.001  # times the least error: designs of more were made better at something else
 
@@ -115,7 +115,7 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
     Of a function or a stroke: the design of the new task that is nearest to it.
     """
     finder = finder_for(scaled)
-    if isinstance(finder, WholeDesigns):
+    if isinstance(finder, DesignFinder):
         tried = [attempt(scaled, each, number).candidate for each in finder.follow(design)]
         nearest = next((one for one in tried if one is not None), judged_again(scaled, design))
         return replace(nearest, best_at=design.best_at, family=design.family)

@@ -33,8 +33,8 @@ from grashof.synth.results.relaxed_limits import (
 )
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.run import Run
+from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.selection import closest_starts
-from grashof.synth.starts.whole_designs import WholeDesigns
 
 SOLVES = 6  # starts for each requirement
 DEAD = 1e-3  # rad: a transmission angle near a dead position
@@ -94,7 +94,7 @@ def _candidates(
 ) -> list[Candidate]:
     """Designs that miss a requirement by little, and others by nothing if that can be."""
     finder = finder_for(loose)
-    if isinstance(finder, WholeDesigns):
+    if isinstance(finder, DesignFinder):
         return _judged(scaled, loose, finder.closest_to(scaled, key, rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)

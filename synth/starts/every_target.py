@@ -199,8 +199,8 @@ def _moved(target: SearchTargets, batch: Batch, step: FloatArray, weights: Float
     angles: FloatArray = batch.unknowns[:, 3 : 3 + step.shape[1]]
     if target.jumbled:
         return angles + np.clip(step, -LONGEST, LONGEST)
-    wish = sense * (angles + np.clip(step, -LONGEST, LONGEST))
-    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(wish, weights, strict=True)])
+    desired = sense * (angles + np.clip(step, -LONGEST, LONGEST))
+    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(desired, weights, strict=True)])
     return sense * ordered
 
 

@@ -64,7 +64,7 @@ AT_ONCE = 1024  # poses compared with all others
 
 
 @dataclass(frozen=True, slots=True)
-class WholePoses:
+class ExactPoses:
     """Poses with position and angle, all of them to be met."""
 
     scaled: ScaledProblem
@@ -120,7 +120,7 @@ class WholePoses:
 
 
 @dataclass(frozen=True, slots=True)
-class Parallelograms(WholePoses):
+class Parallelograms(ExactPoses):
     """Three poses or more that are pure translations of each other."""
 
     @staticmethod
@@ -149,7 +149,7 @@ class Parallelograms(WholePoses):
 
 
 @dataclass(frozen=True, slots=True)
-class DyadPairs(WholePoses, ABC):
+class DyadPairs(ExactPoses, ABC):
     """Poses whose linkages are pairs of dyads that theory gives."""
 
     @abstractmethod

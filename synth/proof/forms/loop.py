@@ -15,7 +15,7 @@ Lengths = tuple[Form, ...]  # r1, r2, r3, r4
 
 @dataclass(frozen=True, slots=True)
 class LoopLimits:
-    """What is asked of a loop."""
+    """What is required of a loop."""
 
     lengths: tuple[Limits, Limits, Limits, Limits]  # of r1, r2, r3, r4
     ratio: float  # longest to shortest link at most

@@ -19,7 +19,7 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_linkage
 from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.proof.curve.asked import LEAST, SLACK
+from grashof.synth.proof.curve.required import LEAST, SLACK
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmission_bound

@@ -50,7 +50,7 @@ class Dyad:
 
 
 @dataclass(frozen=True, slots=True)
-class Passing:
+class PointEquations:
     """The equations of a kind of linkage that passes points."""
 
     points: ComplexArray  # (N,), sizes: the first at the origin; in extended precision, for values as precise

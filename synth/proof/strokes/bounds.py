@@ -7,8 +7,13 @@ from time import perf_counter
 import numpy as np
 
 from grashof.synth.proof.claims.bounds import Bounds, Proving
-from grashof.synth.proof.strokes.asked import families_of_stroke, floor_of, refusal_of_stroke, sizes_left_out
 from grashof.synth.proof.strokes.cover import covered
+from grashof.synth.proof.strokes.required import (
+    families_of_stroke,
+    floor_of,
+    refusal_of_stroke,
+    sizes_left_out,
+)
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.proof.strokes.members import Family, Members
+from grashof.synth.proof.strokes.members import Family, MemberBounds
 from grashof.synth.proof.strokes.ranges import Range
 
 _BEGUN = 64  # pieces of each family
@@ -76,7 +76,7 @@ def _first(family: Family) -> tuple[FloatArray, FloatArray]:
     return edges[:-1], edges[1:]
 
 
-def _bounds(members: Members, from_middle: Range, middle: Members) -> FloatArray:
+def _bounds(members: MemberBounds, from_middle: Range, middle: MemberBounds) -> FloatArray:
     """What pieces transmit at most, rad; nothing where no member of them is allowed.
 
     The cosine changes from the middle of a piece by no more than its slope does.
@@ -89,7 +89,7 @@ def _bounds(members: Members, from_middle: Range, middle: Members) -> FloatArray
     return np.where(possible, np.arccos(np.clip(cosine, 0.0, 1.0)) + _OFF, 0.0)
 
 
-def _sure(members: Members) -> FloatArray:
+def _sure(members: MemberBounds) -> FloatArray:
     """What members transmit at least, rad; nothing where they may be ruled out."""
     allowed = np.ones(members.cosine.low.shape, dtype=bool)
     for some, most in members.conditions:

@@ -31,7 +31,7 @@ Conditions: TypeAlias = list[tuple[Range, Range]]
 
 @dataclass(frozen=True, slots=True)
 class StrokeLimits:
-    """What is asked of linkages by their sizes, with the slack of the judge."""
+    """What is required of linkages by their sizes, with the slack of the judge."""
 
     lengths: Mapping[str, Limits]  # by their names
     ratio: float  # longest to shortest link at most
@@ -40,7 +40,7 @@ class StrokeLimits:
 
 
 @dataclass(frozen=True, slots=True)
-class Members:
+class MemberBounds:
     """Pieces of a family."""
 
     cosine: Range  # of the worst transmission angle over the turn
@@ -54,7 +54,7 @@ class Family:
 
     low: float
     high: float
-    members: Callable[[Range], Members]
+    members: Callable[[Range], MemberBounds]
 
 
 def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimits) -> Family:
@@ -67,7 +67,7 @@ def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimi
     a = _half_lag(time_ratio) * Range.of(float(side))
     unit = half.sine
 
-    def members(x: Range) -> Members:
+    def members(x: Range) -> MemberBounds:
         line = _InLine.of(x, a, half - a)
         r1, r2, r3, r4 = line.ground, x * unit, unit, line.output
         lengths = {"r1": r1, "r2": r2, "r3": r3, "r4": r4}
@@ -79,7 +79,7 @@ def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimi
         ]
         of_scale = _some_scale(lengths, limits.lengths)
         alike = _alike(lengths.values(), limits)
-        return Members(line.cosine, line.slope, [line.assembled, *turns, *alike, *of_scale])
+        return MemberBounds(line.cosine, line.slope, [line.assembled, *turns, *alike, *of_scale])
 
     return Family(*_shares(limits), members)
 
@@ -89,7 +89,7 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
     a = _half_lag(time_ratio)
     way = Range.of(stroke)
 
-    def members(x: Range) -> Members:
+    def members(x: Range) -> MemberBounds:
         line = _InLine.of(x, a, Range.of(0.0) - a)
         r3 = way / (_TWO * line.output)
         r2, offset = x * r3, line.across * r3 / line.output
@@ -98,7 +98,7 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
         sizes = [*_inside(r2, limits.lengths["r2"]), *_inside(r3, limits.lengths["r3"])]
         sizes += _inside(offset, limits.offset)
         alike = _alike((r2, r3), limits)
-        return Members(line.cosine, line.slope, [line.assembled, *turns, *alike, *sizes])
+        return MemberBounds(line.cosine, line.slope, [line.assembled, *turns, *alike, *sizes])
 
     return Family(*_shares(limits), members)
 
@@ -116,7 +116,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
     room = (HALF_TURN / _TWO - half) / _TWO  # greatest p, and what half the swing lacks of 90 deg, halved
     flat = _TWO * room.sine * room.sine  # 1 - sin(swing / 2)
 
-    def members(w: Range) -> Members:
+    def members(w: Range) -> MemberBounds:
         r1, r2 = ONE + w * w, (ONE - w) * (ONE + w) * sine
         offset = _TWO * w * cosine
         more, less = _margins(limits)
@@ -127,7 +127,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
         square = (ONE + sine) * w * w
         apart = flat + square  # r1 - r2
         slope = _TWO * cosine * (flat - square) / (apart * apart)
-        return Members(offset / apart, slope, [*turns, *alike, *of_scale])
+        return MemberBounds(offset / apart, slope, [*turns, *alike, *of_scale])
 
     return Family(0.0, float((room.sine / room.cosine).high), members)
 

@@ -19,7 +19,7 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
 
@@ -118,28 +118,30 @@ class FunctionAims:
         """Whether mirror images do as well, so that one sense of the driver stands for both."""
         return self.wanted.offset is None and self.problem.requirements.theta2_start_deg is None
 
-    def pairs(self, sense: int) -> Wanted:
+    def pairs(self, sense: int) -> DesiredOutput:
         """The pairs, from the beginning of the range."""
-        return Wanted(
+        return DesiredOutput(
             self.task.driver_turns - self.task.span[0],
             sense * self.task.outputs / self.unit,
             self.task.weights,
         )
 
-    def samples(self, sense: int, count: int = SAMPLES) -> Wanted:
+    def samples(self, sense: int, count: int = SAMPLES) -> DesiredOutput:
         """Chebyshev-Lobatto points of the range."""
         places, weights = lobatto_with_weights(count)
         turned = self.limits.span * places
-        return Wanted(turned, sense * self.task.output(turned + self.task.span[0]) / self.unit, weights)
+        return DesiredOutput(
+            turned, sense * self.task.output(turned + self.task.span[0]) / self.unit, weights
+        )
 
     def dense(self, sense: int) -> tuple[FloatArray, FloatArray]:
         """Rotations from the beginning of the range, and the outputs there: extremes are found among them."""
         turned = np.linspace(0.0, self.limits.span, DENSE)
         return turned, sense * self.task.output(turned + self.task.span[0]) / self.unit
 
-    def linkage(self, made: Generators, driver: int) -> Linkage:
+    def linkage(self, batch: Generators, driver: int) -> Linkage:
         """The linkage of one generator, placed and scaled as limits have it."""
-        return made.linkage(self.wanted, self.unit, driver)
+        return batch.linkage(self.wanted, self.unit, driver)
 
     def generator(self, linkage: Linkage, driver: int, theta2: float) -> Generators:
         """The generator that a linkage is, its driver at `theta2`, rad, at the first pair."""

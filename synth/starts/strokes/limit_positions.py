@@ -17,13 +17,13 @@ from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
+from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.strokes.member_choice import apart, unbeaten
-from grashof.synth.starts.strokes.places import Places
-from grashof.synth.starts.strokes.rocker_places import RockerPlaces
-from grashof.synth.starts.strokes.shaper_places import ShaperPlaces
-from grashof.synth.starts.strokes.slide_places import SlidePlaces
-from grashof.synth.starts.whole_designs import WholeDesigns
-from grashof.synth.theory.limit_positions import Family, Members, best_of, highest, stretches
+from grashof.synth.starts.strokes.rocker_kind import RockerKind
+from grashof.synth.starts.strokes.shaper_kind import ShaperKind
+from grashof.synth.starts.strokes.slider_kind import SliderKind
+from grashof.synth.starts.strokes.stroke_kind import StrokeKind
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
 _SAMPLES = 400  # members of a stretch that are looked at
@@ -34,21 +34,19 @@ _MANY = 20  # members to choose the closest from, where the families do not tell
 _MISSING = 4  # of these are kept though they miss something, to tell what it is
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
-_Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
+_Positions: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
 # Families, whether mirrored, and where their members keep limits.
 _Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
 
 
-def places_of(kind: Kind) -> type[Places]:
+def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
     """Where members lie, of a kind of linkage."""
-    return next(
-        each for each in (RockerPlaces, SlidePlaces, ShaperPlaces) if isinstance(kind.dyad, each.dyad)
-    )
+    return next(each for each in (RockerKind, SliderKind, ShaperKind) if isinstance(kind.dyad, each.dyad))
 
 
 @dataclass(frozen=True)
-class LimitPositions(WholeDesigns):
+class LimitPositions(DesignFinder):
     """All linkages with a swing, or a stroke, and a time ratio."""
 
     exhausted: ClassVar[str] = "no others are worth listing"
@@ -61,12 +59,12 @@ class LimitPositions(WholeDesigns):
     @property
     def beginning(self) -> str:
         """Whose limit positions are looked at."""
-        return f"computing {self.places.what} by their limit positions"
+        return f"computing {self.stroke_kind.what} by their limit positions"
 
     @cached_property
-    def places(self) -> Places:
+    def stroke_kind(self) -> StrokeKind:
         """What differs between kinds of linkage."""
-        return places_of(self.scaled.kind)(self.task, self.wanted)
+        return stroke_kind_of(self.scaled.kind)(self.task, self.wanted)
 
     @property
     def rounds_a_pass(self) -> int:
@@ -86,13 +84,13 @@ class LimitPositions(WholeDesigns):
     @property
     def elsewhere(self) -> bool:
         """Whether anything is asked besides lengths, pivots and transmission: more places are tried then."""
-        beyond = set(self.wanted.limited) - self.places.kept
+        beyond = set(self.wanted.limited) - self.stroke_kind.kept
         return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
         """The families, as they are, and mirrored where that differs: where the start angle is given."""
-        return self.places.families(elsewhere=self.elsewhere)
+        return self.stroke_kind.families(elsewhere=self.elsewhere)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """First the best members and a choice of the others; then, where places decide, members anywhere."""
@@ -130,7 +128,7 @@ class LimitPositions(WholeDesigns):
         names = (*row.lengths, *(each.name for each in row.parameters if each.kind == "distance"))
         shape = np.abs([float(getattr(linkage, name)) for name in names])
 
-        def near(members: Members, mirrored: bool) -> FloatArray:
+        def near(members: StrokeLinkages, mirrored: bool) -> FloatArray:
             lengths = np.abs(members.lengths)
             size = np.linalg.norm(lengths, axis=1, keepdims=True)
             off = np.linalg.norm(lengths / size - shape / np.linalg.norm(shape), axis=1)
@@ -145,9 +143,9 @@ class LimitPositions(WholeDesigns):
     def _round(self, starts: list[Start]) -> Round:
         return Round(starts, {"feasible finds": len(starts)})
 
-    def _inside(self, members: Members, mirrored: bool) -> FloatArray:
+    def _inside(self, members: StrokeLinkages, mirrored: bool) -> FloatArray:
         """How far members are inside the limits of lengths, places and transmission, (n,)."""
-        return self.places.inside(members.mirrored if mirrored else members)
+        return self.stroke_kind.inside(members.mirrored if mirrored else members)
 
     @cached_property
     def _stretches(self) -> _Stretches:
@@ -170,17 +168,17 @@ class LimitPositions(WholeDesigns):
                 starts += self._starts(members, mirrored)
                 shares = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in within])
                 groups.append((family(shares), mirrored))
-        best = sorted(starts, key=lambda start: -self.places.worst(start))
+        best = sorted(starts, key=lambda start: -self.stroke_kind.worst(start))
         if self.elsewhere:  # rounds of members anywhere follow
             return [one for one in best + self._spread(groups, _FIRST) if self._in_boxes(one)]
         return best + self._spread(groups, round(_SPARE * enough))
 
-    def _spread(self, groups: list[tuple[Members, bool]], most: int) -> list[Start]:
+    def _spread(self, groups: list[tuple[StrokeLinkages, bool]], most: int) -> list[Start]:
         """So many members at most: of those that no other beats in size and transmission, then of all."""
         if not groups or not most:
             return []
         factor = [self._factor(*group) for group in groups]
-        whole = self.places.diagonals
+        whole = self.stroke_kind.diagonals
         size = np.concatenate([f * whole(found) for f, (found, _) in zip(factor, groups, strict=True)])
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
@@ -196,18 +194,20 @@ class LimitPositions(WholeDesigns):
             starts += self._starts(found[at : at + 1], mirrored)
         return starts
 
-    def _factor(self, members: Members, mirrored: bool) -> FloatArray:
+    def _factor(self, members: StrokeLinkages, mirrored: bool) -> FloatArray:
         """By which members are scaled, (n,)."""
-        return self.places.factor(members.mirrored if mirrored else members)
+        return self.stroke_kind.factor(members.mirrored if mirrored else members)
 
-    def _starts(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> list[Start]:
-        """Members as the limits of lengths and places put them into the plane."""
+    def _starts(
+        self, members: StrokeLinkages, mirrored: bool, preferred: float | FloatArray = 1.0
+    ) -> list[Start]:
+        """Linkages as the limits of lengths and places put them into the plane."""
         members = members.mirrored if mirrored else members
-        points = self._inward(self.places.put(members, self.places.factor(members, wish)))
+        points = self._inward(self.stroke_kind.put(members, self.stroke_kind.factor(members, preferred)))
         return [self._start(members[k : k + 1], points[k : k + 1]) for k in range(len(members))]
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
-        """Members of random scale, place and handedness: those that keep all limits, then some others."""
+        """Linkages of random scale, place and handedness: those that keep all limits, then some others."""
         places = [self._placed(members, rng) for members in self._drawn(rng)]
         if not places:
             return []
@@ -221,10 +221,10 @@ class LimitPositions(WholeDesigns):
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
         return [start.under(settled=True) for start in starts]
 
-    def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
+    def _placed(self, members: StrokeLinkages, rng: np.random.Generator) -> _Positions:
         """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
-        points = self._inward(self.places.put_anywhere(members, self._room, rng))
-        o4, a, b, theta2 = self.places.moving(members, points)
+        points = self._inward(self.stroke_kind.put_anywhere(members, self._room, rng))
+        o4, a, b, theta2 = self.stroke_kind.moving(members, points)
         return points[:, 0], o4, a, b, theta2
 
     def _inward(self, points: ComplexArray) -> ComplexArray:
@@ -234,7 +234,7 @@ class LimitPositions(WholeDesigns):
         self, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray, theta2: FloatArray
     ) -> Screened:
         """Linkages in the frame screened under all requirements, from the slow stroke alone; P is A."""
-        count, sense = len(o2), -1.0 if self.places.clockwise else 1.0
+        count, sense = len(o2), -1.0 if self.stroke_kind.clockwise else 1.0
         visit = np.tile(np.arange(2), (count, 1))
         found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense), self.scaled.kind)
         wanted = self.scaled.wanted
@@ -254,10 +254,10 @@ class LimitPositions(WholeDesigns):
             sides.append((min(ends) - self.task.size, max(ends) + self.task.size))
         return Box(*sides)
 
-    def _drawn(self, rng: np.random.Generator) -> Iterator[Members]:
+    def _drawn(self, rng: np.random.Generator) -> Iterator[StrokeLinkages]:
         """Random members, half of them mirrored."""
         ranges = [(family, within) for family, mirrored, within in self._stretches if within and not mirrored]
-        either = self.places.mirrored
+        either = self.stroke_kind.mirrored
         for family, within in ranges:
             low, high = within[int(rng.integers(len(within)))]
             for mirrored in either:
@@ -267,11 +267,11 @@ class LimitPositions(WholeDesigns):
 
     def _in_boxes(self, start: Start) -> bool:
         """Whether A and B are where they may be in both limit positions."""
-        return self.places.in_boxes(*map(self.scaled.frame.outward, start.track[:2]))
+        return self.stroke_kind.in_boxes(*map(self.scaled.frame.outward, start.track[:2]))
 
-    def _start(self, member: Members, points: ComplexArray) -> Start:
+    def _start(self, member: StrokeLinkages, points: ComplexArray) -> Start:
         """One member, (1,), where two points of the frame, (1, 2), put it; P is A, as it may be anything."""
-        o4, a, b, theta2 = (each[0] for each in self.places.moving(member, points))
+        o4, a, b, theta2 = (each[0] for each in self.stroke_kind.moving(member, points))
         return Start(
             o2=complex(points[0, 0]),
             o4=complex(o4),
@@ -281,7 +281,7 @@ class LimitPositions(WholeDesigns):
             visit=(0, 1),
             theta2=(float(theta2[0]), float(theta2[1])),
             theta3=tuple(np.unwrap(np.angle(b - a)).tolist()),
-            direction=-1 if self.places.clockwise else 1,
+            direction=-1 if self.stroke_kind.clockwise else 1,
             assembly=int(member.assembly[0]),
             terms=Terms(self.scaled.objective, settled=True),
             kind=self.scaled.kind,
@@ -289,8 +289,8 @@ class LimitPositions(WholeDesigns):
 
 
 def _best(
-    within: _Stretches, value: Callable[[Members, bool], FloatArray]
-) -> Iterator[tuple[float, Members, bool]]:
+    within: _Stretches, value: Callable[[StrokeLinkages, bool], FloatArray]
+) -> Iterator[tuple[float, StrokeLinkages, bool]]:
     """In each of some stretches the member, (1,), of the greatest value, with that, and whether mirrored."""
     for family, mirrored, ranges in within:
 

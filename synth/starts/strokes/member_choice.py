@@ -7,12 +7,12 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.loop.dyad import Bars, coupler_of
 from grashof.synth.theory.distinct import DISTINCT, pick_apart
-from grashof.synth.theory.limit_positions import Members
+from grashof.synth.theory.limit_positions import StrokeLinkages
 
 _POSITIONS = 73  # of a turn, for the size
 
 
-def diagonals(members: Members) -> FloatArray:
+def diagonals(members: StrokeLinkages) -> FloatArray:
     """Diagonals of the boxes around O2, O4 and all that A and B reach, O2O4 = 1; shape (n,)."""
     _, r2, r3, r4 = members.lengths.T[..., None]
     a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, _POSITIONS))

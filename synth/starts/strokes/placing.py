@@ -45,11 +45,11 @@ class Ground:
         free = np.isnan(angle)
         return np.where(free, near, low), np.where(free, far, high)
 
-    def direction(self, r1: float, wish: float) -> float:
-        """The direction of O2O4 nearest to a wish, rad, in which O4 may be at a distance r1 from O2."""
+    def direction(self, r1: float, preferred: float) -> float:
+        """The direction of O2O4 nearest to a preferred, rad, in which O4 may be at a distance r1 from O2."""
         if np.isinf([*self.x, *self.y]).all():
-            return wish
-        corners = [wish]
+            return preferred
+        corners = [preferred]
         for side in self.x:
             if abs(side) <= r1:
                 corners += [np.arccos(side / r1), -np.arccos(side / r1)]
@@ -61,8 +61,8 @@ class Ground:
         inside = np.ones(len(tried), dtype=bool)
         for (least, most), at in ((self.x, r1 * np.cos(tried)), (self.y, r1 * np.sin(tried))):
             inside &= (at >= least - slack) & (at <= most + slack)
-        turned = np.abs((tried - wish + np.pi) % (2 * np.pi) - np.pi)
-        return float(tried[np.argmin(np.where(inside, turned, np.inf))]) if inside.any() else wish
+        turned = np.abs((tried - preferred + np.pi) % (2 * np.pi) - np.pi)
+        return float(tried[np.argmin(np.where(inside, turned, np.inf))]) if inside.any() else preferred
 
     def pivots(
         self, r1: float, angle: float, share: FloatArray | None = None, room: Box | None = None

@@ -132,13 +132,13 @@ class FourBars(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """Lengths from 0.05 to 20.
 
-        >>> made = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first)])
-        made = cls(shape, rng.choice([-1.0, 1.0], count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(shape, rng.choice([-1.0, 1.0], count))
+        return batch[batch.worst_cosine(span) < 1]
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:

@@ -78,11 +78,11 @@ class InvertedSliderCranks(Generators):
             found = _solved_by_two(*weighed(rows, np.sin(theta3), rod))
         r2, offset = found.T
         c = np.exp(1j * place)
-        made = cls._of(r2 * np.exp(1j * (driver - place)), c, offset)
-        shape = made.shape.copy()
+        batch = cls._of(r2 * np.exp(1j * (driver - place)), c, offset)
+        shape = batch.shape.copy()
         shape[:, 2] = driver + np.pi * (r2 < 0)
         shape[~np.isfinite(shape).all(axis=1)] = np.nan
-        return made.changed(shape)
+        return batch.changed(shape)
 
     @classmethod
     def _of(cls, w: ComplexArray, c: ComplexArray, offset: FloatArray) -> Self:
@@ -99,8 +99,8 @@ class InvertedSliderCranks(Generators):
     ) -> Self:
         """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
 
-        >>> made = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        >>> batch = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
         True
         """
         crank = crank_ratios(rng, count)
@@ -113,14 +113,14 @@ class InvertedSliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 from 0.05 to 20, the offset up to the longer of r1 and r2.
 
-        >>> made = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         r2 = np.log(20) * rng.uniform(-1, 1, count)
         offset = np.maximum(1.0, np.exp(r2)) * rng.uniform(-1, 1, count)
-        made = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
+        return batch[batch.worst_cosine(span) < 1]
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:

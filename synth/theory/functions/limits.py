@@ -30,9 +30,9 @@ class ShapeLimits:
     offset: FloatArray | None = None
     stroke: Limits = (-np.inf, np.inf)  # of the travel over a whole turn, in units of the lengths
 
-    def of(self, made: Limited) -> Dual:
+    def of(self, batch: Limited) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
-        return made.limited(self)
+        return batch.limited(self)
 
     @property
     def most_cosine(self) -> float:

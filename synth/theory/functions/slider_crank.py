@@ -119,8 +119,8 @@ class SliderCranks(Generators):
     ) -> Self:
         """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
 
-        >>> made = SliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        >>> batch = SliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
         True
         """
         crank = crank_ratios(rng, count)
@@ -133,15 +133,15 @@ class SliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 / r3 from 0.05 to 20, r3 = 1.
 
-        >>> made = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         crank = np.log(20) * rng.uniform(-1, 1, count)
         share = np.maximum(1.0, np.exp(crank)) * rng.uniform(-1.5, 1.5, count)
         shape = np.column_stack([crank, np.zeros(count), share, np.full(count, first)])
-        made = cls(shape, rng.choice([-1.0, 1.0], count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(shape, rng.choice([-1.0, 1.0], count))
+        return batch[batch.worst_cosine(span) < 1]
 
     def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:
         """In the size of least squares; a negative one is the same linkage turned by half a turn."""

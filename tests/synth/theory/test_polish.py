@@ -9,7 +9,7 @@ from grashof.problems import Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE
 from grashof.synth.theory import polish as path_polish
-from grashof.synth.theory.polish import Polished, Wish, polish_path
+from grashof.synth.theory.polish import ExactTargets, Polished, polish_path
 
 CASES = [(seed, timed, mixed) for seed in range(1, 7) for timed in (False, True) for mixed in (False, True)]
 
@@ -43,10 +43,10 @@ def unknowns_of(points: ComplexArray) -> FloatArray:
     ])  # fmt: skip
 
 
-def wish_of(targets: ComplexArray, timed: bool) -> Wish:
+def wish_of(targets: ComplexArray, timed: bool) -> ExactTargets:
     """Points only."""
     every = np.ones(len(targets), dtype=bool)
-    return Wish(targets, every, np.zeros(len(targets)), ~every, timed, FOUR_BAR_CLOSURE)
+    return ExactTargets(targets, every, np.zeros(len(targets)), ~every, timed, FOUR_BAR_CLOSURE)
 
 
 class Planted:
@@ -164,10 +164,10 @@ def test_many_driver_angles_are_eliminated_without_a_difference(
     places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
     begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
     none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-    wish = Wish(points, every, np.zeros(count), none, timed=False, closure=FOUR_BAR_CLOSURE)
+    targets = ExactTargets(points, every, np.zeros(count), none, timed=False, closure=FOUR_BAR_CLOSURE)
     found = []
     for many in (path_polish.MANY, 1000):
         monkeypatch.setattr(path_polish, "MANY", many)
-        found.append(polish_path(begin, verdict.theta2, 0.0, verdict.assembly.astype(float), wish))
+        found.append(polish_path(begin, verdict.theta2, 0.0, verdict.assembly.astype(float), targets))
     assert max(one.error for one in found) < 1e-12
     np.testing.assert_allclose(found[0].points, found[1].points, atol=1e-9)

@@ -7,7 +7,7 @@ from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angl
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE as BARS
 from grashof.synth.theory import polish as path_polish
-from grashof.synth.theory.polish import Polished, Wish, polish_path
+from grashof.synth.theory.polish import ExactTargets, Polished, polish_path
 
 # How many targets, which have no place, which no angle; fewer equations than unknowns or as many.
 CASES: dict[str, tuple[int, list[int], list[int]]] = {
@@ -47,7 +47,7 @@ class Planted:
         points, turns = a + arm * e3, np.angle(e3) + self.body_angle + 2 * np.pi * rng.integers(-1, 2, count)
         has_point, has_turn = np.ones(count, dtype=bool), np.ones(count, dtype=bool)
         has_point[places], has_turn[angles] = False, False
-        self.wish = Wish(
+        self.targets = ExactTargets(
             np.where(has_point, points, 0),
             has_point,
             np.where(has_turn, turns, 0),
@@ -62,19 +62,19 @@ class Planted:
         self.near = np.array([o2, o4, a[0], b[0], a[0] + near_arm * (b[0] - a[0]) / near[1]])
 
     def polished(self) -> Polished:
-        return polish_path(self.near, self.near_angles, self.near_body, self.side, self.wish)
+        return polish_path(self.near, self.near_angles, self.near_body, self.side, self.targets)
 
 
-def missed(polished: Polished, side: FloatArray, wish: Wish) -> tuple[float, float]:
+def missed(polished: Polished, side: FloatArray, targets: ExactTargets) -> tuple[float, float]:
     """Greatest miss of places and of angles, from what was polished alone."""
     o2, o4, a, b, p = polished.points
     lengths = np.abs(np.array([a - o2, b - a, b - o4]))
     at_a, at_b = circles_meet(complex(o2), complex(o4), lengths, polished.theta2, side)
     e3 = (at_b - at_a) / lengths[1]
     at_p = at_a + (p - a) / (b - a) * lengths[1] * e3
-    turned = np.angle(e3 * np.exp(1j * (polished.body_angle - wish.turns)))
-    places: BoolArray = wish.has_point
-    return float(np.abs(at_p - wish.points)[places].max()), float(np.abs(turned[wish.has_turn]).max())
+    turned = np.angle(e3 * np.exp(1j * (polished.body_angle - targets.turns)))
+    places: BoolArray = targets.has_point
+    return float(np.abs(at_p - targets.points)[places].max()), float(np.abs(turned[targets.has_turn]).max())
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -83,7 +83,7 @@ def test_it_ends_on_what_is_wished(case: str, seed: int) -> None:
     planted = Planted(seed, case)
     polished = planted.polished()
     assert polished.error < 1e-12
-    assert max(missed(polished, planted.side, planted.wish)) < 1e-11
+    assert max(missed(polished, planted.side, planted.targets)) < 1e-11
     o2, o4, a, b, _ = polished.points
     lengths = np.abs(np.array([a - o2, b - a, b - o4]))
     at_a, at_b = circles_meet(complex(o2), complex(o4), lengths, polished.theta2, planted.side)
@@ -110,12 +110,12 @@ def test_errors_fall_quadratically(case: str, monkeypatch: pytest.MonkeyPatch) -
 def test_what_is_free_does_not_pull(monkeypatch: pytest.MonkeyPatch) -> None:
     """Other numbers where nothing is wished lead to the same design."""
     planted = Planted(1, "mixed")
-    wish = planted.wish
-    other = Wish(
-        np.where(wish.has_point, wish.points, 5 - 3j),
-        wish.has_point,
-        np.where(wish.has_turn, wish.turns, 1.0),
-        wish.has_turn,
+    targets = planted.targets
+    other = ExactTargets(
+        np.where(targets.has_point, targets.points, 5 - 3j),
+        targets.has_point,
+        np.where(targets.has_turn, targets.turns, 1.0),
+        targets.has_turn,
         False,
         BARS,
     )
@@ -127,8 +127,10 @@ def test_what_is_free_does_not_pull(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_turns_of_a_whole_turn_more_are_the_same() -> None:
     planted = Planted(2, "five whole")
-    wish = planted.wish
-    more = Wish(wish.points, wish.has_point, wish.turns + 2 * np.pi, wish.has_turn, False, BARS)
+    targets = planted.targets
+    more = ExactTargets(
+        targets.points, targets.has_point, targets.turns + 2 * np.pi, targets.has_turn, False, BARS
+    )
     there = polish_path(planted.near, planted.near_angles, planted.near_body, planted.side, more)
     np.testing.assert_allclose(there.points, planted.polished().points, atol=1e-12)
 
@@ -137,8 +139,10 @@ def test_timed_poses_keep_the_gaps_of_the_driver() -> None:
     """Three whole poses and prescribed gaps: nine equations, eleven unknowns."""
     for seed in range(4):
         planted = Planted(seed, "five whole")
-        wish = planted.wish
-        three = Wish(wish.points[:3], wish.has_point[:3], wish.turns[:3], wish.has_turn[:3], True, BARS)
+        targets = planted.targets
+        three = ExactTargets(
+            targets.points[:3], targets.has_point[:3], targets.turns[:3], targets.has_turn[:3], True, BARS
+        )
         angles = planted.theta2[:3] + 1e-4
         polished = polish_path(planted.near, angles, planted.near_body, planted.side[:3], three)
         assert max(missed(polished, planted.side[:3], three)) < 1e-11

@@ -12,12 +12,12 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.polish import Wish, _linearised, _spread, polish_path
+from grashof.synth.theory.polish import ExactTargets, _linearised, _spread, polish_path
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")
 
 
-def planted(mechanism: str, seed: int, count: int = 5) -> tuple[FloatArray, FloatArray, float, Wish]:
+def planted(mechanism: str, seed: int, count: int = 5) -> tuple[FloatArray, FloatArray, float, ExactTargets]:
     """Points of a linkage at the first of some poses, driver angles, body angle, and the poses."""
     task, linkage = planted_motion(np.random.default_rng([11, seed]), count, mechanism=mechanism)
     linkage = as_found(linkage)
@@ -27,8 +27,8 @@ def planted(mechanism: str, seed: int, count: int = 5) -> tuple[FloatArray, Floa
     state = solve_position(linkage, theta2)
     o2, a, b, p = (complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0]))
     points = np.array([o2, kind.o4_of(linkage, b, scaled.frame), a, b, p])
-    wish = Wish(scaled.targets, every, scaled.turns, every, timed=False, closure=kind.closure)
-    return points, theta2, float(linkage.body_angle), wish
+    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, closure=kind.closure)
+    return points, theta2, float(linkage.body_angle), targets
 
 
 def _driver_angles(linkage: object, positions: FloatArray) -> FloatArray:
@@ -51,15 +51,15 @@ def _miss(linkage: object, theta2: FloatArray, positions: FloatArray) -> FloatAr
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_derivatives(mechanism: str, seed: int) -> None:
-    points, theta2, body_angle, wish = planted(mechanism, seed)
+    points, theta2, body_angle, targets = planted(mechanism, seed)
     arm = (points[4] - points[2]) * abs(points[3] - points[2]) / (points[3] - points[2])
-    numbers = [*wish.closure.dimensions(points), arm.real, arm.imag, body_angle, *theta2]
+    numbers = [*targets.closure.dimensions(points), arm.real, arm.imag, body_angle, *theta2]
     unknowns, gaps, signs = np.array(numbers), theta2 - theta2[0], np.ones(len(theta2))
-    _, missed, jacobian = _linearised(unknowns, gaps, signs, wish)
+    _, missed, jacobian = _linearised(unknowns, gaps, signs, targets)
     assert np.abs(missed).max() < 1e-7
-    for column, slope in enumerate(_spread(jacobian, wish).T):
+    for column, slope in enumerate(_spread(jacobian, targets).T):
         step = 1e-6 * np.eye(len(unknowns))[column]
-        ahead, behind = (_linearised(unknowns + s * step, gaps, signs, wish)[1] for s in (1, -1))
+        ahead, behind = (_linearised(unknowns + s * step, gaps, signs, targets)[1] for s in (1, -1))
         np.testing.assert_allclose((ahead - behind) / 2e-6, slope, atol=1e-6 * (1 + np.abs(slope).max()))
 
 
@@ -67,9 +67,9 @@ def test_derivatives(mechanism: str, seed: int) -> None:
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_targets_are_met_to_rounding(mechanism: str, timed: bool) -> None:
     for seed in range(8):
-        points, theta2, body_angle, wish = planted(mechanism, seed, 3)
-        wish, rng = replace(wish, timed=timed), np.random.default_rng(seed)
+        points, theta2, body_angle, targets = planted(mechanism, seed, 3)
+        targets, rng = replace(targets, timed=timed), np.random.default_rng(seed)
         near = points + 1e-4 * (rng.normal(size=5) + 1j * rng.normal(size=5))
-        moved = polish_path(near, theta2 + (0 if timed else 1e-4), body_angle, np.ones(3), wish)
+        moved = polish_path(near, theta2 + (0 if timed else 1e-4), body_angle, np.ones(3), targets)
         assert moved.error < 1e-13
         assert np.abs(moved.points - points).max() < 0.02

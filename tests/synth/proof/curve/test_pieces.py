@@ -7,10 +7,10 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.centres import centres_of, of_rows
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.pieces import Tubes, contracted
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
 
@@ -20,8 +20,8 @@ PROBLEMS = [
 ]
 
 
-def asked(problem: Problem) -> Asked:
-    return Asked.of(ScaledProblem.of(problem))
+def required(problem: Problem) -> Required:
+    return Required.of(ScaledProblem.of(problem))
 
 
 def motion_of(curve: Curve) -> Displacements:
@@ -44,7 +44,7 @@ def on_curve(curve: Curve, reach: float, lines: int) -> Dyads:
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_polynomial_vanishes_where_four_places_are_on_a_circle(problem: Problem) -> None:
-    curve = asked(problem).curve
+    curve = required(problem).curve
     dyads = on_curve(curve, 4.0, 60)
     taylor = curve.about(dyads.moving)
     assert len(dyads) > 50
@@ -54,7 +54,7 @@ def test_polynomial_vanishes_where_four_places_are_on_a_circle(problem: Problem)
 
 @pytest.mark.parametrize("problem", PROBLEMS[:2], ids=lambda one: one.name)
 def test_taylor_series_is_exact(problem: Problem) -> None:
-    curve, rng = asked(problem).curve, np.random.default_rng(0)
+    curve, rng = required(problem).curve, np.random.default_rng(0)
     q, w = (rng.normal(size=200) + 1j * rng.normal(size=200) for _ in range(2))
     turn = np.exp(1j * rng.uniform(0, 2 * np.pi, 200))
     taylor = curve.about(q).turned(turn)
@@ -75,7 +75,7 @@ def inside(tubes: Tubes, k: int, points: ComplexArray) -> tuple[np.ndarray, np.n
 @pytest.mark.parametrize("size", [0.4, 0.1, 0.02])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem, size: float) -> None:
-    about = asked(problem)
+    about = required(problem)
     curve, rng = about.curve, np.random.default_rng(1)
     dyads = on_curve(curve, 4.0, 400)
     picked = rng.choice(len(dyads), 40)
@@ -106,7 +106,7 @@ def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem,
 @pytest.mark.parametrize("scale", [1.0, 0.1, 0.01])
 def test_centres_hold_every_solution_of_two_equations(rows: tuple[int, int], scale: float) -> None:
     # Wide tubes that are on no curve: every term of the remainder has its turn.
-    curve, rng, count = asked(PROBLEMS[1]).curve, np.random.default_rng(3), 4000
+    curve, rng, count = required(PROBLEMS[1]).curve, np.random.default_rng(3), 4000
     middle = rng.normal(size=count) + 1j * rng.normal(size=count)
     direction = np.exp(1j * rng.uniform(0, 7, count))
     half, tilt, bow, rest = scale * rng.uniform(0, 0.2, (4, count)) * rng.choice([0.01, 1.0], (4, count))
@@ -136,7 +136,7 @@ def test_centres_hold_every_solution_of_two_equations(rows: tuple[int, int], sca
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_halves_hold_what_a_tube_holds(problem: Problem) -> None:
-    about, rng = asked(problem), np.random.default_rng(2)
+    about, rng = required(problem), np.random.default_rng(2)
     dyads = on_curve(about.curve, 3.0, 100)
     middle = dyads.moving[rng.choice(len(dyads), 60)]
     size = np.full(60, 0.2)
@@ -152,7 +152,7 @@ def test_halves_hold_what_a_tube_holds(problem: Problem) -> None:
 
 
 def test_contracted_tubes_shrink_with_the_square_of_their_length() -> None:
-    about = asked(PROBLEMS[0])
+    about = required(PROBLEMS[0])
     dyads = on_curve(about.curve, 3.0, 40)
     dyads = dyads[np.abs(dyads.moving - dyads.ground) < 3]
     rest = []

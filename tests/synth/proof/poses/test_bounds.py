@@ -12,7 +12,7 @@ from grashof import load
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.proof.claims.bounds import Bounds, Proving
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.proof.provers import bounds_of
@@ -56,9 +56,9 @@ def test_a_smaller_gap_comes_closer() -> None:
 
 def test_what_exceeds_the_gap_is_not_dropped() -> None:
     # Of a bound that is 1.5 gaps below the best, the pairs that hold the best have to be left.
-    asked, gap = Asked.of(ScaledProblem.of(luggage())), np.radians(0.1)
-    search = Search(asked, gap, 20_000, lower=np.radians(27.33255) - 1.5 * gap)
-    search.run(Table.covering(asked), lambda _table, _pairs, _least: 0.0)
+    required, gap = Required.of(ScaledProblem.of(luggage())), np.radians(0.1)
+    search = Search(required, gap, 20_000, lower=np.radians(27.33255) - 1.5 * gap)
+    search.run(Table.covering(required), lambda _table, _pairs, _least: 0.0)
     assert not search.done
     assert search.upper >= np.radians(27.33255)
 
@@ -134,8 +134,8 @@ def test_a_budget_leaves_a_bound_that_holds() -> None:
 def test_a_search_that_is_stopped_leaves_a_bound_that_holds() -> None:
     best = bounds(luggage()).lower
     for most in (0, 1, 3, 5):
-        asked = count()
-        with stopping(lambda: next(asked) >= most):  # noqa: B023  (asked within the loop)
+        required = count()
+        with stopping(lambda: next(required) >= most):  # noqa: B023  (called within the loop)
             made = bounds(luggage())
         assert not made.closed
         assert made.why == "it was stopped"

@@ -110,7 +110,7 @@ def followed(problem: Problem, designs: Designs, levels: int = 10) -> Descent:
     """Follow designs down halves of pieces, each with its own transmission angle as the threshold."""
     cranks = cranks_of(problem)
     assert cranks.may_slide
-    table = Table.covering(cranks.asked)
+    table = Table.covering(cranks.required)
 
     def left(pieces: list[IntArray], least: FloatArray) -> tuple[IntArray, FloatArray]:
         some = table.pieces[pieces[0]]
@@ -208,8 +208,8 @@ def test_limits_that_include_a_design_are_never_proven_to_have_none(seed: int) -
     problem = planted(seed)
     designs = accepted(problem, slider_cranks(problem, 100))
     for number, limits in enumerate(limits_of(designs, seed, problem)):
-        asked = replace(problem, requirements=replace(problem.requirements, **limits))  # type: ignore[arg-type]
-        proof = prove(asked)
+        required = replace(problem, requirements=replace(problem.requirements, **limits))  # type: ignore[arg-type]
+        proof = prove(required)
         assert proof.claim in (Claim.BEST, Claim.BOUND), (number, limits, proof)
         assert proof.upper is not None
         assert np.degrees(designs.transmission[seed]) <= proof.upper + 1e-6, limits

@@ -9,8 +9,8 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.best_first import Tilings
 from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
@@ -138,15 +138,15 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 40
     """Linkages that meet a problem; so many at most, a good part of them near poles."""
     scaled = ScaledProblem.of(problem)
     assert scaled.motion is not None
-    asked, rng, body = Asked.of(scaled), np.random.default_rng(seed), complex(scaled.targets[0])
-    sides = Tilings.covering(asked)
+    required, rng, body = Required.of(scaled), np.random.default_rng(seed), complex(scaled.targets[0])
+    sides = Tilings.covering(required)
     every = []
     for tiling in (sides.driver, sides.driven):
         charts = tiling.side.charts
-        reach = min(asked.driver.arm[1], 3.0)
+        reach = min(required.driver.arm[1], 3.0)
         dyads = exact(charts.motion, some_dyads(charts, reach, count, rng))
         _, rows = Sites.of(tiling.side, tiles_of(charts, dyads))
-        every.append((charts, dyads[rows]))  # those that meet what is asked of one dyad, about
+        every.append((charts, dyads[rows]))  # those that meet what is required of one dyad, about
     drawn = []
     for charts, dyads in every:
         special = kinds(charts, dyads) != charts.main
@@ -157,7 +157,7 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 40
     one, other = (Dyads(each.moving + body, each.ground + body) for each in drawn)
     least = min(len(one), len(other))
     judged = judged_pairs(scaled.motion, body, one[:least], other[:least], scaled.wanted)
-    good = np.flatnonzero(judged.feasible & (judged.transmission > asked.floor + 2 * JUST_BELOW))[:most]
+    good = np.flatnonzero(judged.feasible & (judged.transmission > required.floor + 2 * JUST_BELOW))[:most]
     return Designs(drawn[0][good], drawn[1][good], judged.transmission[good])
 
 
@@ -221,7 +221,7 @@ def half_of(tiling: Tiling, which: IntArray, dyads: Dyads) -> IntArray:
 
 def followed(problem: Problem, designs: Designs, levels: int) -> tuple[int, int, float]:
     """How many designs are in no tile or excluded on the way down, and how near a bound came, rad."""
-    sides = Tilings.covering(Asked.of(ScaledProblem.of(problem)))
+    sides = Tilings.covering(Required.of(ScaledProblem.of(problem)))
     one, other = tile_of(sides.driver, designs.driver), tile_of(sides.driven, designs.driven)
     lost = excluded = 0
     nearest = np.inf

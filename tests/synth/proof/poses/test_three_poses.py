@@ -98,8 +98,8 @@ def test_a_larger_budget_leaves_a_closer_bound() -> None:
 
 def test_what_is_stopped_leaves_a_bound_that_holds() -> None:
     for most in (0, 1, 3, 6):
-        asked = count()
-        with stopping(lambda: next(asked) >= most):  # noqa: B023  (asked within the loop)
+        required = count()
+        with stopping(lambda: next(required) >= most):  # noqa: B023  (called within the loop)
             made = bounds(bonnet())
         assert not made.closed
         assert made.why == "it was stopped"

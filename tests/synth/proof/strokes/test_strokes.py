@@ -13,7 +13,7 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Claim, Proof, prove
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.provers import bounds_of
-from grashof.synth.proof.strokes.asked import sizes_left_out
+from grashof.synth.proof.strokes.required import sizes_left_out
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.wording.proof import bound_line, is_decided, proof_line, work_line
 

@@ -16,7 +16,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 
 @dataclass(frozen=True)
-class WholeDesigns(ABC):
+class DesignFinder(ABC):
     """What these finders share; see `Finder`."""
 
     scaled: ScaledProblem

@@ -12,7 +12,7 @@ from grashof.problems import Box, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
-from grashof.synth.theory.limit_positions import Family, Members
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages
 
 # Fields that every kind keeps by itself.
 KEPT = frozenset({
@@ -22,8 +22,8 @@ KEPT = frozenset({
 
 
 @dataclass(frozen=True, slots=True)
-class Places(ABC):
-    """Members of the families of a task, inside limits and in the plane.
+class StrokeKind(ABC):
+    """Linkages of the families of a task, inside limits and in the plane.
 
     A member is put there by two points: O2, and the end of the length that counts as 1 in its family, along
     the ground line or the slide.
@@ -52,12 +52,12 @@ class Places(ABC):
         """
 
     @abstractmethod
-    def inside(self, members: Members) -> FloatArray:
+    def inside(self, members: StrokeLinkages) -> FloatArray:
         """How far members are inside the limits of lengths, places and transmission, (n,)."""
 
     def least(
         self,
-        members: Members,
+        members: StrokeLinkages,
         ratio: FloatArray,
         turns: FloatArray,
         angle: FloatArray,
@@ -82,24 +82,24 @@ class Places(ABC):
         return margin
 
     @abstractmethod
-    def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
-        """By which members are scaled, (n,), length: as wished where it is allowed, or else nearly so."""
+    def factor(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> FloatArray:
+        """By which members are scaled, (n,), length: as preferred where it is allowed, or else nearly so."""
 
     @abstractmethod
-    def diagonals(self, members: Members) -> FloatArray:
+    def diagonals(self, members: StrokeLinkages) -> FloatArray:
         """Diagonals of the boxes around the pivots and all that A and B reach, unscaled; (n,)."""
 
     @abstractmethod
-    def put(self, members: Members, factor: FloatArray) -> ComplexArray:
+    def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
         """Both points of members as the limits put them into the plane, (n, 2), length."""
 
     @abstractmethod
-    def put_anywhere(self, members: Members, room: Box, rng: np.random.Generator) -> ComplexArray:
+    def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
         """The same at random, of random size where that is free; O2 in a room where it is not bounded."""
 
     @abstractmethod
     def moving(
-        self, members: Members, points: ComplexArray
+        self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         """O4 (n,) as `Start` has it, and A, B and theta2 in the limit positions, each (n, 2).
 
@@ -114,7 +114,7 @@ class Places(ABC):
     def worst(self, start: Start) -> float:
         """Worst transmission angle over the turn, rad, by the sizes of a start."""
 
-    def ends(self, members: Members) -> tuple[FloatArray, FloatArray]:
+    def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
         """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad."""
         first, last = members.first, members.last
         return (last, first) if self.clockwise else (first, last)

@@ -38,7 +38,7 @@ ANY_LENGTH = (0.0, np.inf)
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """What is asked of one of the two dyads, in the frame of a `Curve`, in sizes."""
+    """What is required of one of the two dyads, in the frame of a `Curve`, in sizes."""
 
     length: Limits  # limits of the distance from its ground pivot to its moving pivot
     arm: Limits  # limits of the distance from its moving pivot to P
@@ -49,7 +49,7 @@ class Dyad:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class Required:
     """All requirements that have forms, widened by the slack of the judge."""
 
     curve: Curve
@@ -67,8 +67,8 @@ class Asked:
     floor: float  # rad, transmission angle below which no design counts
 
     @classmethod
-    def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
-        """What is asked of the first four poses of a problem, or three; `at_least` a greater angle (deg)."""
+    def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Required:
+        """The requirements on the first four (or three) poses; `at_least` is a greater angle (deg)."""
         motion, wanted = scaled.motion, scaled.wanted
         if motion is None:
             raise TypeError("only whole poses that are met exactly have a curve of dyads")
@@ -104,7 +104,7 @@ class Asked:
         )
 
     @classmethod
-    def within(cls, motion: Displacements, reach: float, least: float = 0.0) -> Asked:
+    def within(cls, motion: Displacements, reach: float, least: float = 0.0) -> Required:
         """Dyads alone: with arms and lengths from `least` up to `reach`, sizes."""
         limits = _widened((least, reach))
         dyad = Dyad(limits, limits, Box(), Box(), Box())

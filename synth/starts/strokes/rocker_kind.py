@@ -12,13 +12,13 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.strokes.member_choice import diagonals
-from grashof.synth.starts.strokes.places import KEPT, Places
 from grashof.synth.starts.strokes.placing import Ground, scales
-from grashof.synth.theory.limit_positions import Family, Members, families_of
+from grashof.synth.starts.strokes.stroke_kind import KEPT, StrokeKind
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, families_of
 
 
 @dataclass(frozen=True, slots=True)
-class RockerPlaces(Places):
+class RockerKind(StrokeKind):
     """Of any scale; the ground line, from O2 to O4, counts as 1."""
 
     what: ClassVar[str] = "crank-rockers"
@@ -31,22 +31,22 @@ class RockerPlaces(Places):
         either = (False, True) if self.wanted.theta2_start_deg is not None else (False,)
         return [(family, mirrored) for family in families for mirrored in either]
 
-    def inside(self, members: Members) -> FloatArray:
+    def inside(self, members: StrokeLinkages) -> FloatArray:
         r1, r2, r3, r4 = lengths = members.lengths.T
         turns = np.minimum(r3 + r4 - r1 - r2, r1 - r2 - np.abs(r3 - r4)) / lengths.sum(axis=0)
         low, high = self._scales(members)
         ratio = lengths.max(axis=0) / lengths.min(axis=0)
         return self.least(members, ratio, turns, self._angle(members), [np.log(high / low)])
 
-    def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
+    def factor(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> FloatArray:
         low, high = self._scales(members)
-        factor: FloatArray = np.minimum(np.maximum(wish, low), high)
+        factor: FloatArray = np.minimum(np.maximum(preferred, low), high)
         return factor
 
-    def diagonals(self, members: Members) -> FloatArray:
+    def diagonals(self, members: StrokeLinkages) -> FloatArray:
         return diagonals(members)
 
-    def put(self, members: Members, factor: FloatArray) -> ComplexArray:
+    def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
         ground = Ground.of(self.wanted)
         pivots = []
         for k, angle in enumerate(self._angle(members).tolist()):
@@ -55,21 +55,21 @@ class RockerPlaces(Places):
             pivots.append(ground.pivots(r1, towards))
         return np.array(pivots, dtype=np.complex128).reshape(-1, 2)
 
-    def put_anywhere(self, members: Members, room: Box, rng: np.random.Generator) -> ComplexArray:
+    def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
         ground, size = Ground.of(self.wanted), self.task.size
         low, high = self._scales(members)
         low, high = np.maximum(low, np.minimum(size / 30, high)), np.minimum(high, np.maximum(30 * size, low))
         r1 = members.lengths[:, 0] * np.exp(rng.uniform(np.log(low), np.log(np.maximum(high, low))))
-        wish, fixed = rng.uniform(-np.pi, np.pi, len(r1)), self._angle(members)
+        preferred, fixed = rng.uniform(-np.pi, np.pi, len(r1)), self._angle(members)
         share = rng.uniform(0, 1, (len(r1), 2))
         pivots = []
         for k, angle in enumerate(fixed.tolist()):
-            towards = ground.direction(float(r1[k]), float(wish[k])) if np.isnan(angle) else angle
+            towards = ground.direction(float(r1[k]), float(preferred[k])) if np.isnan(angle) else angle
             pivots.append(ground.pivots(float(r1[k]), towards, share[k], room))
         return np.array(pivots, dtype=np.complex128).reshape(-1, 2)
 
     def moving(
-        self, members: Members, points: ComplexArray
+        self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         o2, o4 = points.T[..., None]
         _, r2, r3, r4 = (members.lengths / members.lengths[:, :1]).T[..., None] * np.abs(o4 - o2)
@@ -91,11 +91,11 @@ class RockerPlaces(Places):
         cosines = [(r3**2 + r4**2 - end**2) / (2 * r3 * r4) for end in (r1 - r2, r1 + r2)]
         return float(np.arccos(max(map(abs, cosines))))
 
-    def _scales(self, members: Members) -> FloatArray:
+    def _scales(self, members: StrokeLinkages) -> FloatArray:
         ground = Ground.of(self.wanted).lengths(self._angle(members))
         return scales(members.lengths, self.wanted.link_lengths, ground)
 
-    def _angle(self, members: Members) -> FloatArray:
+    def _angle(self, members: StrokeLinkages) -> FloatArray:
         """Direction of O2O4 that the limits fix, rad; NaN where they do not; shape (n,)."""
         start, fixed = self.wanted.theta2_start_deg, self.wanted.angle_of("ground_angle_deg")
         if start is not None:
