@@ -1,4 +1,4 @@
-"""Make the data of `eight_points` anew, a file a kind in synth/data: all solutions for general points.
+"""Make the data of sliders through eight points anew, a file a kind in synth/data: all for general points.
 
 Takes some minutes. From another seed come other points, and as many solutions.
 """
@@ -10,8 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from grashof.synth.theory.eight_points import FAMILIES, general_problem
-from grashof.synth.theory.monodromy import collect
+from grashof.synth.theory.point_families import INVERTED_SLIDER_CRANKS, SLIDER_CRANKS
+from grashof.synth.theory.solutions import collect, general_problem
+
+FAMILIES = {family.name: family for family in (SLIDER_CRANKS, INVERTED_SLIDER_CRANKS)}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -20,7 +22,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", choices=FAMILIES, help="this kind alone")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--patience", type=int, default=6, help="so many loops without a new one end it")
+    parser.add_argument(
+        "--patience", type=int, default=6, help="consecutive loops without a new one that end it"
+    )
     options = parser.parse_args(argv)
     for name, family in FAMILIES.items():
         if options.only not in (None, name):
@@ -28,9 +32,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         rng = np.random.default_rng(options.seed)
         displacements, first = general_problem(family, rng)
         solutions = collect(
-            displacements, first, rng,
-            most=10**6, patience=options.patience, progress=lambda known: print(known, flush=True),
-            system=family.system, distinct=family.distinct,
+            family, displacements, first, rng,
+            patience=options.patience, progress=lambda known: print(known, flush=True),
         )  # fmt: skip
         np.savez_compressed(
             options.folder / f"{name}.npz",

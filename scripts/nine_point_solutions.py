@@ -1,4 +1,4 @@
-"""Make synth/data/nine_points.npz anew: all solutions of the nine-point problem for general points.
+"""Make synth/data/four-bar.npz anew: all solutions of the nine-point problem for general points.
 
 Takes some minutes. From another seed come other points, and as many solutions.
 """
@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from grashof.synth.theory.monodromy import collect, general_problem
+from grashof.synth.theory.point_families import FOUR_BARS
+from grashof.synth.theory.solutions import collect, general_problem
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -20,9 +21,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(argv)
     rng = np.random.default_rng(options.seed)
-    displacements, first = general_problem(rng)
-    solutions = collect(displacements, first, rng, progress=lambda known: print(known, flush=True))
-    np.savez_compressed(options.file, displacements=displacements, solutions=solutions)
+    displacements, first = general_problem(FOUR_BARS, rng)
+    solutions = collect(
+        FOUR_BARS, displacements, first, rng, FOUR_BARS.count, progress=lambda known: print(known, flush=True)
+    )
+    refined = FOUR_BARS.refined(solutions, displacements).astype(np.complex64)
+    np.savez_compressed(options.file, displacements=displacements, solutions=refined)
     return 0
 
 

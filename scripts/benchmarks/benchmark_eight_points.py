@@ -21,8 +21,8 @@ from grashof.synth.theory.eight_point_linkages import (
     inverted_slider_cranks_through,
     slider_cranks_through,
 )
-from grashof.synth.theory.eight_points import FAMILIES
 from grashof.synth.theory.homotopy import follow
+from grashof.synth.theory.point_families import FAMILIES
 
 THROUGH: dict[str, Callable[..., Through[Any]]] = {
     "slider-crank": slider_cranks_through,
@@ -113,7 +113,7 @@ def measure(kind: str, number: int) -> tuple[Through[Any], float, float]:
 def main(argv: Sequence[str] | None = None) -> int:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--kind", choices=FAMILIES, default="slider-crank")
+    parser.add_argument("--kind", choices=("slider-crank", "inverted-slider-crank"), default="slider-crank")
     parser.add_argument("--count", type=int, default=20)
     options = parser.parse_args(argv)
     family, seconds, shares, recovered = FAMILIES[options.kind], [], [], 0

@@ -26,8 +26,8 @@ from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.selection import starts_of
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
-from grashof.synth.theory.eight_points import SLIDER_CRANKS
-from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
+from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+from grashof.synth.theory.point_families import FOUR_BARS, SLIDER_CRANKS
 
 BARREN = 12  # so many rounds on end without a start end the search
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
@@ -106,7 +106,7 @@ class NinePoints(EveryLinkage):
 
     points: ClassVar[int] = 9
     dyad: ClassVar[type[ClosingDyad]] = Bars
-    solutions: ClassVar[int] = TRIPLETS
+    solutions: ClassVar[int] = FOUR_BARS.count
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""

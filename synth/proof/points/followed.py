@@ -18,7 +18,7 @@ from grashof.synth.proof.points.equations import PointEquations, enough_points
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
-from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS
+from grashof.synth.theory.point_families import INVERTED_SLIDER_CRANKS
 
 NEAR = 1e-6  # sizes: a linkage farther from the exact one does not count as enclosed
 ROUNDING = "doubles, enclosures widened for rounding; points as stored"
@@ -65,7 +65,7 @@ def proof_of_points(
     """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
 
     `counts` are of what the search looked at. It was `stopped` or not, and tried all that it found (`whole`)
-    or not, perhaps as it had as many designs as it was required (`enough`).
+    or not, perhaps as it had as many designs as requested (`enough`).
     """
     if not _leaves_no_freedom(scaled):
         return None
@@ -79,7 +79,7 @@ def proof_of_points(
         why = _why_not_all(known, counts, stopped=stopped, whole=whole or enough)
     claim = Claim.REFUSED if why else Claim.FOLLOWED
     said = why or f"{known} of {known} known solutions"
-    said += "; as many designs as were required are listed, not all" * (enough and not why)
+    said += "; as many designs as requested are listed, not all" * (enough and not why)
     return Proof(
         claim=claim,
         mechanism=scaled.kind.mechanism,

@@ -16,7 +16,8 @@ from grashof.synth.proof.points.equations import PointEquations
 from grashof.synth.proof.points.followed import enclosed_designs, proof_of_points, unknowns_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH
-from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
+from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+from grashof.synth.theory.point_families import FOUR_BARS
 
 KINDS = [("four-bar", 9), ("slider-crank", 8), ("inverted-slider-crank", 8)]
 
@@ -147,7 +148,7 @@ def test_different_zeros_have_boxes_apart_and_no_box_of_both_is_accepted() -> No
 def test_all_linkages_through_the_nine_points_of_the_catalogue_are_enclosed() -> None:
     points = load("nine-points").task.positions @ np.array([1, 1j])
     found, solutions = linkages_through(points, np.random.default_rng(0))
-    assert solutions == TRIPLETS
+    assert solutions == FOUR_BARS.count
     o2, o4, a, b, p = found.T
     joints = np.stack([o2 - points[0], a - p, o4 - points[0], b - p], axis=1)
     turns = np.angle(coupler_turns(found, points)[:, 1:])
@@ -201,7 +202,7 @@ def said_of(
 def test_only_a_whole_search_without_losses_is_followed() -> None:
     one = planted("four-bar", 9, 1)
     assert said_of(*one, through=9, followed=1442) == (Claim.FOLLOWED, "1442 of 1442 known solutions")
-    short = "1442 of 1442 known solutions; as many designs as were required are listed, not all"
+    short = "1442 of 1442 known solutions; as many designs as requested are listed, not all"
     assert said_of(*one, through=9, followed=1442, whole=False, enough=True) == (Claim.FOLLOWED, short)
     assert said_of(*one, whole=False, enough=True)[0] is Claim.REFUSED
     lost = (Claim.REFUSED, "of 1442 known solutions 2 were lost on the way")
