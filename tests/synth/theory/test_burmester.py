@@ -30,7 +30,7 @@ exact_poses = st.lists(st.tuples(coordinate, coordinate, angle), min_size=4, max
         for q in poses[:i]
     )
 )
-bounded = settings(max_examples=25)
+bounded = settings(max_examples=12)
 
 
 def displacements(poses: list[tuple[float, float, float]]) -> Displacements:
@@ -116,7 +116,7 @@ def luggage_motion() -> Displacements:
 
 
 @pytest.mark.parametrize("number", range(8))
-@pytest.mark.parametrize("along", [1.0, 1j, complex(np.exp(0.7j))])
+@pytest.mark.parametrize("along", [complex(np.exp(0.7j))])
 def test_published_luggage_dyads_are_found(golden: dict[str, Any], number: int, along: complex) -> None:
     sample = golden["motion4pose"]["family_samples"][number]
     moving, ground = (complex(*map(float, sample[name])) for name in ("A1", "O2"))
@@ -157,7 +157,7 @@ def test_seen_from_the_body_circle_and_centre_points_change_places(
         assert np.abs(again - point).min() < 1e-5 * (1 + abs(point))
 
 
-@settings(max_examples=25)
+@settings(max_examples=8)
 @given(st.integers(0, 10_000))
 def test_polish_makes_dyads_exact_with_a_small_step(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -194,7 +194,7 @@ def dyads_of(task: MotionTask, linkage: FourBar) -> Dyads:
     return Dyads((moving - frame.origin) / frame.scale, (ground - frame.origin) / frame.scale)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 def test_every_planted_dyad_has_traced_neighbours(seed: int) -> None:
     scaled, exact = planted(seed)
     cell = 0.02

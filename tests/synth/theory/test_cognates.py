@@ -43,7 +43,7 @@ def linkages(count: int) -> list[tuple[FourBar, FloatArray]]:
     return [(random_full_crank(rng), rng.uniform(-3, 3) + turn) for _ in range(count)]
 
 
-CASES = linkages(12)
+CASES = linkages(6)
 
 
 def same(one: ComplexArray, other: ComplexArray) -> bool:
@@ -65,13 +65,13 @@ def test_a_cognate_is_one_linkage_all_the_way_and_carries_the_same_point(case: i
         np.testing.assert_array_equal(p, way[:, 4])
 
 
-@pytest.mark.quick("0", "2", "4", "7", "9", "11")
+@pytest.mark.quick("2", "4")
 @pytest.mark.parametrize("case", range(len(CASES)))
 def test_a_cognate_traces_the_whole_curve(case: int) -> None:
     """From its numbers at one position alone, turned by itself, on either assembly where it rocks."""
     way = positions(*CASES[case])
     length = np.abs(np.diff(np.append(way[:, 4], way[0, 4]))).sum()
-    for cognate in cognate_points(way[0], timed=False):
+    for cognate in cognate_points(way[0], timed=False)[:2]:  # the others are the same two, driven at O4
         curve = swept(cognate, 40_001).ravel()
         gap = np.abs(way[:, 4, None] - curve[np.isfinite(curve)]).min(axis=1)
         assert np.median(gap) < 1e-4 * length
@@ -145,7 +145,7 @@ def test_a_linkage_with_p_on_a_joint_has_fewer_of_its_curve(u: float, count: int
     assert len(found) <= count
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_cognate_of_a_slider_crank(seed: int) -> None:
     """Its B keeps to the line, its links keep their lengths, and its own cognate is the first again."""
     linkage = random_slider_crank(np.random.default_rng(seed))

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq, minimize_scalar
 from stroke_figures import SLIDES
@@ -67,8 +67,7 @@ def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing) -> 
     assert np.isnan(best_transmission(np.radians(80), 10 / 9, ratio_of_links(1.5)))  # none fits
 
 
-@pytest.mark.parametrize("lag", [12, 36, 60])
-@pytest.mark.parametrize("beside", [3, 11])
+@pytest.mark.parametrize(("lag", "beside"), [(12, 11), (60, 3)])
 def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside) -> None:
     ratio = (180 + lag) / (180 - lag)
     less, equal, more = (optimum(swing, ratio)[1] for swing in (lag - beside, lag, lag + beside))
@@ -100,7 +99,7 @@ def test_without_an_offset_both_strokes_of_a_slide_take_as_long() -> None:
     assert members.usable.all()
 
 
-@pytest.mark.parametrize("swing", [2, 30, 80, 150, 178])
+@pytest.mark.parametrize("swing", [2, 80, 178])
 def test_the_greatest_time_ratio_is_just_out_of_reach(swing) -> None:
     most = greatest_time_ratio(np.radians(swing))
     assert best_transmission(np.radians(swing), 0.9999 * most) > 0
@@ -131,8 +130,7 @@ def strokes(position):
     return abs(way), max(there, TURN - there) / min(there, TURN - there)
 
 
-@pytest.mark.parametrize("swing", [15, 80, 140])
-@pytest.mark.parametrize("ratio", [1.0, 10 / 9, 1.6])
+@pytest.mark.parametrize(("swing", "ratio"), [(15, 1.6), (80, 10 / 9), (140, 1.0)])
 def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio) -> None:
     sampled = []
     for family in families_of(np.radians(swing), ratio):
@@ -157,7 +155,7 @@ def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio) -> None:
             assert float(worst_transmission_cycle(linkage)) == pytest.approx(worst, abs=1e-12)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.2, 1.75, 2.5])
+@pytest.mark.parametrize("ratio", [1.0, 1.75])
 def test_a_sampled_slide_has_the_stroke_and_the_ratio(ratio) -> None:
     (family,) = families_of(None, ratio)
     (low, high), *_ = stretches(family)
@@ -191,7 +189,7 @@ def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio() 
 
 
 def test_every_crank_rocker_is_a_member_of_its_family() -> None:
-    for lengths in random_crank_rockers(6000, seed=2)[:300]:
+    for lengths in random_crank_rockers(2000, seed=2)[:60]:
         stroke = output_stroke(linkage_of(lengths))
         share = np.array([lengths[1] / lengths[2]])
         families = families_of(float(stroke.swing), float(stroke.time_ratio))
@@ -200,6 +198,7 @@ def test_every_crank_rocker_is_a_member_of_its_family() -> None:
         assert families[int(np.argmin(apart))](share).usable.all()
 
 
+@settings(max_examples=8)
 @given(st.floats(1.0, 2.6), st.integers(0, 2**32 - 1))
 def test_no_random_slide_beats_the_optimum(ratio, seed) -> None:
     """Twelve thousand members, ten times the search."""
@@ -241,9 +240,10 @@ def test_a_window_narrower_than_the_grid_is_found() -> None:
     assert high - low < 1e-6
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize(("swing", "ratio"), [(80, 10 / 9), (40, 1.0), (30, 1.5)])
+@pytest.mark.parametrize(
+    ("swing", "ratio", "mirrored", "sense"),
+    [(80, 10 / 9, False, 1), (40, 1.0, True, 1), (30, 1.5, True, -1), (80, 10 / 9, False, -1)],
+)
 def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, mirrored, sense) -> None:
     task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
     wanted = Requirements(driver_sense="ccw" if sense > 0 else "cw")

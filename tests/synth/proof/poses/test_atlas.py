@@ -33,6 +33,7 @@ def atlas(problem: Problem) -> Atlas:
     return made
 
 
+@pytest.mark.quick("luggage", "0")
 @pytest.mark.parametrize("problem", [load("luggage"), *PLANTED], ids=["luggage", "0", "3", "7"])
 def test_linkages_of_another_search_lie_in_regions(problem: Problem) -> None:
     scaled, made = ScaledProblem.of(problem), atlas(problem)
@@ -98,8 +99,8 @@ def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: 
     assert loci.transmission.max() <= several.best.values["transmission_min_cycle"] + 1e-3
 
 
-def test_seed_and_workers_change_nothing(several: Result) -> None:
-    again = synthesize(PLANTED[2], seed=7, workers=2)
+def test_the_seed_changes_nothing(several: Result) -> None:
+    again = synthesize(PLANTED[2], seed=7)
     assert [one.id for one in again.candidates] == [one.id for one in several.candidates]
 
 

@@ -88,10 +88,8 @@ def test_limits_of_no_width_are_met_by_designs() -> None:
         assert made.pairs < 10_000
 
 
-MORE = [pytest.param(seed, marks=pytest.mark.study) for seed in range(12, 200)]
-
-
-@pytest.mark.parametrize("seed", [*range(12), *MORE])
+@pytest.mark.quick("0", "1", "2", "3")
+@pytest.mark.parametrize("seed", range(200))
 def test_limits_that_just_hold_a_linkage_have_it(seed: int) -> None:
     task, lengths, boxes = planted_limits(seed, 4)
     which = {0: lengths, 1: boxes, 2: {**lengths, **boxes}}[seed % 3]
@@ -107,7 +105,7 @@ def test_none_is_proven_where_a_length_is_out_of_reach() -> None:
     assert np.degrees(made.upper) == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize("at_least", [28.0, 27.35])
+@pytest.mark.parametrize("at_least", [27.35])
 def test_more_than_the_best_is_proven_to_be_impossible(at_least: float) -> None:
     demanded = prove(luggage(transmission_min_deg=at_least))
     for proof in (prove(load("luggage"), at_least=at_least), demanded):
@@ -123,7 +121,7 @@ def test_a_design_decides_that_so_much_is_possible() -> None:
 
 def test_a_budget_leaves_a_bound_that_holds() -> None:
     whole = bounds(luggage())
-    for most in (1, 1000, 2000, 2800):
+    for most in (1, 2800):
         made = bounds(luggage(), most_pairs=most)
         assert not made.closed
         assert made.why == f"the budget of {most} pairs ended"
@@ -133,7 +131,7 @@ def test_a_budget_leaves_a_bound_that_holds() -> None:
 
 def test_a_search_that_is_stopped_leaves_a_bound_that_holds() -> None:
     best = bounds(luggage()).lower
-    for most in (0, 1, 3, 5):
+    for most in (0, 3):
         required = count()
         with stopping(lambda: next(required) >= most):  # noqa: B023  (called within the loop)
             made = bounds(luggage())
@@ -189,7 +187,7 @@ def test_an_angle_or_a_gap_that_cannot_be_is_refused(name: str, value: float) ->
         prove(load("luggage"), **{name: value})
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1e6])
+@pytest.mark.parametrize("scale", [1e6])
 def test_scale_and_place_change_nothing(scale: float) -> None:
     task = load("luggage").task
     assert isinstance(task, MotionTask)

@@ -137,8 +137,7 @@ def agree(swing: float, ratio: float, ways: int) -> None:
     assert best >= found.lower - np.radians(0.005)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.02, 1.25, 1.5])
-@pytest.mark.parametrize("swing", [20.0, 55.0, 90.0, 120.0])
+@pytest.mark.parametrize(("swing", "ratio"), [(20.0, 1.25), (55.0, 1.0), (90.0, 1.5), (120.0, 1.02)])
 def test_no_crank_that_is_turned_exceeds_the_bound_and_one_reaches_it(swing: float, ratio: float) -> None:
     agree(swing, ratio, ways=4000)
 
@@ -205,7 +204,7 @@ def test_a_cover_that_stays_open_is_bounded_by_what_is_left() -> None:
 
 
 @KINDS
-@pytest.mark.parametrize("count", [8, pytest.param(300, marks=[pytest.mark.slow, pytest.mark.study])])
+@pytest.mark.parametrize("count", [4, pytest.param(300, marks=[pytest.mark.slow, pytest.mark.study])])
 def test_no_linkage_is_lost(kind: type[Linkage], count: int) -> None:
     """Under limits that just hold it, and with its own transmission angle as what counts."""
     for seed in range(count):
@@ -220,7 +219,7 @@ def test_no_linkage_is_lost(kind: type[Linkage], count: int) -> None:
 @KINDS
 def test_limits_that_a_linkage_misses_by_little_leave_it_out(kind: type[Linkage]) -> None:
     """Its longest link just too long for the others, or it turns with just too little margin."""
-    for seed in range(8):
+    for seed in range(3):
         linkage = planted(kind, seed)
         lengths = linkage.lengths
         number = float(lengths.max() / lengths.min())
@@ -240,7 +239,7 @@ def test_limits_that_a_linkage_misses_by_little_leave_it_out(kind: type[Linkage]
 @pytest.mark.parametrize("swing", [None, 15.0, 80.0, 140.0])
 def test_a_best_that_is_asked_for_exists_and_a_little_more_does_not(swing: float | None) -> None:
     turned = None if swing is None else float(np.radians(swing))
-    for ratio in (1.07, 1.4, 2.2):
+    for ratio in (1.07, 2.2):
         best = best_transmission(turned, ratio)
         limits = StrokeLimits(ANY, 1e6, 0.0)
         families = [slider_cranks(1.0, ratio, limits)] if turned is None else rockers(turned, ratio, limits)
@@ -252,7 +251,7 @@ def test_a_best_that_is_asked_for_exists_and_a_little_more_does_not(swing: float
 
 @KINDS
 def test_pieces_hold_what_their_members_transmit_and_how_that_changes(kind: type[Linkage]) -> None:
-    for seed in range(40):
+    for seed in range(12):
         linkage = planted(kind, seed)
         own = float(np.cos(worst_transmission_cycle(linkage)))
         r2 = float(linkage.r2)

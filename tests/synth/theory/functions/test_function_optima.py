@@ -56,7 +56,7 @@ def test_a_start_in_a_dead_position_ends_well(start: Generators, lengths: int, g
     assert not np.abs(slopes).max() < 1e12
     found = refined(aim, start)
     assert np.isfinite(found.error)
-    assert aim.score(found.made) <= aim.score(start)
+    assert aim.score(found.generator) <= aim.score(start)
     if np.isnan(slopes).any():
         assert found.steps == 0
         assert found.missed > 0
