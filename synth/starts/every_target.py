@@ -80,7 +80,7 @@ def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArr
 
 
 def _with_angles(target: SearchTargets, batch: Batch, places: int) -> Batch:
-    """Linkages with driver angles in place of the gaps between them, before so many columns of places."""
+    """Linkages with driver angles in place of the gaps between them, before `places` columns of places."""
     inner, last = np.split(batch.unknowns, [batch.unknowns.shape[1] - places], axis=1)
     angles = Loop.of(target, replace(batch, unknowns=inner)).theta2
     return replace(batch, unknowns=np.concatenate([inner[:, :3], angles, last], axis=1))
@@ -194,7 +194,7 @@ def _weights(own: FloatArray) -> FloatArray:
 
 
 def _moved(target: SearchTargets, batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
-    """Driver angles after a step (n, N), in order where that is asked."""
+    """Driver angles after a step (n, N), in order where that is required."""
     sense = batch.direction[:, None]
     angles: FloatArray = batch.unknowns[:, 3 : 3 + step.shape[1]]
     if target.jumbled:

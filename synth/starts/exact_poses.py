@@ -92,7 +92,7 @@ class ExactPoses:
         return "there are no other starts" if self.freedom else "the poses leave no freedom"
 
     def refuse(self) -> None:
-        """Raise `ProblemError` when two of the poses are equal: fewer are asked for then."""
+        """Raise `ProblemError` when two of the poses are equal: fewer are required then."""
         equal = first_equal(self.scaled.targets, self.motion.rotation)
         if equal is not None:
             i, j = equal
@@ -157,7 +157,7 @@ class DyadPairs(ExactPoses, ABC):
         """Dyads that meet the poses."""
 
     def pairs(self, dyads: Dyads, most: int | None = None) -> Screened:
-        """Pairs that meet all requirements but, perhaps, the user's own constraints; of so many at most."""
+        """Pairs that meet all requirements but, perhaps, the user's constraints; of at most `most`."""
         scaled = self.scaled
         most = most or (SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS)
         dyads = with_stated_joints(scaled, dyads)
@@ -199,7 +199,7 @@ class FewPoses(DyadPairs):
         return Round(starts[:QUICK_STARTS], {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
-        """A round of dyads; where these are samples, of two or three poses, the search for points goes on."""
+        """A round of dyads; where these are samples, of two or three poses, the search for points follows."""
         if number:
             last = SEARCHES if len(self.scaled.targets) < 4 else 0
             return searched_round(self.scaled, enough, rng) if number <= last else None

@@ -17,7 +17,7 @@ MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 @dataclass(frozen=True, slots=True)
 class ExactTargets:
-    """What has to be met exactly, at N targets."""
+    """N targets to be met exactly."""
 
     points: ComplexArray  # (N,), sizes
     has_point: BoolArray  # (N,)
@@ -131,7 +131,7 @@ def _eliminated(jacobian: FloatArray, residual: FloatArray, targets: ExactTarget
     share = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)
 
     def along(rows: FloatArray) -> FloatArray:
-        """What of each column the driver angles can do, shape (N, columns)."""
+        """The part of each column that the driver angles can do, shape (N, columns)."""
         columns = [np.bincount(target, own * column, len(square)) * share for column in rows.T]
         return np.stack(columns, axis=1)
 

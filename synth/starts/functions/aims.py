@@ -1,4 +1,4 @@
-"""What function generators are searched for, in each sense, and how they become linkages."""
+"""The aims of a search for function generators, in each sense, and generators as linkages."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from grashof.synth.theory.functions.output import Generators
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
-INSIDE = 4e-8  # by so much limits are kept, so that rounding misses none
+INSIDE = 4e-8  # margin by which limits are kept, so that rounding misses none
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class FunctionAims:
     wanted: Requirements  # resolved
     limits: ShapeLimits  # of drivers that turn counter-clockwise
     sizes: dict[str, Limits]  # limits of lengths, by name
-    unit: float  # of outputs: 1 rad, or the whole travel
+    unit: float  # of outputs: 1 rad, or the full travel
     exact: bool
 
     @classmethod
@@ -76,7 +76,7 @@ class FunctionAims:
 
     @property
     def kinds(self) -> str:
-        """What linkages of its kind are called."""
+        """The name of linkages of its kind, in the plural."""
         return f"{self.problem.mechanism[0].replace('inverted-', 'inverted ')}s"
 
     @property

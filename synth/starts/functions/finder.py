@@ -42,17 +42,17 @@ class Functions(DesignFinder):
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
-        """An output is asked for."""
+        """Tasks with an output."""
         return bool(scaled.problem.task.has_output.any())
 
     @cached_property
     def aims(self) -> FunctionAims:
-        """What is searched for."""
+        """The aims of the search."""
         return FunctionAims.of(self.scaled)
 
     @property
     def exhausted(self) -> str:
-        """Why there are no others."""
+        """Why the list has ended."""
         if self.aims.obstacle:
             return self.aims.obstacle
         if not self.aims.exact:
@@ -165,9 +165,9 @@ class Functions(DesignFinder):
         known = KNOWN if self.scaled.own_objective is None else set[str]()
         return all(goal.key in known for goal, _ in self.scaled.problem.goals)
 
-    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
         """Of exact ones the few most promising; of least errors those at every transmission angle."""
-        del asked, key
+        del required, key
         numbers = range(self.rounds_a_pass)
         batch = [self.round(number, CLOSE, rng, 1) for number in numbers]
         return [each for found in batch if found is not None for each in found.starts]

@@ -21,11 +21,8 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
-FIRST, SPARSE, QUICK_STEPS = (
-    3,
-    16,
-    12,
-)  # of a quick pass: starts tried, one of so many fitted, in so many steps
+# Of a quick pass: starts tried, the stride of those fitted, and their steps.
+FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
 BEST = 2  # of the ends at a transmission angle that a choice is offered at
 HOPELESS = 50.0  # times the least error: no further
 CELL = 0.04  # of optima: closer ones are alike
@@ -72,7 +69,7 @@ class Optima:
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
 
     def aim(self) -> Aim:
-        """What is made least."""
+        """The error to be made least."""
         greatest, most = self.aims.task.norm == "max", self.aims.greatest_error
         desired = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
         return Aim(desired, self.limits.of, greatest=greatest, held=self.first is not None, band=most)

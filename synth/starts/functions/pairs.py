@@ -176,7 +176,7 @@ def _output_at(batch: Generators, before: float, turned: float) -> FloatArray:
 
 
 def expected_score(aims: FunctionAims, batch: Generators, sense: int) -> FloatArray:
-    """What the objective makes of generators, as far as it is known here, shape (M,); greater is better."""
+    """Score of generators by the objective, as far as it is known here, shape (M,)."""
     score = np.zeros(len(batch))
     for goal, weight in aims.problem.goals:
         value = _known(aims, goal.key, batch, sense)

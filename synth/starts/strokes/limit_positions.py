@@ -10,7 +10,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 
 from grashof.problems import Box, Requirements, Task
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
@@ -18,11 +18,11 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.starts.design_finder import DesignFinder
-from grashof.synth.starts.strokes.member_choice import apart, unbeaten
 from grashof.synth.starts.strokes.rocker_kind import RockerKind
 from grashof.synth.starts.strokes.shaper_kind import ShaperKind
 from grashof.synth.starts.strokes.slider_kind import SliderKind
 from grashof.synth.starts.strokes.stroke_kind import StrokeKind
+from grashof.synth.theory.distinct import DISTINCT, pick_apart
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
@@ -30,8 +30,8 @@ _SAMPLES = 400  # members of a stretch that are looked at
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
-_MANY = 20  # members to choose the closest from, where the families do not tell
-_MISSING = 4  # of these are kept though they miss something, to tell what it is
+_MANY = 20  # members to choose the closest from, where the families do not decide
+_MISSING = 4  # of these are kept though they miss something, to report it
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
 _Positions: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
@@ -53,7 +53,7 @@ class LimitPositions(DesignFinder):
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
-        """Swing and time ratio are asked for."""
+        """Tasks with a swing or stroke and a time ratio."""
         return scaled.problem.task.at_limits
 
     @property
@@ -63,7 +63,7 @@ class LimitPositions(DesignFinder):
 
     @cached_property
     def stroke_kind(self) -> StrokeKind:
-        """What differs between kinds of linkage."""
+        """Families and places of this kind of linkage."""
         return stroke_kind_of(self.scaled.kind)(self.task, self.wanted)
 
     @property
@@ -73,7 +73,7 @@ class LimitPositions(DesignFinder):
 
     @property
     def task(self) -> Task:
-        """What is asked."""
+        """The task of the problem."""
         return self.scaled.problem.task
 
     @property
@@ -83,7 +83,7 @@ class LimitPositions(DesignFinder):
 
     @property
     def elsewhere(self) -> bool:
-        """Whether anything is asked besides lengths, pivots and transmission: more places are tried then."""
+        """Whether more than lengths, pivots and transmission is limited: more places are tried then."""
         beyond = set(self.wanted.limited) - self.stroke_kind.kept
         return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
 
@@ -104,15 +104,15 @@ class LimitPositions(DesignFinder):
         """The members that miss the limits by least."""
         return self._closest([(family, mirrored, stretches(family)) for family, mirrored in self.kinds])
 
-    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
-        """Of the members that keep these limits, those that miss by least what else is asked, or many."""
-        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(asked), rng)
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
+        """Of the members that keep these limits, those that miss the additional one by least, or many."""
+        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(required), rng)
 
-    def _closest_to(self, asked: LimitPositions, rng: np.random.Generator) -> list[Start]:
+    def _closest_to(self, required: LimitPositions, rng: np.random.Generator) -> list[Start]:
         starts = list[Start]()
-        if asked.elsewhere:
+        if required.elsewhere:
             starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
-        return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
+        return starts + required._closest(self._stretches) + required._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""
@@ -174,17 +174,17 @@ class LimitPositions(DesignFinder):
         return best + self._spread(groups, round(_SPARE * enough))
 
     def _spread(self, groups: list[tuple[StrokeLinkages, bool]], most: int) -> list[Start]:
-        """So many members at most: of those that no other beats in size and transmission, then of all."""
+        """At most `most` members: of those that no other beats in size and transmission, then of all."""
         if not groups or not most:
             return []
         factor = [self._factor(*group) for group in groups]
-        whole = self.stroke_kind.diagonals
-        size = np.concatenate([f * whole(found) for f, (found, _) in zip(factor, groups, strict=True)])
+        diagonals = self.stroke_kind.diagonals
+        size = np.concatenate([f * diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)])
         angle = np.concatenate([found.transmission for found, _ in groups])
         lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
-        front = unbeaten(angle, size)
+        front = _unbeaten(angle, size)
         score = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
-        picked = apart(np.concatenate(lengths), score, most)
+        picked = _apart(np.concatenate(lengths), score, most)
         number = np.concatenate([np.full(len(found.share), k) for k, (found, _) in enumerate(groups)])
         begin = np.concatenate([[0], np.cumsum([len(found.share) for found, _ in groups])])
         starts = []
@@ -243,7 +243,7 @@ class LimitPositions(DesignFinder):
 
     @property
     def _room(self) -> Box:
-        """Where O2 is put that may be anywhere: about the places that are asked for."""
+        """Where an unbounded O2 is put: about the required places."""
         wanted = self.wanted
         boxes = [box for box in (wanted.a, wanted.b, wanted.o4) if box is not None]
         sides = []
@@ -305,3 +305,23 @@ def _best(
             values = of_share(tried)
             best = int(np.argmax(values))
             yield float(values[best]), family(tried[[best]]), mirrored
+
+
+def _unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
+    """Which linkages (n,) no other one beats in transmission and size."""
+    order = np.lexsort((size, -angle))
+    least = np.minimum.accumulate(size[order])
+    best = np.zeros(len(angle), dtype=bool)
+    best[order] = size[order] <= least
+    return best
+
+
+def _apart(lengths: FloatArray, score: FloatArray, most: int) -> IntArray:
+    """Indices of at most `most` lengths (n, 4), as far apart as leaves that many, best first."""
+    worth = np.flatnonzero(np.isfinite(score))  # without those of score -inf
+    signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
+    for least in (0.1, 0.05, 0.025, DISTINCT):
+        picked = pick_apart(signatures, score[worth], least, most)
+        if len(picked) >= most:
+            break
+    return worth[picked]

@@ -11,12 +11,10 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.strokes.placing import Ground, scales
-from grashof.synth.starts.strokes.rocker_kind import RockerKind
-from grashof.synth.starts.strokes.stroke_kind import KEPT
+from grashof.synth.starts.strokes.rocker_kind import Ground, RockerKind, scales
+from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, across
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, crank_shapers
 
-_POSITIONS = 73  # of a turn, for the size
 _LEAST = 1e-30  # scale
 
 
@@ -46,12 +44,11 @@ class ShaperKind(RockerKind):
 
     def diagonals(self, members: StrokeLinkages) -> FloatArray:
         _, r2, offset = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
+        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
         places = np.concatenate(
             [a, a + _along_rod(1.0, a, offset), np.tile([0, 1], (len(members), 1))], axis=1
         )
-        across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
-        return across
+        return across(places)
 
     def moving(
         self, members: StrokeLinkages, points: ComplexArray

@@ -12,13 +12,12 @@ from grashof.problems import Box
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.strokes.stroke_kind import KEPT, StrokeKind
+from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, StrokeKind, across
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, lag_of, slider_cranks
 
 _DIRECTIONS = 72  # of a slide that may have any, tried at first
 _CLOSER, _STEPS = 3, 8  # times, by so much
 _NEARLY = 0.05  # strokes
-_POSITIONS = 73  # of a turn, for the size
 _ROUNDING = 1e-12  # strokes
 _ONE_STROKE = 1e-12  # rad: strokes that differ by less take as long
 
@@ -62,10 +61,8 @@ class SliderKind(StrokeKind):
 
     def diagonals(self, members: StrokeLinkages) -> FloatArray:
         r2, r3, offset = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
-        places = np.concatenate([a, _on_slide(a, r3, offset), np.zeros_like(a[:, :1])], axis=1)
-        across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
-        return across
+        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
+        return across(np.concatenate([a, _on_slide(a, r3, offset), np.zeros_like(a[:, :1])], axis=1))
 
     def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
         angle = self._angle(members)

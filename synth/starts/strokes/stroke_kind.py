@@ -1,4 +1,4 @@
-"""What a kind of linkage is to the search by limit positions: its families, and where its members lie."""
+"""Kinds of linkage in the search by limit positions: families, and places of their members."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages
 
+POSITIONS = 73  # of a turn, for the size
 # Fields that every kind keeps by itself.
 KEPT = frozenset({
     "transmission_min_deg", "link_length", "r2", "r3", "link_ratio_max", "o2", "theta2_start_deg",
@@ -33,7 +34,9 @@ class StrokeKind(ABC):
     wanted: Requirements  # resolved, in the problem's unit
 
     what: ClassVar[str]  # the linkages, in words
-    advised: ClassVar[str] = ""  # a stroke whose best transmission the time ratio tells, in a word
+    advised: ClassVar[str] = (
+        ""  # a word for the stroke, where the time ratio determines its best transmission
+    )
     dyad: ClassVar[type[ClosingDyad]]
     line: ClassVar[str] = "ground_angle_deg"  # the field that turns the ground line, or the slide
     kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
@@ -46,7 +49,7 @@ class StrokeKind(ABC):
 
     @abstractmethod
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
-        """The families, and whether their mirror images are meant; both where limits tell them apart.
+        """The families, and whether their mirror images are meant; both where limits distinguish them.
 
         `elsewhere`: places decide that the families do not know of.
         """
@@ -118,3 +121,9 @@ class StrokeKind(ABC):
         """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad."""
         first, last = members.first, members.last
         return (last, first) if self.clockwise else (first, last)
+
+
+def across(places: ComplexArray) -> FloatArray:
+    """Diagonals of the boxes around places (n, N), shape (n,)."""
+    diagonal: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
+    return diagonal

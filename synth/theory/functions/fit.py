@@ -15,16 +15,16 @@ from grashof.synth.theory.stopping import raise_if_overdue
 
 Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
 
-HALVES = ((6, 400), (12, 120), (20, 48))  # after so many steps so many of the best go on
+HALVES = ((6, 400), (12, 120), (20, 48))  # after these steps this number of the best continue
 STEPS = 60
-CELL = 0.1  # of those in one such cell, in logarithms of lengths and rad, only the best goes on
+CELL = 0.1  # in logarithms of lengths and rad: of generators in one cell only the best continues
 FLAT = 1e-15  # share of the square below which a step gains nothing
 _TINY = 1e-30
 
 
 @dataclass(frozen=True, slots=True)
 class DesiredOutput:
-    """What a generator has to put out."""
+    """The desired output of a generator."""
 
     turned: FloatArray  # (N,), rad: driver rotations from the first, growing from zero
     output: FloatArray  # (N,): outputs there, but for a constant: angles in rad, or travel
@@ -58,9 +58,9 @@ def fitted(
 ) -> tuple[Generators, FloatArray]:
     """The best of many starts moved to least squares, best first, and their weighted sums of squares.
 
-    Those open somewhere are left out, and of very many only the most promising go on, for `steps` steps at
-    most. What is below zero of `limits` (as `ShapeLimits.of`) counts as an error of `pull` times as much, in
-    rad or in units of the travel, and in the sums. The first driver angle stays if `held`.
+    Those open somewhere are left out, and of very many only the most promising continue, for at most `steps`
+    steps. Negative `limits` (as `ShapeLimits.of`) count as errors of `pull` times as much, in rad or in units
+    of the travel, and in the sums. The first driver angle stays if `held`.
     Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable projection,
     Golub & Pereyra 1973).
     """

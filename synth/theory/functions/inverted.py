@@ -13,10 +13,9 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, L
 from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Block, Closed
 from grashof.synth.loop.vector import Vector
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
-from grashof.synth.theory.many_systems import weighed
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, weighed
 
-_TRIVIAL = 1e-9  # share of a null vector: without O4 it is no linkage
+_TRIVIAL = 1e-9  # share of a null vector: without O4 it is not a linkage
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +144,8 @@ class InvertedSliderCranks(Generators):
         size = float(np.clip(r1 * offset, *(wanted.offset or (-np.inf, np.inf))))
         return InvertedSliderCrank(o2=o2, o4=o4, r2=r1 * share, offset=size, assembly=1)
 
-    def extent(self, span: float, ground: float) -> FloatArray:
-        turned = np.linspace(0.0, span, 13)
-        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 2:] + turned))
-        b = 1 + 1j * self.shape[:, 1:2] * np.exp(1j * self.outputs(turned))
-        every = np.concatenate([a, b, np.zeros((len(self), 1)), np.ones((len(self), 1))], axis=1)
-        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        return extent
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        return np.asarray(1 + 1j * self.shape[:, 1:2] * np.exp(1j * output))
 
 
 def _solved_by_two(rows: FloatArray, right: FloatArray) -> FloatArray:

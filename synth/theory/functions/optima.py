@@ -23,14 +23,14 @@ class Optimum:
     """Where the refinement of one generator ended."""
 
     generator: Generators
-    error: float  # what was made small: root mean square or greatest error at the samples
+    error: float  # root mean square or greatest error at the samples
     missed: float  # by how much the worst limit is missed; zero where all are kept
     steps: int
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """What is made small, and under which limits."""
+    """The error to be made small, and the limits."""
 
     desired: DesiredOutput  # for the greatest error, the samples
     limits: Limits  # as `ShapeLimits.of`
@@ -63,7 +63,7 @@ class Aim:
         return short
 
     def score(self, generator: Generators) -> float:
-        """What falls from step to step; infinite where the loop is open."""
+        """The number that falls from step to step; infinite where the loop is open."""
         value = self.error(generator) + PRICE * self.missed(generator)
         return value if np.isfinite(value) else np.inf
 
@@ -71,7 +71,7 @@ class Aim:
 def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     """The optimum near one start, closed at all samples; it may miss limits.
 
-    Errors and limits are linearised about the best shape so far; within a trust region, what is left is a
+    Errors and limits are linearised about the best shape so far; within a trust region, there remains a
     linear programme for the greatest error or linear least squares under inequalities for the mean square
     (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
     """

@@ -14,8 +14,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
-from grashof.synth.theory.many_systems import solved, weighed
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
 
 _FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels
 _BETWEEN = 2.5  # travels from the first pair on that are tried between two others
@@ -24,7 +23,7 @@ _TRIVIAL = 1e-6  # travels
 
 @dataclass(frozen=True, slots=True)
 class SliderCranks(Generators):
-    """Slider-cranks with O2 = 0 and the slide along the real axis, in units of the travel that is asked.
+    """Slider-cranks with O2 = 0 and the slide along the real axis, in units of the required travel.
 
     The shape has the logarithms of r2 and r3, offset / r3, and the first driver angle; the assembly is +1
     where B lies ahead of A.
@@ -196,10 +195,5 @@ class SliderCranks(Generators):
             assembly=self.assembly[0],
         )  # fmt: skip
 
-    def extent(self, span: float, ground: float) -> FloatArray:
-        turned = np.linspace(0.0, span, 13)
-        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 3:] + turned))
-        b = self.outputs(turned) + 1j * (self.lengths[:, 2] * self.shape[:, 2])[:, None]
-        every = np.concatenate([a, b, np.zeros((len(self), 1))], axis=1)
-        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        return extent
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        return np.asarray(output + 1j * (self.lengths[:, 2] * self.shape[:, 2])[:, None])

@@ -12,7 +12,6 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place, standing, with_places
-from grashof.synth.starts.search_targets import search_targets
 from grashof.synth.starts.thinning import refined, thinned
 
 
@@ -25,7 +24,7 @@ def planted(seed: int, count: int, noise: float, *, path: bool) -> Task:
 
 def begun(task: Task, few: int = 24) -> tuple[SearchTargets, Batch]:
     """Linkages fitted to some of the targets, the best first, with driver angles at all."""
-    target = search_targets(ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=False))))
+    target = SearchTargets.of(ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=False))))
     some, index = thinned(target, few)
     batch = draw(some, 600, np.random.default_rng(0))
     with np.errstate(all="ignore"):
@@ -82,7 +81,7 @@ def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
 def test_limits_are_kept_where_they_weigh_much() -> None:
     task = planted(0, 60, 0.01, path=False)
     problem = Problem(task=task, requirements=Requirements(exact=False, link_ratio_max=1.7))
-    target = search_targets(ScaledProblem.of(problem))
+    target = SearchTargets.of(ScaledProblem.of(problem))
     _, batch = begun(task)
     with np.errstate(all="ignore"):
         batch = with_places(target, batch)

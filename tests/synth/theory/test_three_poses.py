@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.theory.burmester import Displacements, Dyads
-from grashof.synth.theory.three_poses import (
+from grashof.synth.theory.burmester import (
+    Displacements,
+    Dyads,
     bisector_dyads,
     bisector_dyads_of_ground,
     circle_dyads,

@@ -17,8 +17,7 @@ from grashof.synth.proof.poses.charts import BOTH, GROUND, MOVING, Charts, Tiles
 from grashof.synth.proof.poses.sides import Sites, Tiling
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs
-from grashof.synth.theory.burmester import Displacements, Dyads, polish
-from grashof.synth.theory.three_poses import circle_dyads, circle_dyads_of_ground
+from grashof.synth.theory.burmester import Displacements, Dyads, circle_dyads, circle_dyads_of_ground, polish
 
 JUST_BELOW = 1e-7  # rad
 NOWHERE = -1

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.problems import Box, Requirements
-from grashof.synth.starts.strokes.placing import Ground, scales
+from grashof.synth.starts.strokes.rocker_kind import Ground, scales
 
 INF = np.inf
 sides = st.tuples(st.floats(-50, 50), st.floats(0, 40)).map(lambda side: (side[0], side[0] + side[1]))
