@@ -35,12 +35,12 @@ class Proving:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What is known of the greatest transmission angle of all linkages that meet what has forms."""
+    """Bounds of the greatest transmission angle of all linkages that meet the requirements with forms."""
 
     # In rad, of a design that the judge accepts for that, or of a stroke's member; 0 where none is known
     lower: float = 0.0
     upper: float = np.pi / 2  # rad; no design has more
-    closed: bool = False  # whether the bounds have met, or no design is left
+    closed: bool = False  # whether the bounds have met, or no design remains
     found: Candidate | None = field(default=None, compare=False)  # the design with `lower`
     # Pieces of the curve to begin with, that may be drivers, and driven; of a stroke pieces of families
     pieces: tuple[int, int] = (0, 0)
@@ -60,6 +60,6 @@ class Bounds:
 def logged(bounds: Bounds) -> Bounds:
     """The same, after a line in the log."""
     why = f"; {bounds.why}" if bounds.why else ""
-    told = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
-    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
+    numbers = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
+    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *numbers)
     return bounds

@@ -31,7 +31,7 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """What pieces may be, shape (n,)."""
+    """Roles that pieces may have, shape (n,)."""
 
     driver: BoolArray
     driven: BoolArray
@@ -85,7 +85,7 @@ def same_lengths(motion: Curve | Displacements, z: Span, c: Span) -> BoolArray:
 
 
 def roles_of(required: Required, z: Span, c: Span) -> Roles:
-    """What pieces with these moving and ground pivots may be."""
+    """Roles that pieces with these moving and ground pivots may have."""
     sense, ordered = _senses(required.curve, z)
     driver = allowed(required, required.driver, z, c)
     driven = allowed(required, required.driven, z, c)

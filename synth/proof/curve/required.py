@@ -1,4 +1,4 @@
-"""What a problem asks for, as far as there are forms for it; and what there are none for."""
+"""The requirements of a problem that have forms, and those that have none."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _FORMS = (
     "o2", "o4", "a", "b", "a_on_body", "b_on_body",
     "driver_sense", "driver_rotation_deg", "theta2_start_deg", "ground_angle_deg",
 )  # fmt: skip
-_GROUND = {"o2", "o4"}  # what areas kept out have a form for
+_GROUND = {"o2", "o4"}  # pivots for which areas kept out have a form
 _OF_ORDER = ("driver_sense", "driver_rotation_deg")  # these have forms where the poses are met in order
 ANY_LENGTH = (0.0, np.inf)
 
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """What is required of one of the two dyads, in the frame of a `Curve`, in sizes."""
+    """The requirements on one of the two dyads, in the frame of a `Curve`, in sizes."""
 
     length: Limits  # limits of the distance from its ground pivot to its moving pivot
     arm: Limits  # limits of the distance from its moving pivot to P
@@ -59,7 +59,7 @@ class Required:
     driven: Dyad
     loop: LoopLimits
     ordered: bool
-    over_turn: bool  # whether the transmission angle counts over the whole turn
+    over_turn: bool  # whether the transmission angle counts over the full turn
     sense: int  # of the driver; 0 for either
     rotation: Limits  # rad, of the driver from the first pose to the last
     theta2_start: float | None  # rad
@@ -220,7 +220,7 @@ def _transmits_nothing(scaled: ScaledProblem) -> str:
 
 
 def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
-    """Why there is no proof of so many poses; empty where there can be one, None of other problems.
+    """Why there is no proof for this number of poses; empty where there can be one, None of other problems.
 
     >>> from grashof import load
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
@@ -284,5 +284,5 @@ def enclosed(problem: Problem) -> str:
         return "--prove encloses all four-bars through three poses, and bounds what they transmit"
     if refusal(scaled) != "":
         return ""
-    told = "all four-bars through four poses are enclosed"
-    return f"{told}: seed and effort change nothing where that finds enough"
+    why = "all four-bars through four poses are enclosed"
+    return f"{why}: seed and effort change nothing where that finds enough"

@@ -17,7 +17,7 @@ from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 32  # along each side of the disc that is covered
-COARSE = 0.5  # length of first pieces, as a share of what is near
+COARSE = 0.5  # length of first pieces, as a share of the local scale
 TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
 MOST_RECTANGLES = 100_000  # of a cover
 _Steps = TypeVar("_Steps", FloatArray, ComplexArray)
@@ -25,7 +25,7 @@ OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
 
 
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
-    """A proof takes more pieces than it may, or than it can tell apart; states which."""
+    """A proof takes more pieces than it may, or than it can distinguish; states which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +111,9 @@ class Table:
 
     @classmethod
     def covering(cls, required: Required, trail: Trail | None = None) -> Table:
-        """Pieces that hold all dyads that may meet what is required of one.
+        """Pieces that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more rectangles than a cover may have; Stopped if required to stop.
+        TooMany where they take more rectangles than a cover may have; `Stopped` on request.
         """
         active = squares(required)
         parents = np.full(len(active), ROOT)

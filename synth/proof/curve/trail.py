@@ -1,4 +1,4 @@
-"""What a proof looked at, in order: enough to write its certificate from."""
+"""The pieces that a proof examined, in order: enough to write its certificate from."""
 
 from __future__ import annotations
 

@@ -39,9 +39,9 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
             return replace(Certified.nothing(), why=STOPPED)
         made = replace(made, within=int(made.within - _trivial(made)), why=why_open(made, motion))
         found.append(made)
-    whole = replace(found[0], within=sum(one.within for one in found), seconds=perf_counter() - since)
+    joined = replace(found[0], within=sum(one.within for one in found), seconds=perf_counter() - since)
     why = next((one.why for one in found if one.why), "")
-    return replace(whole, complete=not why, why=why)
+    return replace(joined, complete=not why, why=why)
 
 
 def _trivial(dyads: Certified) -> int:

@@ -1,4 +1,4 @@
-"""What is proven of a list of linkages that pass as many points as leave no freedom."""
+"""Proofs about lists of linkages through as many points as leave no freedom."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Enclosed:
 
     @classmethod
     def of(cls, passing: PointEquations, unknowns: FloatArray) -> Enclosed:
-        """Enclose what is near some linkages, given by their unknowns."""
+        """Enclose the solutions near linkages, given by their unknowns."""
         middle, radius = boxes(passing, unknowns)
         within = np.max(np.abs(unknowns - middle) + radius, axis=1, initial=0.0)
         return cls(middle, radius, np.where(within <= NEAR, within, np.nan))
@@ -62,10 +62,10 @@ def proof_of_points(
     whole: bool,
     enough: bool = False,
 ) -> Proof | None:
-    """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
+    """The proof about a list where finitely many linkages pass the points exactly; None for other problems.
 
-    `counts` are of what the search looked at. It was `stopped` or not, and tried all that it found (`whole`)
-    or not, perhaps as it had as many designs as requested (`enough`).
+    `counts` are those of the search. It was `stopped` or not, and tried all that it found (`whole`) or not,
+    perhaps as it had as many designs as requested (`enough`).
     """
     if not _leaves_no_freedom(scaled):
         return None

@@ -30,9 +30,9 @@ class Tilings:
 
     @classmethod
     def covering(cls, required: Required) -> Tilings:
-        """Tiles that hold all dyads that may meet what is required of one.
+        """Tiles that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more tiles than a cover may have; Stopped if required to stop.
+        TooMany where they take more tiles than a cover may have; `Stopped` on request.
         """
         driver, driven = (Tiling.covering(OneSide.of(required, is_driver=each)) for each in (True, False))
         return cls(required, driver, driven)
@@ -97,7 +97,7 @@ class BestFirst(Bracket):
 
 
 def _parted(pairs: Pairs) -> tuple[Pairs, Pairs]:
-    """The pairs with the greatest bounds, so many as are halved together, and the others."""
+    """The pairs with the greatest bounds, which are halved together, and the others."""
     if len(pairs) <= HALVED:
         return pairs, pairs[:0]
     order = np.argpartition(-pairs.bound, HALVED)

@@ -63,7 +63,7 @@ class Bracket:
         left_out: tuple[str, ...],
         why: str,
     ) -> Bounds:
-        """What it has come to since a time, with the pieces that it began with and the best design."""
+        """The result since a time, with the pieces that it began with and the best design."""
         return logged(
             Bounds(
                 lower=self.lower,
@@ -80,7 +80,7 @@ class Bracket:
         )
 
     def bounded(self, blocks: Blocks, bound: Callable[[IntArray, IntArray, float], Pairs]) -> Pairs | None:
-        """What is left of pairs; None where the budget ends, or on request."""
+        """The remaining pairs; None where the budget ends, or on request."""
         nothing = np.zeros(0, dtype=np.int64)
         found = [Pairs(nothing, nothing, np.zeros(0))]
         for one, other in blocks:

@@ -69,7 +69,7 @@ def write(certificate: dict[str, Any], path: Path) -> None:
 
 
 def _stated(scaled: ScaledProblem, required: Required, upper: float) -> dict[str, Any]:
-    """What is proven, in the units of the problem."""
+    """The proven statement, in the units of the problem."""
     task, size = scaled.problem.task, float(scaled.frame.scale)
     wanted = scaled.problem.requirements.resolved(size, scale_free=scaled.frame.scale_free)
     required_of = {name: getattr(wanted, name) for name in _BOXES}

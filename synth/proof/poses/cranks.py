@@ -22,10 +22,10 @@ _NOBODY = Dyad((np.inf, 0.0), ANY_LENGTH, Box(), Box(), Box())  # no dyad of the
 
 @dataclass(frozen=True, slots=True)
 class Cranks:
-    """What is required of the cranks that go with a slide."""
+    """The requirements on cranks that go with a slide."""
 
     required: Required  # of the crank; nothing of the curve is a driven dyad
-    slider: Dyad  # what is required of B
+    slider: Dyad  # the requirements on B
     slide: Slide
     offset: Limits  # sizes, of the slide from O2, positive to the left of its direction
     directions: tuple[float, ...]  # which of the slide's are allowed: 1 for that of `slide`, -1 for the other
@@ -80,7 +80,7 @@ class Cranks:
         return rows, bound[rows]
 
     def _of_lengths(self, r2: Form, r3: Form, offset: Form) -> list[Form]:
-        """What has to be positive by limits of lengths, their ratio and the rule of full rotation."""
+        """Forms that are positive within limits of lengths, their ratio and the rule of full rotation."""
         required, loop, forms = self.required, self.required.loop, list[Form]()
         for length, (low, high) in ((r2, required.driver.length), (r3, loop.lengths[2])):
             forms.append(Form(length.centre - low, length.slopes, length.rest))

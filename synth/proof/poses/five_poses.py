@@ -26,7 +26,7 @@ FIVE = 5
 STOPPED = "it was stopped"
 MOST_RECTANGLES = 300_000
 CLOSE = 0.9  # of the largest box that Krawczyk's test accepts, about
-_NEWTON = 30  # steps from what is left to a root
+_NEWTON = 30  # steps from a remaining box to a root
 _SMALL = 1e-3  # sizes: pieces as short as that are tried for a root of their own
 
 
@@ -55,7 +55,7 @@ class Certified:
 
 
 def certified_poses(scaled: ScaledProblem) -> Certified | None:
-    """All dyads of a problem of five whole poses, met exactly by a four-bar; None of other problems.
+    """All dyads of a problem of five whole poses, met exactly by a four-bar; None for other problems.
 
     The finder has to know each of them: else they are not all.
     """
@@ -90,7 +90,7 @@ def certified_dyads(required: Required, motion: Displacements) -> Certified:
     The curve of `required` is that of the first four poses, and the displacements are seen from its origin. A
     cover of the curve is taken; a piece is dropped where the equation of the fifth pose has no zero on it,
     and settled where it lies in a box in which Krawczyk's test (*Computing* 4, 1969) proves that there is
-    exactly one zero of all four equations. Stopped if required to stop.
+    exactly one zero of all four equations. `Stopped` on request.
     """
     known = _certified(motion, five_pose_dyads(motion))
     active, count = squares(required), 0
@@ -211,7 +211,7 @@ def _newton(motion: Displacements, pieces: Pieces, which: IntArray) -> Dyads:
 
 
 def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate], *, whole: bool) -> Proof:
-    """What certified dyads of five poses prove of listed designs, where the search was whole."""
+    """The proof of listed designs by certified dyads of five poses, where the search was exhaustive."""
     best = best_listed(problem, designs)
     proof = Proof(
         claim=Claim.REFUSED,
@@ -219,7 +219,7 @@ def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate
         lower=best,
         pieces=(dyads.within, dyads.within),
         seconds=round(dyads.seconds, 4),
-        why=dyads.why or ("" if whole else "the search was not whole"),
+        why=dyads.why or ("" if whole else "the search was not exhaustive"),
     )
     if proof.why:
         return proof

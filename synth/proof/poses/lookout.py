@@ -53,7 +53,7 @@ class Lookout:
         return max([self._climbed(found, int(row), least) for row in nearest], default=0.0)
 
     def _climbed(self, found: Screened, row: int, least: float) -> float:
-        """What a solve from a pair comes to."""
+        """The result of a solve from a pair."""
         self._climbs += 1
         start = Start.of_screened(found, row, self.scaled.objective)
         solve = polished_solve(self.scaled, start, solve_by_exchange(self.scaled, start))

@@ -16,7 +16,7 @@ from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 8  # along the longer side of a rectangle that is covered
-COARSE = 0.5  # length of first tiles, as a share of what is near
+COARSE = 0.5  # length of first tiles, as a share of the local scale
 TINY = 2e-4  # sizes: tiles as small as that are not halved for themselves
 ENOUGH = 500  # tiles to begin with, about: those that are too large then are halved where pairs need it
 MOST_TILES = 60_000  # looked at for a side alone
@@ -24,9 +24,9 @@ MOST_TILES = 60_000  # looked at for a side alone
 
 @dataclass(frozen=True, slots=True)
 class OneSide:
-    """What is required of the dyad of one side."""
+    """The requirements on the dyad of one side."""
 
-    required: Required  # the same of both dyads, so far as it is required of one alone
+    required: Required  # the requirements on both dyads, as far as they concern one alone
     is_driver: bool
     charts: Charts
 
@@ -149,9 +149,9 @@ class Sites:
 
 
 def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
-    """Whether no dyad meets what is required of a side; None where that is open after so many tiles.
+    """Whether no dyad meets the requirements on a side; None where that is open at the end of the budget.
 
-    TooMany where nothing bounds the places of its pivots; Stopped if required to stop.
+    TooMany where nothing bounds the places of its pivots; `Stopped` on request.
     """
     active, count = side.tiles, 0
     while len(active):
@@ -182,7 +182,7 @@ class Tiling:
     def covering(cls, side: OneSide) -> Tiling:
         """Tiles that hold all dyads that may meet the requirements; few enough for all pairs of them.
 
-        TooMany where nothing bounds the places of its pivots; Stopped if required to stop.
+        TooMany where nothing bounds the places of its pivots; `Stopped` on request.
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:

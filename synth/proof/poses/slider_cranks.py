@@ -1,7 +1,7 @@
 """Slider-cranks through four whole poses: bounds of the best there is, over pieces of the crank's curve.
 
 Of the body one point alone can slide on a line through all poses, so that B and the slide are known; the
-crank is any dyad of the circle-point curve. What is left has one parameter.
+crank is any dyad of the circle-point curve. One parameter remains.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ FORMS = (
 def bounds_of_slider_cranks(
     scaled: ScaledProblem, proving: Proving, at_least: float | None = None
 ) -> Bounds | None:
-    """Bounds of the best slider-crank through four whole poses; None of other problems.
+    """Bounds of the best slider-crank through four whole poses; None for other problems.
 
     With `at_least`, deg, it only decides whether a design has that much, and ends with the first one.
     """
@@ -88,9 +88,9 @@ def bounds_of_slider_cranks(
 def _suits(scaled: ScaledProblem) -> bool:
     """Whether these are slider-cranks through four whole poses, met exactly, at any time."""
     task = scaled.problem.task
-    whole = scaled.exact and task.is_whole and len(task) == POSES
+    exact = scaled.exact and task.is_whole and len(task) == POSES
     free = not task.is_timed and not (task.closed and task.returns)
-    return scaled.kind.dyad.bars == 1 and whole and free
+    return scaled.kind.dyad.bars == 1 and exact and free
 
 
 def _with_motion(scaled: ScaledProblem) -> ScaledProblem:

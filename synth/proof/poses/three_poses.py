@@ -54,7 +54,7 @@ class _Middles:
 
 
 def sides_of(scaled: ScaledProblem) -> Bounds | None:
-    """A proof that there is no design, as no dyad of one side meets what is required of it; else None.
+    """A proof that there is no design, as no dyad of one side meets its requirements; else None.
 
     The objective does not matter.
     """
@@ -73,7 +73,7 @@ def sides_of(scaled: ScaledProblem) -> Bounds | None:
 
 
 def _required(scaled: ScaledProblem, at_least: float | None = None) -> tuple[Required, tuple[str, ...]]:
-    """What has forms, and what is left out."""
+    """The requirements that have forms, and those that are left out."""
     without = left_out(scaled)
     return Required.of(with_forms(scaled) if without else scaled, at_least), without
 

@@ -19,7 +19,7 @@ _OFF = 1e-14  # rad: more than the rounding of an angle
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """What is known of the greatest transmission angle in families."""
+    """Bounds of the greatest transmission angle in families."""
 
     lower: float = 0.0  # rad, of a member that is allowed and counts; 0 where none is known
     upper: float = np.pi / 2  # rad; no member has more
@@ -34,12 +34,12 @@ def covered(families: Sequence[Family], gap: float, floor: float) -> Cover:
 
     They are brought together up to `gap`, rad; members that transmit less than `floor`, rad, do not count.
     """
-    whole, open_bounds = Cover(), [0.0]
+    cover, open_bounds = Cover(), [0.0]
     for family in families:
-        whole, left = _family(family, whole, gap, floor)
+        cover, left = _family(family, cover, gap, floor)
         open_bounds.append(left)
-    threshold, left = _threshold(whole, gap, floor), max(open_bounds)
-    return replace(whole, upper=float(min(max(threshold, left), np.pi / 2)), closed=bool(left <= threshold))
+    threshold, left = _threshold(cover, gap, floor), max(open_bounds)
+    return replace(cover, upper=float(min(max(threshold, left), np.pi / 2)), closed=bool(left <= threshold))
 
 
 def _threshold(cover: Cover, gap: float, floor: float) -> float:
@@ -47,7 +47,7 @@ def _threshold(cover: Cover, gap: float, floor: float) -> float:
 
 
 def _family(family: Family, cover: Cover, gap: float, floor: float) -> tuple[Cover, float]:
-    """What one more family adds; and the greatest bound of what is left of it, or 0."""
+    """The cover with one more family, and the greatest bound of its open pieces, or 0."""
     low, high = _first(family)
     cover = replace(cover, begun=cover.begun + len(low))
     for level in range(_MOST_LEVELS + 1):
@@ -77,7 +77,7 @@ def _first(family: Family) -> tuple[FloatArray, FloatArray]:
 
 
 def _bounds(members: MemberBounds, from_middle: Range, middle: MemberBounds) -> FloatArray:
-    """What pieces transmit at most, rad; nothing where no member of them is allowed.
+    """The greatest transmission angle of pieces, rad; nothing where no member of them is allowed.
 
     The cosine changes from the middle of a piece by no more than its slope does.
     """
@@ -90,7 +90,7 @@ def _bounds(members: MemberBounds, from_middle: Range, middle: MemberBounds) -> 
 
 
 def _sure(members: MemberBounds) -> FloatArray:
-    """What members transmit at least, rad; nothing where they may be ruled out."""
+    """The least transmission angle of members, rad; nothing where they may be ruled out."""
     allowed = np.ones(members.cosine.low.shape, dtype=bool)
     for some, most in members.conditions:
         allowed &= some.high <= most.low

@@ -1,4 +1,4 @@
-"""All linkages with a swing or a stroke and a time ratio, enclosed: what they transmit and what they miss.
+"""All linkages with a swing or a stroke and a time ratio, enclosed: transmission angles and missed limits.
 
 In the limit positions driver and coupler are in line, B1 and B2 are at r3 + r2 and r3 - r2 from O2, and are
 seen from there under the lag, by which the driver turns more than half a turn in the slow stroke. With
@@ -25,13 +25,13 @@ from grashof.problems.values.arrays import Limits
 from grashof.synth.proof.strokes.ranges import HALF_TURN, ONE, Range, hypotenuse
 
 _TWO = Range.of(2.0)
-# What has to be at most something else.
+# The first of each pair has to be at most the second.
 Conditions: TypeAlias = list[tuple[Range, Range]]
 
 
 @dataclass(frozen=True, slots=True)
 class StrokeLimits:
-    """What is required of linkages by their sizes, with the slack of the judge."""
+    """The requirements on the sizes of linkages, with the slack of the judge."""
 
     lengths: Mapping[str, Limits]  # by their names
     ratio: float  # longest to shortest link at most
@@ -45,7 +45,7 @@ class MemberBounds:
 
     cosine: Range  # of the worst transmission angle over the turn
     slope: Range  # its derivative by the number of the family
-    conditions: Conditions  # what has to be at most something else for members to be allowed
+    conditions: Conditions  # for members to be allowed
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Family:
 def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimits) -> Family:
     """Crank-rockers with a swing (rad) and a time ratio, by r2 / r3.
 
-    `side`, 1 or -1, tells two families apart that differ where the time ratio is not 1: the sense in which
+    `side`, 1 or -1, distinguishes two families that differ where the time ratio is not 1: the sense in which
     link 4 swings in the slow stroke of a driver that turns counter-clockwise.
     """
     half = Range.of(swing) / _TWO
@@ -140,7 +140,7 @@ def _half_lag(time_ratio: float) -> Range:
 
 @dataclass(frozen=True, slots=True)
 class _InLine:
-    """What all linkages have whose driver and coupler are in line in the limit positions."""
+    """Ranges of linkages whose driver and coupler are in line in the limit positions."""
 
     ground: Range  # its length times sin(swing / 2) / r3
     output: Range  # its length times sin(swing / 2) / r3
@@ -184,7 +184,7 @@ def _inside(length: Range, limits: Limits) -> Conditions:
 
 
 def _some_scale(lengths: Mapping[str, Range], limits: Mapping[str, Limits]) -> Conditions:
-    """What lets lengths be inside their limits at some scale: each two of them do."""
+    """Conditions for lengths to be inside their limits at some scale: each two of them are."""
     return [
         (Range.of(least) * other, Range.of(most) * one)
         for name, one in lengths.items()

@@ -1,4 +1,4 @@
-"""What a problem asks of a swing or a stroke, as far as sizes alone tell; and what only places do."""
+"""The requirements on a swing or a stroke that sizes alone decide, and those that places decide."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ def test_a_search_that_is_cut_short_proves_nothing() -> None:
     proof = synthesize(problem, enough=1).proof
     assert proof is not None
     assert proof.claim is Claim.REFUSED
-    assert proof.why == "the search was not whole"
+    assert proof.why == "the search was not exhaustive"
 
 
 def test_equal_poses_and_rotations_are_refused() -> None:
