@@ -174,12 +174,3 @@ def test_no_linkage_is_lost_whose_angles_are_just_within_limits() -> None:
         ):
             descent = followed(luggage(**limits), one, levels=12)
             assert (descent.lost, descent.excluded) == (0, 0), limits
-
-
-@pytest.mark.study
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
-def test_no_linkage_of_many_is_lost_or_bounded_too_low(name: str) -> None:
-    problem = CASES[name]
-    descent = followed(problem, feasible_designs(problem, 8000, seed=1))
-    assert (descent.lost, descent.excluded) == (0, 0)

@@ -53,15 +53,6 @@ def check_tracks(scaled: ScaledProblem, starts: list[Start], error: float) -> No
         assert np.abs(np.diff(start.theta3)).max() < np.pi
 
 
-@pytest.mark.slow
-def test_the_seed_decides() -> None:
-    scaled = setup_of(LINE, link_length=(5, 60))
-    first = first_rounds(scaled, 2)
-    assert first_rounds(scaled, 2) == first
-    assert first[0] != first[1]
-    assert first_rounds(scaled, 1, seed=1)[0] != first[0]
-
-
 def test_a_family_has_feasible_starts_that_are_apart() -> None:
     scaled = setup_of(LINE, link_length=(5, 60), rotatability="crank-rocker")
     (first,) = first_rounds(scaled, 1, enough=20)

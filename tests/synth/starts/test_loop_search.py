@@ -256,10 +256,3 @@ def test_planted_curves_are_found_within_a_few_rounds(points: int, timed: bool) 
         if least < 1e-6:
             break
     assert least < 1e-6
-
-
-def test_a_rounds_draws_follow_the_generator() -> None:
-    target = target_of(KINDS[0])
-    one, other = (draw(target, 20, np.random.default_rng(seed)) for seed in (3, 3))
-    assert one.unknowns.tobytes() == other.unknowns.tobytes()
-    assert draw(target, 20, np.random.default_rng(4)).unknowns.tobytes() != one.unknowns.tobytes()

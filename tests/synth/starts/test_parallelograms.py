@@ -184,12 +184,6 @@ def test_an_empty_list_says_why(kind: str, relaxing_only: Callable[..., None]) -
 
 
 @pytest.mark.slow
-def test_order_may_be_left() -> None:
-    left = synthesize(problem(on_circle([10, 60, 40, 80]), order=False))
-    assert np.degrees(left.best.verdict.transmission_min_task) == pytest.approx(55, abs=1e-3)
-
-
-@pytest.mark.slow
 def test_pivots_that_belong_in_one_small_box_do_not_meet_in_its_corner(
     relaxing_only: Callable[..., None],
 ) -> None:

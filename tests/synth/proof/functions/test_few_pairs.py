@@ -71,14 +71,6 @@ def test_forms_hold_the_ground_pivot_of_every_point(seed: int, half: float) -> N
     assert half > 0.003 or not far.any() or patches.bounded[far].mean() < 0.5
 
 
-def test_quarters_cover_a_square() -> None:
-    motion, rng = motion_of(random_function(0, 3)), np.random.default_rng(0)
-    one = Patches(motion, 20.0, np.array([1.3 - 0.4j]), np.array([0.25]))
-    points = one.middle + 0.25 * (rng.uniform(-1, 1, 200) + 1j * rng.uniform(-1, 1, 200))
-    step = points[:, None] - one.quarters.middle
-    assert np.all(np.any(np.maximum(np.abs(step.real), np.abs(step.imag)) <= one.quarters.half, axis=1))
-
-
 @pytest.mark.quick("task-any-3", "cycle-full-crank-4")
 @pytest.mark.parametrize("count", [3, 4])
 @pytest.mark.parametrize(

@@ -58,10 +58,6 @@ def test_linkages_of_regions_meet_the_requirements() -> None:
     assert best == sorted(best, reverse=True)
 
 
-def test_the_luggage_task_has_a_single_region() -> None:
-    assert atlas(load("luggage")).count == 1
-
-
 @pytest.fixture(scope="module")
 def several() -> Result:
     return synthesize(PLANTED[2])

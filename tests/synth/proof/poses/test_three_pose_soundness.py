@@ -250,17 +250,6 @@ def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     assert nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
 
 
-@pytest.mark.study
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
-def test_no_linkage_of_many_is_lost_or_bounded_too_low(name: str) -> None:
-    for seed in range(1, 5):
-        lost, excluded, _ = followed(
-            CASES[name], feasible_designs(CASES[name], 1000, seed=seed, count=8000), 24
-        )
-        assert (lost, excluded) == (0, 0)
-
-
 def used(span: Span, points: ComplexArray, s: FloatArray) -> FloatArray:
     """Share of the rest of forms that points use."""
     apart: FloatArray = np.abs(points - span.middle - (span.steps * s).sum(axis=0))

@@ -142,13 +142,6 @@ def test_no_crank_that_is_turned_exceeds_the_bound_and_one_reaches_it(swing: flo
     agree(swing, ratio, ways=4000)
 
 
-@pytest.mark.study
-def test_neither_does_any_of_a_finer_grid_with_ten_times_the_effort() -> None:
-    for swing in range(20, 121, 10):
-        for ratio in np.linspace(1, 1.5, 11):
-            agree(float(swing), float(ratio), ways=40_000)
-
-
 def test_the_ratio_of_links_decides_where_both_strokes_take_as_long() -> None:
     found = proven(rockers(np.radians(30), 1.0, StrokeLimits(ANY, ratio=10.0, margin=0.0)))
     assert np.degrees([found.lower, found.upper]) == pytest.approx(73.801, abs=0.0101)
@@ -278,9 +271,3 @@ def test_pieces_hold_what_their_members_transmit_and_how_that_changes(kind: type
                 assert wide.slope.low <= steps.min() + 1e-6
                 assert wide.slope.high >= steps.max() - 1e-6
         assert min(near) < 1e-9
-
-
-def test_a_finer_gap_closes_as_well() -> None:
-    for ratio in (1.0, 1.5, 2.9):
-        found = proven([slider_cranks(1.0, ratio, TWENTY)], gap=np.radians(1e-4))
-        assert found.upper - found.lower <= np.radians(1e-4) * 1.01

@@ -134,23 +134,6 @@ def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
     assert set(np.bincount(which).tolist()) <= ({1} if kind.EXACT == 4 else {1, 3})
 
 
-@pytest.mark.study
-@EVERY
-@pytest.mark.parametrize("count", [50, pytest.param(1000, marks=pytest.mark.slow)])
-def test_a_pair_less_is_always_met_where_a_linkage_meets_them(mechanism: str, count: int) -> None:
-    rng, kind = np.random.default_rng(5), KINDS[mechanism].generators
-    for _ in range(count):
-        _, turned, output = planted(rng, kind.EXACT - 1, mechanism)
-        wide = int(np.argmax(np.diff(turned)))
-        between, tried = (turned[wide] + turned[wide + 1]) / 2, kind.tried_between(400)[0]
-        inputs = np.tile(np.append(turned, between), (len(tried), 1))
-        made, _ = kind.through(inputs, np.column_stack([np.tile(output, (len(tried), 1)), tried]))
-        made = made[made.worst_cosine(float(turned[-1])) < 1]
-        dense = np.unique(np.concatenate([turned, np.linspace(0, turned[-1], 60)]))
-        path = made.outputs(dense)[:, np.searchsorted(dense, turned)]
-        assert np.abs(path - path[:, :1] - output).max(axis=1).min() < 1e-8
-
-
 @EVERY
 def test_given_starts_lead_to_the_linkage_that_has_them(mechanism: str) -> None:
     rng, kind = np.random.default_rng(6), KINDS[mechanism].generators
