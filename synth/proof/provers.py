@@ -14,7 +14,7 @@ from grashof.synth.proof.poses.five_poses import Certified, certified_poses
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
 from grashof.synth.proof.poses.three_poses import bounds_of_three
-from grashof.synth.proof.strokes.bounds import bounds_of_stroke
+from grashof.synth.proof.strokes.cover import bounds_of_stroke
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 _PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_cranks

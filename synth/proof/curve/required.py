@@ -12,8 +12,7 @@ import numpy as np
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.proof.curve.curve import Curve
-from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.curve.curve import Curve, poles
 from grashof.synth.proof.forms.loop import LoopLimits
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements

@@ -12,7 +12,6 @@ from grashof.synth.proof.curve.centres import Centres, centres_of
 from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
 from grashof.synth.proof.curve.pieces import SLENDER, WIDER, Tubes, contracted
 from grashof.synth.proof.curve.required import Required
-from grashof.synth.proof.curve.trail import ROOT, Trail
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import raise_if_stopped
 
@@ -21,7 +20,29 @@ COARSE = 0.5  # length of first pieces, as a share of the local scale
 TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
 MOST_RECTANGLES = 100_000  # of a cover
 _Steps = TypeVar("_Steps", FloatArray, ComplexArray)
+ROOT = -1  # parent of the rectangles that a cover begins with
 OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
+
+
+@dataclass(slots=True)
+class Trail:
+    """Rectangles that a proof examined, by number, and the pairs that it halved: enough for a certificate."""
+
+    rectangles: list[Tubes] = field(default_factory=list)
+    # Numbers of the rectangles that these are halves of
+    parents: list[IntArray] = field(default_factory=list)
+    # Number of the rectangle that each piece of the table is in
+    pieces: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    first: int = 0  # how many of these pieces a proof begins with
+    # Driver and driven pieces of pairs, level by level
+    halved: list[tuple[IntArray, IntArray]] = field(default_factory=list)
+
+    def look(self, rectangles: Tubes, parents: IntArray) -> IntArray:
+        """Note rectangles; their numbers."""
+        begin = sum(map(len, self.parents))
+        self.rectangles.append(rectangles)
+        self.parents.append(parents)
+        return np.arange(begin, begin + len(parents))
 
 
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, IntArray
+from grashof.synth.proof.curve.curve import poles
 from grashof.synth.proof.curve.patches import Patches
-from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Side, Table
 from grashof.synth.proof.forms.forms import Span

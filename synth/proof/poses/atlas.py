@@ -14,6 +14,8 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.start import Round
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.curve.required import POSES, Required, with_forms
 from grashof.synth.proof.curve.table import Table
@@ -22,6 +24,8 @@ from grashof.synth.proof.poses.lookout import screened_pairs
 from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
+from grashof.synth.starts.selection import feasible_starts, scores, starts_of
+from grashof.synth.theory.distinct import best_first
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short
@@ -30,6 +34,9 @@ MOST_PAIRS = 100_000  # bounded for it
 AT_ONCE = 256  # pieces compared with all others
 SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
 NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a region are of none
+MOST_REGIONS = 20  # whose best linkages are begun from
+CLOSER = 0.65  # share of the distance at which enough linkages are found: so the list has the better ones
+SPREAD = 0.6  # of the best transmission angle: linkages above it are spread over
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,3 +206,16 @@ def _first_points(scaled: ScaledProblem, design: Candidate) -> list[complex]:
     linkage, verdict = design.linkage, design.verdict
     state = solve_position(linkage, verdict.theta2[0], verdict.assembly[0])
     return [complex(scaled.frame.inward(np.asarray(x))) for x in (linkage.o2, linkage.o4, state.a, state.b)]
+
+
+def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
+    """Starts from the best linkage of each region, then as from any feasible linkages."""
+    linkages = fully_screened(scaled, atlas.linkages)
+    rows = np.flatnonzero(linkages.feasible)
+    order = rows[best_first(scores(scaled, linkages[rows]))]
+    _, first = np.unique(atlas.region[order], return_index=True)
+    firsts = order[np.sort(first)][:MOST_REGIONS]
+    good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]
+    starts = starts_of(scaled, linkages, firsts)
+    starts += feasible_starts(scaled, linkages[good], enough, peaks=0, closer=CLOSER)
+    return Round(starts, {"feasible finds": len(rows)})

@@ -16,8 +16,7 @@ from grashof.synth.proof.curve.centres import centres_of
 from grashof.synth.proof.curve.dyads import possible_arms, roles_of
 from grashof.synth.proof.curve.pieces import Tubes, contracted
 from grashof.synth.proof.curve.required import Required, with_forms
-from grashof.synth.proof.curve.table import Pieces, Side
-from grashof.synth.proof.curve.trail import Trail
+from grashof.synth.proof.curve.table import Pieces, Side, Trail
 from grashof.synth.proof.poses.pairs import sifted
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.proof.curve.curve import poles
 from grashof.synth.proof.curve.enclosure import Steps, enclosed
 from grashof.synth.proof.curve.pieces import WIDER
-from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements
 

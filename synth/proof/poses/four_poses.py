@@ -8,8 +8,7 @@ import numpy as np
 
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.curve.required import Required, left_out, refusal, with_forms
-from grashof.synth.proof.curve.table import Table, TooMany
-from grashof.synth.proof.curve.trail import Trail
+from grashof.synth.proof.curve.table import Table, TooMany, Trail
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.quantities.scaled_problem import ScaledProblem

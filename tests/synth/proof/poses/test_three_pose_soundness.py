@@ -9,7 +9,7 @@ from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.curve.curve import poles
 from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.best_first import Tilings
