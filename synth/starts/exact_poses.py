@@ -144,7 +144,7 @@ class Parallelograms(ExactPoses):
         return relaxed_starts(self.scaled, self.near(rng))
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Why there is no parallelogram linkage; empty where there may be one."""
+        """Why parallelogram linkages are impossible; empty where they may exist."""
         return parallelogram_obstacle(self.scaled)
 
 

@@ -49,11 +49,11 @@ class Bounds:
     seconds: float = 0.0  # s
     left_out: tuple[str, ...] = ()  # requirements without a form, by their fields
     why: str = ""  # why there are no bounds, or why they have not met; else empty
-    refused: bool = False  # whether there is no proof for such a problem at all
+    refused: bool = False  # whether proofs do not cover such a problem
 
     @property
     def none(self) -> bool:
-        """Whether it is proven that there is no design."""
+        """Whether the absence of designs is proven."""
         return self.closed and not self.lower
 
 

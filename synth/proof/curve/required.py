@@ -219,7 +219,7 @@ def _transmits_nothing(scaled: ScaledProblem) -> str:
 
 
 def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
-    """Why there is no proof for this number of poses; empty where there can be one, None of other problems.
+    """Why there is no proof for this number of poses; empty where there can be one, None for other problems.
 
     >>> from grashof import load
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))

@@ -48,7 +48,7 @@ class Designs:
 
 
 def feasible_designs(problem: Problem, most: int, seed: int = 0) -> Designs:
-    """Linkages that meet a problem, from traced curves; so many at most, drawn at random."""
+    """At most `most` linkages that meet a problem, from traced curves, drawn at random."""
     scaled = ScaledProblem.of(problem)
     motion, body, wanted = scaled.motion, complex(scaled.targets[0]), scaled.wanted
     assert motion is not None

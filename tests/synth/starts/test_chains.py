@@ -1,4 +1,4 @@
-"""Linkages of every mechanism through planted points, poses and pairs, without a word about any of them."""
+"""Linkages of every mechanism through planted points, poses and pairs, by one program for all."""
 
 from typing import Any
 
@@ -52,7 +52,7 @@ def p_of(linkage: Linkage, theta2: FloatArray) -> ComplexArray:
 @pytest.mark.quick("press of a watt-2")
 @pytest.mark.parametrize("name", EVERY)
 def test_nine_planted_points(name: str) -> None:
-    """Some turn fully, and the judge follows the whole curve: it comes to every point."""
+    """Some turn fully, and the judge follows the full curve through every point."""
     count = 5 if name in ONE_LOOP else 6 if name in FOUR_BAR_CURVES else 9
     linkage, theta2 = planted(name, count)
     p = p_of(linkage, theta2)

@@ -1,4 +1,4 @@
-"""Rounds of starts for path generation: reproducible, feasible, on their targets where that is asked."""
+"""Rounds of starts for path generation: reproducible, feasible, on their targets where that is required."""
 
 from collections.abc import Callable
 from itertools import islice

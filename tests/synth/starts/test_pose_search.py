@@ -133,7 +133,7 @@ def test_the_weighted_mean_is_taken_across_the_half_turn() -> None:
 @pytest.mark.parametrize("free", FREE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_angles_have_the_derivatives_of_differences(kind: tuple[str, bool, bool], free: str) -> None:
-    """The rows of the angles have no approximation in them; the gradient is that of the whole cost."""
+    """The rows of the angles have no approximation in them; the gradient is that of the full cost."""
     target = target_of(kind, free)
     batch = draws(target, 40)
     cost, residual, jacobian = fitting(target)(batch)
@@ -191,9 +191,9 @@ def freed(task: MotionTask, places: list[int], angles: list[int]) -> MotionTask:
 def test_planted_motions_are_found_within_a_few_rounds(
     poses: int, places: list[int], angles: list[int]
 ) -> None:
-    whole, _ = planted_motion(np.random.default_rng([52, 0]), poses)
+    task, _ = planted_motion(np.random.default_rng([52, 0]), poses)
     wanted = Requirements(exact=False, link_ratio_max=50.0)
-    scaled = ScaledProblem.of(Problem(task=freed(whole, places, angles), requirements=wanted))
+    scaled = ScaledProblem.of(Problem(task=freed(task, places, angles), requirements=wanted))
     rng = np.random.default_rng(0)
     least = np.inf
     for _ in range(4):

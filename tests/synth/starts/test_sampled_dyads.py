@@ -72,7 +72,7 @@ def test_what_is_stated_is_met_by_theory_before_any_solve(stated: str, seed: int
 
 
 def test_joints_that_no_dyad_has_leave_near_misses_and_a_true_reason() -> None:
-    """Far from the body there is no circle point; O2 beside its curve is as far away as without them."""
+    """Far from the body circle points are missing; O2 beside its curve is as far away as without them."""
     task, linkage = planted_motion(np.random.default_rng([0, 7]), 4)
     far = Box((50 * task.size, 51 * task.size), (0.0, 1.0))
     beside = {"o2": point(linkage.o2 + 0.3)}

@@ -66,8 +66,8 @@ def differences(model: Model, batch: Batch, step: float = 1e-6) -> FloatArray:
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_derivatives_under_limits(mechanism: str, poses: bool, timed: bool, rotatability: str) -> None:
     own = {"stroke": (0.2, 0.5)} if mechanism == "slider-crank" else {"output_swing_deg": (10, 30)}
-    asked = {"poses": poses, "timed": timed, "rotatability": rotatability}
-    target = SearchTargets.of(scaled_of(mechanism, **asked, **LIMITS, **own))
+    stated = {"poses": poses, "timed": timed, "rotatability": rotatability}
+    target = SearchTargets.of(scaled_of(mechanism, **stated, **LIMITS, **own))
     batch = with_places(target, draw(target, 300, np.random.default_rng(3)))
     model = within_limits(target, 0.7)
     cost, residual, jacobian = model(batch)

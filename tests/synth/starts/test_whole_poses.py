@@ -1,4 +1,4 @@
-"""Starts for four poses: feasible, apart, enough of them, and what stands in the way when there are none."""
+"""Starts for four poses: feasible, apart, enough of them, and the obstacle when there are none."""
 
 from collections.abc import Callable
 from typing import Any
@@ -44,7 +44,7 @@ def test_usual_poses_are_not_degenerate(
     assert all(finder_for(planted_scaled(seed)[0]).degenerate() == "" for seed in range(20))
 
 
-def test_pure_translation_is_told() -> None:
+def test_pure_translation_is_reported() -> None:
     for turn in (0, 360):
         scaled = poses([[0, 0, 10], [1, 0, 10], [2, 1, 10 + turn], [0, 3, 10]])
         assert "pure translations" in finder_for(scaled).obstacle(np.random.default_rng(0), {})
@@ -52,7 +52,7 @@ def test_pure_translation_is_told() -> None:
     assert finder_for(poses([[0, 0, 10], [1, 0, 10], [2, 1, 10.1], [0, 3, 10]])).degenerate() == ""
 
 
-def test_pure_rotation_is_told_with_its_centre() -> None:
+def test_pure_rotation_is_reported_with_its_centre() -> None:
     about = np.array([3.0, -1.5])
     rows = []
     for turn in (0, 30, 50, 120):
@@ -89,7 +89,7 @@ def test_the_best_are_free_and_apart_then_all_over_the_family(luggage_scaled: Se
 
 
 def test_neighbourhoods_do_not_overlap(luggage_scaled: SetupOf) -> None:
-    """So what is polished inside them stays apart."""
+    """Designs polished inside them stay apart."""
     queue, _ = queue_of(luggage_scaled())
     spread = queue[PEAKS:]
     for number, one in enumerate(spread):

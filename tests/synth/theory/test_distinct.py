@@ -79,7 +79,7 @@ def test_picked_are_apart_best_first_and_nobody_else_fits(
         assert any(share_apart(rows[i], rows[j]) <= least * (1 + 1e-12) for j in better)
 
 
-def test_no_more_than_asked_for_and_of_equals_the_first() -> None:
+def test_no_more_than_required_and_of_equals_the_first() -> None:
     rows = np.eye(9)
     assert pick_apart(rows, np.zeros(9), 0.01, 4).tolist() == [0, 1, 2, 3]
     assert pick_apart(rows[[2, 2, 2]], np.zeros(3), 0.01, 9).tolist() == [0]

@@ -158,8 +158,8 @@ def test_contracted_tubes_shrink_with_the_square_of_their_length() -> None:
     rest = []
     for size in (0.04, 0.02, 0.01):
         count = len(dyads)
-        whole = np.full(count, size)
-        around = Tubes.rectangles(dyads.moving, np.ones(count, complex), whole, whole)
+        side = np.full(count, size)
+        around = Tubes.rectangles(dyads.moving, np.ones(count, complex), side, side)
         tubes, _ = contracted(about.curve, around)
         rest.append((np.median(tubes.rest), np.median(centres_of(about.curve, tubes, about.longest).rest)))
     (first, first_centre), (second, second_centre), (third, third_centre) = rest

@@ -92,7 +92,7 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
                 judged.append(
                     verdict.transmission_min_cycle if over == "cycle" else verdict.transmission_min_task
                 )
-        # The worse ones as what is known: better ones must not be excluded.
+        # Given the worst one as known, better ones must not be excluded.
         known = min(judged, default=0.0)
         proving = Proving(gap=0.5, most_pairs=100_000 if count == 3 else 300_000)
         bounds = bounds_of_pairs(ScaledProblem.of(problem), proving, known)

@@ -1,4 +1,4 @@
-"""Linkages through as many points as leave no freedom: boxes with one exact linkage, and what is claimed."""
+"""Linkages through as many points as leave no freedom: boxes with one exact linkage, and claims."""
 
 from dataclasses import replace
 
@@ -39,7 +39,7 @@ def passing(kind: str, count: int, seed: int) -> tuple[PointEquations, FloatArra
 
 
 def residual(kind: str, points: ComplexArray, x: FloatArray) -> FloatArray:
-    """What a linkage with unknowns x (K,) misses, by lengths as they are: written anew, as precise as x."""
+    """Misses of a linkage with unknowns x (K,), by its lengths: written anew, as precise as x."""
     turn = np.exp(1j * np.concatenate([[0 * x[0]], x[-(len(points) - 1) :]]))
     z = x[0:-1:2] + 1j * x[1::2] if kind == "four-bar" else x[0:6:2] + 1j * x[1:6:2]
     ways = [np.abs(points + turn * z[1] - z[0])]
@@ -190,7 +190,7 @@ def said_of(
     enough: bool = False,
     **counts: int,
 ) -> tuple[Claim, str]:
-    """What is claimed of a list of one design, and why, without what is enclosed."""
+    """The claim about a list of one design, and the reason, without the enclosures."""
     named = {{"through": THROUGH, "followed": FOLLOWED}[name]: value for name, value in counts.items()}
     made = proof_of_points(scaled, [design], named, stopped=stopped, whole=whole, enough=enough)
     assert made is not None

@@ -1,4 +1,4 @@
-"""Bounds of the best: published figures, planted limits, budgets, interruptions, what is refused."""
+"""Bounds of the best: published figures, planted limits, budgets, interruptions, refusals."""
 
 from dataclasses import replace
 from itertools import count
@@ -108,12 +108,12 @@ def test_more_than_the_best_is_proven_to_be_impossible(at_least: float) -> None:
 
 
 def test_a_budget_leaves_a_bound_that_holds() -> None:
-    whole = bounds(luggage())
+    best = bounds(luggage())
     for most in (1, 2800):
         made = bounds(luggage(), most_pairs=most)
         assert not made.closed
         assert made.why == f"the budget of {most} pairs ended"
-        assert made.upper >= whole.lower
+        assert made.upper >= best.lower
         assert made.pairs <= most
 
 

@@ -134,7 +134,7 @@ def exact(motion: Displacements, dyads: Dyads) -> Dyads:
 
 
 def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 4000) -> Designs:
-    """Linkages that meet a problem; so many at most, a good part of them near poles."""
+    """At most `most` linkages that meet a problem, a good part of them near poles."""
     scaled = ScaledProblem.of(problem)
     assert scaled.motion is not None
     required, rng, body = Required.of(scaled), np.random.default_rng(seed), complex(scaled.targets[0])
@@ -145,7 +145,7 @@ def feasible_designs(problem: Problem, most: int, seed: int = 0, count: int = 40
         reach = min(required.driver.arm[1], 3.0)
         dyads = exact(charts.motion, some_dyads(charts, reach, count, rng))
         _, rows = Sites.of(tiling.side, tiles_of(charts, dyads))
-        every.append((charts, dyads[rows]))  # those that meet what is required of one dyad, about
+        every.append((charts, dyads[rows]))  # those that meet the requirements on one dyad, about
     drawn = []
     for charts, dyads in every:
         special = kinds(charts, dyads) != charts.main

@@ -1,4 +1,4 @@
-"""Three poses: published figures, one side alone, pivots that are given, budgets, what is refused."""
+"""Three poses: published figures, one side alone, pivots that are given, budgets, refusals."""
 
 from dataclasses import replace
 from itertools import count

@@ -230,7 +230,7 @@ def test_limits_that_a_linkage_misses_by_little_leave_it_out(kind: type[Linkage]
 
 
 @pytest.mark.parametrize("swing", [None, 15.0, 80.0, 140.0])
-def test_a_best_that_is_asked_for_exists_and_a_little_more_does_not(swing: float | None) -> None:
+def test_the_best_exists_and_a_little_more_does_not(swing: float | None) -> None:
     turned = None if swing is None else float(np.radians(swing))
     for ratio in (1.07, 2.2):
         best = best_transmission(turned, ratio)

@@ -1,4 +1,4 @@
-"""Strokes of problems: what is claimed of lists, what is left out, and none only where there is none."""
+"""Strokes of problems: claims about lists, requirements left out, and none only where there is none."""
 
 from dataclasses import replace
 from typing import Any
@@ -41,16 +41,16 @@ def bounded(problem: Problem) -> Bounds:
     return found
 
 
-def test_the_best_of_a_list_is_proven_and_told() -> None:
+def test_the_best_of_a_list_is_proven_and_reported() -> None:
     result = synthesize(load("quick-return-slide"), enough=3)
     proof = result.proof
     assert proof is not None
     assert (proof.claim, proof.mechanism, proof.left_out) == (Claim.BEST, "slider-crank", ())
     assert proof.lower == pytest.approx(47.201, abs=5e-4)
-    told = (
+    line = (
         "Proven: no slider-crank meets these requirements with more than 47.22 deg; number 1 has 47.20 deg."
     )
-    assert proof_line(result) == told
+    assert proof_line(result) == line
     assert work_line(proof).startswith("64 pieces of families of one number, ")
 
 
@@ -78,12 +78,12 @@ def test_limits_of_sizes_are_counted(problem: Problem, best: float) -> None:
     assert proof.lower == pytest.approx(best, abs=1e-3)
 
 
-def test_of_several_kinds_the_first_is_bounded_and_its_rank_told() -> None:
+def test_of_several_kinds_the_first_is_bounded_and_its_rank_stated() -> None:
     result = synthesize(problem_of(["four-bar", "inverted-slider-crank"], 2.6, 80.0), enough=3)
     assert result.best.linkage.mechanism.word == "inverted-slider-crank"
     rank = next(k for k, one in enumerate(result.candidates, 1) if one.linkage.mechanism.word == "four-bar")
-    told = f"no four-bar meets these requirements with more than 12.57 deg; number {rank} has 12.55 deg."
-    assert told in proof_line(result)
+    line = f"no four-bar meets these requirements with more than 12.57 deg; number {rank} has 12.55 deg."
+    assert line in proof_line(result)
 
 
 def test_places_are_left_out_unless_any_linkage_can_be_put_there() -> None:

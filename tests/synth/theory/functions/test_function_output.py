@@ -35,7 +35,7 @@ def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
 def planted(
     rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool = False
 ) -> tuple[Generators, FloatArray, FloatArray]:
-    """What generates some pairs, and the pairs in its unit."""
+    """A generator of some pairs, and the pairs in its unit."""
     task, linkage, start = planted_function(rng, pairs, full=full, mechanism=mechanism)
     return generator_of(linkage, start, task.output_unit), task.inputs, task.outputs / task.output_unit
 
@@ -108,7 +108,7 @@ def test_slopes_of_the_stroke_are_those_of_differences() -> None:
 
 @EVERY
 def test_worst_cosine_is_that_of_dense_samples(mechanism: str) -> None:
-    """sin mu by the velocity of the output that the driver gives: its lever over the whole."""
+    """sin mu by the velocity of the output that the driver gives: its lever over all."""
     rng = np.random.default_rng(3)
     for _ in range(20):
         task, linkage, start = planted_function(rng, 4, mechanism=mechanism)
