@@ -215,6 +215,11 @@ def families_of(swing: float | None, time_ratio: float) -> list[Family]:
     return [partial(crank_rockers, swing, sign) for sign in ([lag, -lag] if lag else [0.0])]
 
 
+def mirrored(family: Family, share: FloatArray) -> StrokeLinkages:
+    """Members of the family of the mirror images."""
+    return family(share).mirrored
+
+
 def everywhere(members: StrokeLinkages) -> FloatArray:
     """No limit: every member is far inside."""
     return np.ones(len(members.share))

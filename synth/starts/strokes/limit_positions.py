@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -36,8 +36,8 @@ _MISSING = 4  # of these are kept though they miss something, to report it
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
 _Positions: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
-# Families, whether mirrored, and where their members keep limits.
-_Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
+# Families, and where their members keep limits.
+_Stretches: TypeAlias = list[tuple[Family, list[tuple[float, float]]]]
 
 
 def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
@@ -89,7 +89,7 @@ class LimitPositions(DesignFinder):
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
-        """The families, as they are, and mirrored where that differs: where the start angle is given."""
+        """The families, and whether they are mirror images of others."""
         return self.stroke_kind.families(elsewhere=self.elsewhere)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
@@ -102,7 +102,7 @@ class LimitPositions(DesignFinder):
 
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
         """The members that miss the limits by least."""
-        return self._closest([(family, mirrored, stretches(family)) for family, mirrored in self.kinds])
+        return self._closest([(family, stretches(family)) for family, _ in self.kinds])
 
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
         """Of the members that keep these limits, those that miss the additional one by least, or many."""
@@ -117,9 +117,9 @@ class LimitPositions(DesignFinder):
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""
         starts = list[Start]()
-        for _, member, mirrored in _best(within, self._inside):
+        for _, member in _best(within, self.stroke_kind.inside):
             # where these limits, or those of another problem, allow it
-            starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
+            starts += (placed or self)._starts(member, self.stroke_kind.factor(member))
         return starts
 
     def follow(self, design: Candidate) -> list[Start]:
@@ -128,82 +128,60 @@ class LimitPositions(DesignFinder):
         names = (*row.lengths, *(each.name for each in row.parameters if each.kind == "distance"))
         shape = np.abs([float(getattr(linkage, name)) for name in names])
 
-        def near(members: StrokeLinkages, mirrored: bool) -> FloatArray:
+        def near(members: StrokeLinkages) -> FloatArray:
             lengths = np.abs(members.lengths)
             size = np.linalg.norm(lengths, axis=1, keepdims=True)
             off = np.linalg.norm(lengths / size - shape / np.linalg.norm(shape), axis=1)
-            side = (members.mirrored if mirrored else members).assembly
-            apart: FloatArray = -off - 10.0 * (side != float(linkage.assembly))
+            apart: FloatArray = -off - 10.0 * (members.assembly != float(linkage.assembly))
             return apart
 
         found = _best(self._stretches, near)
         nearest = max(found, key=lambda each: each[0], default=None)
-        return [] if nearest is None else self._starts(*nearest[1:])
+        return [] if nearest is None else self._starts(nearest[1])
 
     def _round(self, starts: list[Start]) -> Round:
         return Round(starts, {"feasible finds": len(starts)})
 
-    def _inside(self, members: StrokeLinkages, mirrored: bool) -> FloatArray:
-        """How far members are inside the limits of lengths, places and transmission, (n,)."""
-        return self.stroke_kind.inside(members.mirrored if mirrored else members)
-
     @cached_property
     def _stretches(self) -> _Stretches:
         """Where members of each family keep the limits."""
-        return [
-            (
-                family,
-                mirrored,
-                stretches(family, partial(self._inside, mirrored=mirrored)),
-            )
-            for family, mirrored in self.kinds
-        ]
+        return [(family, stretches(family, self.stroke_kind.inside)) for family, _ in self.kinds]
 
     def _chosen(self, enough: int) -> list[Start]:
         """The best of each stretch, then others spread over size and transmission."""
         starts, groups = [], []
-        for family, mirrored, within in self._stretches:
+        for family, within in self._stretches:
             if within:
-                members = family(np.array(best_of(family, within)))
-                starts += self._starts(members, mirrored)
+                starts += self._starts(family(np.array(best_of(family, within))))
                 shares = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in within])
-                groups.append((family(shares), mirrored))
+                groups.append(family(shares))
         best = sorted(starts, key=lambda start: -self.stroke_kind.worst(start))
         if self.elsewhere:  # rounds of members anywhere follow
             return [one for one in best + self._spread(groups, _FIRST) if self._in_boxes(one)]
         return best + self._spread(groups, round(_SPARE * enough))
 
-    def _spread(self, groups: list[tuple[StrokeLinkages, bool]], most: int) -> list[Start]:
+    def _spread(self, groups: list[StrokeLinkages], most: int) -> list[Start]:
         """At most `most` members: of those that no other beats in size and transmission, then of all."""
         if not groups or not most:
             return []
-        factor = [self._factor(*group) for group in groups]
-        diagonals = self.stroke_kind.diagonals
-        size = np.concatenate([f * diagonals(found) for f, (found, _) in zip(factor, groups, strict=True)])
-        angle = np.concatenate([found.transmission for found, _ in groups])
-        lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
+        factors, diagonals = [self.stroke_kind.factor(each) for each in groups], self.stroke_kind.diagonals
+        size = np.concatenate([f * diagonals(each) for f, each in zip(factors, groups, strict=True)])
+        angle = np.concatenate([each.transmission for each in groups])
+        lengths = [f[:, None] * each.lengths for f, each in zip(factors, groups, strict=True)]
         front = _unbeaten(angle, size)
         score = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
-        picked = _apart(np.concatenate(lengths), score, most)
-        number = np.concatenate([np.full(len(found.share), k) for k, (found, _) in enumerate(groups)])
-        begin = np.concatenate([[0], np.cumsum([len(found.share) for found, _ in groups])])
+        begin = np.concatenate([[0], np.cumsum([len(each) for each in groups])])
         starts = []
-        for index in picked.tolist():
-            found, mirrored = groups[k := int(number[index])]
+        for index in _apart(np.concatenate(lengths), score, most).tolist():
+            k = int(np.searchsorted(begin, index, side="right")) - 1
             at = index - int(begin[k])
-            starts += self._starts(found[at : at + 1], mirrored)
+            starts += self._starts(groups[k][at : at + 1])
         return starts
 
-    def _factor(self, members: StrokeLinkages, mirrored: bool) -> FloatArray:
-        """By which members are scaled, (n,)."""
-        return self.stroke_kind.factor(members.mirrored if mirrored else members)
-
-    def _starts(
-        self, members: StrokeLinkages, mirrored: bool, preferred: float | FloatArray = 1.0
-    ) -> list[Start]:
+    def _starts(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> list[Start]:
         """Linkages as the limits of lengths and places put them into the plane."""
-        members = members.mirrored if mirrored else members
-        points = self._inward(self.stroke_kind.put(members, self.stroke_kind.factor(members, preferred)))
+        factor = self.stroke_kind.factor(members, preferred)
+        points = self._inward(self.stroke_kind.put(members, factor))
         return [self._start(members[k : k + 1], points[k : k + 1]) for k in range(len(members))]
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
@@ -256,14 +234,15 @@ class LimitPositions(DesignFinder):
 
     def _drawn(self, rng: np.random.Generator) -> Iterator[StrokeLinkages]:
         """Random members, half of them mirrored."""
-        ranges = [(family, within) for family, mirrored, within in self._stretches if within and not mirrored]
+        plain = [not mirrored for _, mirrored in self.kinds]
+        ranges = [each for each, is_plain in zip(self._stretches, plain, strict=True) if each[1] and is_plain]
         either = self.stroke_kind.mirrored
         for family, within in ranges:
             low, high = within[int(rng.integers(len(within)))]
             for mirrored in either:
                 members = family(rng.uniform(low, high, _DRAWS // (len(either) * len(ranges))))
-                inside = self._inside(members, mirrored) >= 0
-                yield (members.mirrored if mirrored else members)[inside]
+                members = members.mirrored if mirrored else members
+                yield members[self.stroke_kind.inside(members) >= 0]
 
     def _in_boxes(self, start: Start) -> bool:
         """Whether A and B are where they may be in both limit positions."""
@@ -289,13 +268,13 @@ class LimitPositions(DesignFinder):
 
 
 def _best(
-    within: _Stretches, value: Callable[[StrokeLinkages, bool], FloatArray]
-) -> Iterator[tuple[float, StrokeLinkages, bool]]:
-    """In each of some stretches the member, (1,), of the greatest value, with that, and whether mirrored."""
-    for family, mirrored, ranges in within:
+    within: _Stretches, value: Callable[[StrokeLinkages], FloatArray]
+) -> Iterator[tuple[float, StrokeLinkages]]:
+    """In each of some stretches the member, (1,), of the greatest value, with that."""
+    for family, ranges in within:
 
-        def of_share(share: FloatArray, family: Family = family, mirrored: bool = mirrored) -> FloatArray:
-            return value(family(share), mirrored)
+        def of_share(share: FloatArray, family: Family = family) -> FloatArray:
+            return value(family(share))
 
         for low, high in ranges:
             shares = np.linspace(low, high, _SAMPLES)
@@ -304,7 +283,7 @@ def _best(
             tried = np.array([shares[k], highest(of_share, before, behind)])
             values = of_share(tried)
             best = int(np.argmax(values))
-            yield float(values[best]), family(tried[[best]]), mirrored
+            yield float(values[best]), family(tried[[best]])
 
 
 def _unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:

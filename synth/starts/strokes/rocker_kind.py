@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -13,7 +14,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, StrokeKind, across
-from grashof.synth.theory.limit_positions import Family, StrokeLinkages, families_of
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, families_of, mirrored
 
 _SAME = 1e-9  # of directions and of shares of a length
 _LEAST, _MOST = 1e-30, 1e30  # of scales
@@ -111,8 +112,9 @@ class RockerKind(StrokeKind):
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
         families = families_of(self.task.swing, self.task.time_ratio)
-        either = (False, True) if self.wanted.theta2_start_deg is not None else (False,)
-        return [(family, mirrored) for family in families for mirrored in either]
+        if self.wanted.theta2_start_deg is None:
+            return [(family, False) for family in families]
+        return [each for family in families for each in ((family, False), (partial(mirrored, family), True))]
 
     def inside(self, members: StrokeLinkages) -> FloatArray:
         r1, r2, r3, r4 = lengths = members.lengths.T

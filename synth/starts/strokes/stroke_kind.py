@@ -49,7 +49,7 @@ class StrokeKind(ABC):
 
     @abstractmethod
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
-        """The families, and whether their mirror images are meant; both where limits distinguish them.
+        """The families, and whether they are mirror images; both where limits distinguish them.
 
         `elsewhere`: places decide that the families do not know of.
         """
