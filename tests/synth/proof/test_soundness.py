@@ -102,7 +102,9 @@ CASES = {
 }
 
 
-@pytest.mark.quick(*(set(CASES) - {"planted", "boxes", "random 105", "any order, random 102"}))
+@pytest.mark.quick(
+    *(set(CASES) - {"planted", "luggage", "boxes", "random 105", "any order", "any order, random 102"})
+)
 @pytest.mark.parametrize("name", CASES)
 def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     problem = CASES[name]
@@ -159,7 +161,7 @@ def test_no_linkage_is_lost_whose_driver_hardly_moves_between_two_poses(seed: in
 def test_no_linkage_is_lost_whose_angles_are_just_within_limits() -> None:
     designs = feasible_designs(luggage(driver_sense="ccw"), 12)
     curve = Required.of(ScaledProblem.of(luggage())).curve
-    for k in range(0, len(designs), 4):
+    for k in range(0, len(designs), 6):
         one = designs[np.array([k])]
         start = float(np.degrees(np.angle(one.a - one.o2)[0]))
         ground = float(np.degrees(np.angle(one.o4 - one.o2)[0]))

@@ -65,7 +65,6 @@ def test_none_is_proven_without_a_search() -> None:
 @pytest.mark.parametrize(
     ("problem", "best"),
     [
-        (slide(1.0), 87.134),
         (slide(offset=[-0.3, -0.1]), 46.837),
         (problem_of("four-bar", 1.2, 80.0, r1=[1, 1], r4=[0.5, 0.55]), 29.228),
         (problem_of("inverted-slider-crank", 2.6, 80.0, r1=[1, 1], offset=[0.2, 0.3]), 58.197),
