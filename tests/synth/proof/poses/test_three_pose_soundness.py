@@ -238,12 +238,10 @@ def followed(problem: Problem, designs: Designs, levels: int) -> tuple[int, int,
     return lost, excluded, nearest
 
 
-@pytest.mark.quick(
-    *(
-        set(CASES)
-        - {"bonnet", "bonnet, angles", "luggage, crank-rocker", "random", "random, short links", "planted"}
-    )
-)
+REPEATING = {"bonnet", "bonnet, angles", "luggage, crank-rocker", "random", "random, short links", "planted"}
+
+
+@pytest.mark.quick(*(set(CASES) - REPEATING))
 @pytest.mark.parametrize("name", CASES)
 def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     designs = feasible_designs(CASES[name], 150, count=800)
