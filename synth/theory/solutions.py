@@ -19,6 +19,7 @@ from grashof.synth.theory.stopping import Stopped
 
 CAREFUL = 1e-8  # tolerance of paths that are followed in more digits, or around a loop
 RUNS = 3  # with paths of their own, until all solutions are found
+STEPS = 8000  # of a path through eight points: a few are long, and seldom lost for that
 
 
 def solutions_at(
@@ -58,8 +59,8 @@ def _run(
         ends[again], reached[again] = follow(
             family.precise, known[again], start, displacements, CAREFUL, steps=4000
         )
-    else:  # a few paths are long, and seldom lost for that
-        ends, reached = follow(family.system, known, start, displacements, steps=8000)
+    else:
+        ends, reached = follow(family.system, known, start, displacements, steps=STEPS)
     ends = np.concatenate([ends[reached], family.mirrored(ends[reached])])
     ends = family.refined(ends, displacements)  # so that equal ones are seen to be
     if family is FOUR_BARS:
