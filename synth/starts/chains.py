@@ -1,10 +1,9 @@
 """Linkages of any mechanism that come near points and angles: many at once, by the rows of `MECHANISMS`.
 
 With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a linkage is a shape and its driver angles at the
-targets. Where it stands, its size and its coupler point are linear in three complex numbers, P = z0 + z1 Q +
-z2 e with the origin Q and direction e of the link that carries P, and are solved for exactly (variable
-projection, see `loop_search`). The first loop of a shape that is drawn closes by construction; those of which
-another one does not are left out.
+targets. P = z0 + z1 Q + z2 e, with the origin Q and direction e of the link that carries it, is linear in
+z0, z1, z2, which are solved for exactly (variable projection, see `loop_search`). The first loop of a drawn
+shape closes by construction; those of which another one does not are left out.
 """
 
 from __future__ import annotations

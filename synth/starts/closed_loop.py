@@ -1,7 +1,6 @@
 """Linkages of a search as unknowns: the closed loop at every target, and its derivatives.
 
-The driver angles and proportions are such that a linkage is feasible by construction; the loop is
-taken in the frame that `grashof.synth.quantities.kinds` gives to its kind.
+The unknowns make linkages feasible by construction; the loop is in the frame of its kind (`Kind`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Screening: all pairs of dyads judged at once, either one as the driver, under all requirements.
-
-Lengths are in sizes of the task, points are complex, poses are columns.
-"""
+"""All pairs of dyads judged at once, either one driving; lengths in sizes, complex points, poses as columns."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Linkages of a long task fitted to every target: each target touches its own driver angle only.
+"""Linkages of a long task fitted to every target: each target concerns its own driver angle only.
 
-So the normal equations are a small block that all targets share, bordered by one number a target, which
-is eliminated target by target (Schur complement). A step takes time and memory as the targets are many.
+The normal equations are a small block that all targets share, bordered by one number a target, which is
+eliminated (Schur complement): a step takes time and memory in proportion to the targets.
 """
 
 from __future__ import annotations

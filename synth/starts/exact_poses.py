@@ -1,8 +1,7 @@
 """Whole poses, met exactly: dyads by theory, and all their pairs; parallelograms for pure translations.
 
-Two and three poses leave a dyad free in three and two numbers, which are sampled; four poses leave a
-curve of dyads (Burmester), which is traced; five leave up to four dyads, and what meets more poses is
-among the dyads of five of them.
+Dyads of two and three poses are sampled, those of four traced on their curve (Burmester); five have up to
+four, and those of more poses are among the dyads of five of them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,7 @@
-"""Starts where the squared errors are made least.
+"""Starts of least squares: linkages feasible by construction, placed best on the targets.
 
-Linkages that are feasible by construction are placed best on the targets. Where the best of them keep
-every limit, that is all there is to it. Where they do not, their places are unknowns, too, and what
-oversteps a limit counts as an error, more so from stage to stage: so the search ends where the
-programme does, whichever limits are active.
+Where the best of them break a limit, places become unknowns, and oversteps of limits count as errors that
+grow from stage to stage: so the search ends where the programme does, whichever limits are active.
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
 """Search for linkages whose coupler curve comes near given points: many at once, in NumPy.
 
-A linkage that is feasible by construction is described by its proportions and its driver angles at
-the points; where it stands, how large it is, how it is turned and where its coupler point lies is
-then linear: P_i = z0 + z1 exp(i theta2_i) + z2 exp(i theta3_i) with three complex numbers, solved
-exactly (variable projection, Golub & Pereyra 1973, with Kaufman's Jacobian). Levenberg-Marquardt
-improves the proportions and angles of a batch.
+Linkages, feasible by construction, are their proportions and driver angles at the points; place, size, turn
+and coupler point are linear, P_i = z0 + z1 exp(i theta2_i) + z2 exp(i theta3_i), and solved for exactly
+(variable projection, Golub & Pereyra 1973, with Kaufman's Jacobian). Levenberg-Marquardt improves the rest.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Targets to be met exactly, other than whole poses alone: rounds of the search.
-
-Exact paths through nine points have it followed by all linkages that there are.
-"""
+"""Targets to be met exactly, other than whole poses alone; at last all linkages through nine or eight points."""
 
 from __future__ import annotations
 

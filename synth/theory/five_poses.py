@@ -1,8 +1,7 @@
-"""Burmester's dyads: all that carry a body exactly through five poses.
+"""Burmester's dyads: all (at most four) that carry a body exactly through five poses.
 
-Five poses leave at most four dyads. Most have both pivots within reach. Where the ground pivot is at
-infinity the moving pivot keeps to a straight guide; where the moving pivot is, a guide in the body
-keeps to a ground pivot.
+Where the ground pivot is at infinity the moving pivot keeps to a straight guide; where the moving pivot is, a
+guide in the body keeps to a ground pivot.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Linkages by the limit positions of their output, where driver and coupler are in line.
 
-All crank-rockers with one swing and time ratio, and all slider-cranks with one stroke and time ratio, are
-families of one number, the share of the driver's length in the coupler's. Transmission is best somewhere
-in between, or where a limit ends the family.
+All crank-rockers with a swing and time ratio, and slider-cranks with a stroke and time ratio, are families of
+one number, r2 / r3. Transmission is best somewhere in between, or where a limit ends the family.
 """
 
 from __future__ import annotations
