@@ -1,4 +1,4 @@
-"""All pairs of dyads judged at once, either one driving; lengths in sizes, complex points, poses as columns."""
+"""All pairs of dyads judged at once, either one driving; in sizes, points complex, poses as columns."""
 
 from __future__ import annotations
 

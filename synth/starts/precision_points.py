@@ -1,4 +1,4 @@
-"""Targets to be met exactly, other than whole poses alone; at last all linkages through nine or eight points."""
+"""Targets to be met exactly, other than whole poses alone; for nine or eight points all linkages."""
 
 from __future__ import annotations
 
