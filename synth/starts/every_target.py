@@ -20,7 +20,6 @@ from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
 STEPS = 30
 DONE = 1e-8  # share of its error: a linkage that gains less is done
-PASSES = 1
 LONGEST = 0.3  # rad: no driver angle moves farther in a step
 LEAST_GAP = 1e-9  # share of a turn, between driver angles that are the same
 HEAVY = 1e6  # damping under which no step is worth trying
