@@ -5,7 +5,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-# The tests run in one process a core: threads of NumPy's own would only stand in each other's way.
+# The tests run in one process a core: threads of NumPy's own would only compete.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
@@ -31,12 +31,14 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Studies are slow; of a test marked `quick` all cases but those that it names are studies."""
+    """Studies are slow; of a test marked `quick` all cases but those that it names are studies; browsers are extra."""
     known: dict[str, set[str]] = {}
     named: dict[str, set[str]] = {}
     for item in items:
         if item.get_closest_marker("study"):
             item.add_marker(pytest.mark.slow)
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.extra)
         test, _, case = item.nodeid.removesuffix("]").partition("[")
         for mark in item.iter_markers("quick"):
             known.setdefault(test, set()).add(case)

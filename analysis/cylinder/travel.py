@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.driver_samples import driver_samples
+from grashof.analysis.mechanism.even_motion import driver_samples
 from grashof.analysis.mechanism.mobility import (
     circuit_index,
     dead_ends,
@@ -19,7 +19,7 @@ from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
-_STEADY = 1e-9  # rad: a step so small counts as none
+_STEADY = 1e-9  # rad: a smaller step counts as none
 _SAMPLES = 361
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from grashof.analysis import Verdict, inverse_dynamics, stated_loads, stated_masses
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.analysis.forces.stated import BeyondLoadError
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
+from grashof.analysis.forces.from_spec import BeyondLoadError
+from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends
 from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres

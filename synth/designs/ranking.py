@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Design
-from grashof.analysis.judge.limits import SLACK
+from grashof.analysis.judge.measures import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity
@@ -79,7 +79,7 @@ def distinct(
 def pareto_goals(problem: Problem) -> list[Quantity]:
     """What the Pareto mark is about besides the error: transmission, size, torque, and what is weighed."""
     keys = ["transmission", "size", *(["torque_peak"] if problem.dynamics is not None else [])]
-    usual = [problem.requirements.meant(QUANTITIES[key]) for key in keys]
+    usual = [problem.requirements.as_required(QUANTITIES[key]) for key in keys]
     return list(dict.fromkeys([*usual, *(goal for goal, _ in problem.goals)]))
 
 

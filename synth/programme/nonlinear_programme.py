@@ -10,8 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.analysis.judge.one_at_a_time import one_at_a_time
+from grashof.analysis.judge.design import Constraint, OwnObjective, one_at_a_time
 from grashof.synth.programme.builder import Builder, Programme, always
 from grashof.synth.programme.constraints import (
     Targets,

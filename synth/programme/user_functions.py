@@ -11,8 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of
-from grashof.analysis.judge.one_at_a_time import one_at_a_time
+from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of, one_at_a_time
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted

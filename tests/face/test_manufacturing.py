@@ -52,7 +52,7 @@ def test_bad_input_is_one_line(grashof: Grashof, mine: Path) -> None:
     mine.write_text(mine.read_text().replace("band = 0.03", "band = -1"))
     done = grashof("solve", mine)
     assert done.exit_code == 2
-    assert done.stderr.strip().endswith("manufacturing.band is -1; it must be greater than zero")
+    assert done.stderr.strip().endswith("manufacturing.band is -1; it must be a number greater than zero")
     assert done.stderr.count("\n") == 1
 
 

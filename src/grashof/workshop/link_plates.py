@@ -12,7 +12,7 @@ import shapely
 from grashof.drawing.scene import Scene
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage_parts import Link
+from grashof.problems.values.linkages.mechanism import Link
 from grashof.workshop.plates import Plate, PlateSizes, plate_of
 from grashof.workshop.slots import Slot, base_angle, rotated
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.analysis import solve_position
-from grashof.analysis.mechanism.extremes import dense_places, refined
+from grashof.analysis.mechanism.extremes import dense_samples, refined
 from grashof.drawing.scene import Scene, Slide
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -63,7 +63,7 @@ def _travel(linkage: Linkage, slide: Slide, ranges: Iterable[tuple[float, float]
 
     ends = []
     for low, high in ranges:
-        theta2 = dense_places(low, high, closed=False)
+        theta2 = dense_samples(low, high, closed=False)
         values = travel(theta2)
         closes = np.isfinite(values)  # at a dead position that rounding opens it does not
         found = refined(travel, theta2[closes], values[closes])

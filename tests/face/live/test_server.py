@@ -15,8 +15,8 @@ import pytest
 from grashof import load, synthesize, track
 from grashof.live.server import HEADERS
 from grashof.problems import problem_text
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.files.toml_file import document_of
 
 DOCUMENT = document_of(problem_text("luggage"), "luggage.toml")
 

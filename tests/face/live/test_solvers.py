@@ -18,7 +18,7 @@ from grashof.live.session import MOST_PAGES, Sessions
 from grashof.live.solvers import GRACE, TRIES, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
-from grashof.problems.files.toml_file import document_of
+from grashof.problems.files.on_disk import document_of
 from grashof.synth import Result
 
 Run = Callable[[Coroutine[Any, Any, Any]], Any]

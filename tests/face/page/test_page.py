@@ -16,7 +16,7 @@ import pytest
 
 import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
-from grashof.analysis.forces.stated import stated_masses
+from grashof.analysis.forces.from_spec import stated_masses
 from grashof.output.run_files import write_run
 from grashof.page.analysis import analysis_page
 from grashof.page.columns import Column

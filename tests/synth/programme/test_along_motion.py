@@ -9,10 +9,10 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import Loads, inverse_dynamics, over_task, solve_kinematics
+from grashof.analysis.forces.from_spec import stated_loads, stated_masses
 from grashof.analysis.forces.joints import joints_of
-from grashof.analysis.forces.stated import stated_loads, stated_masses
+from grashof.analysis.judge.over_task import driver_law
 from grashof.analysis.judge.planted import planted_motion, planted_path
-from grashof.analysis.judge.sampled_motion import driver_law
 from grashof.problems import (
     DynamicsSpec,
     FourBar,
@@ -37,7 +37,7 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.loop.vector import Vector
