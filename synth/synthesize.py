@@ -28,7 +28,7 @@ from grashof.synth.search.rounds import solve
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.workers import working
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
 
@@ -146,7 +146,7 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: StopCondition) -> Result:
             return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
         dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
-        with suppress(Stopped):  # the finder has a quick pass for those in haste
+        with suppress(StopRequested):  # the finder has a quick pass for those in haste
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     ledgers = searches(scaled, run, known)

@@ -15,7 +15,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, ComplexArray
 from grashof.synth.theory.homotopy import follow
 from grashof.synth.theory.point_families import FOUR_BARS, Family, near
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 CAREFUL = 1e-8  # tolerance of paths that are followed in more digits, or around a loop
 RUNS = 3  # with paths of their own, until all solutions are found
@@ -30,11 +30,11 @@ def solutions_at(
     The latter half of the displacements is conjugate to the former: so the mirror image of a solution is one,
     too, and replaces one whose own path was lost. All paths are followed at most `runs` times, on ways of
     their own, which `rng` turns so that they meet no singular point: what one has lost another finds.
-    `Stopped` where no run was completed.
+    `StopRequested` where no run was completed.
     """
     general = family.known()
     found = family.distinct(_run(family, general, displacements, rng))
-    with suppress(Stopped):
+    with suppress(StopRequested):
         for _ in range(runs - 1):
             if len(found) >= family.count:
                 break

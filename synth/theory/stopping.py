@@ -11,7 +11,7 @@ from time import perf_counter
 GRACE = 1.0  # s that work under way has after a request to stop
 
 
-class Stopped(Exception):  # noqa: N818  (a request, not an error)
+class StopRequested(Exception):  # noqa: N818  (a request, not an error)
     """A computation ended on request before it was done."""
 
 
@@ -61,9 +61,9 @@ def stop_requested() -> bool:
 
 
 def raise_if_stopped() -> None:
-    """Raise `Stopped` on a request to stop; for computations without a use unless they are completed."""
+    """Raise `StopRequested` after a request to stop; for computations that are useless unless completed."""
     if stop_requested():
-        raise Stopped
+        raise StopRequested
 
 
 def overdue() -> bool:
@@ -75,6 +75,6 @@ def overdue() -> bool:
 
 
 def raise_if_overdue() -> None:
-    """Raise `Stopped` where `overdue`; for computations that will soon have results."""
+    """Raise `StopRequested` where `overdue`; for computations that will soon have results."""
     if overdue():
-        raise Stopped
+        raise StopRequested

@@ -134,7 +134,7 @@ class Table:
     def covering(cls, required: Required, trail: Trail | None = None) -> Table:
         """Pieces that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more rectangles than a cover may have; `Stopped` on request.
+        TooMany where they take more rectangles than a cover may have; `StopRequested` on request.
         """
         active = squares(required)
         parents = np.full(len(active), ROOT)

@@ -32,7 +32,7 @@ class Tilings:
     def covering(cls, required: Required) -> Tilings:
         """Tiles that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more tiles than a cover may have; `Stopped` on request.
+        TooMany where they take more tiles than a cover may have; `StopRequested` on request.
         """
         driver, driven = (Tiling.covering(OneSide.of(required, is_driver=each)) for each in (True, False))
         return cls(required, driver, driven)

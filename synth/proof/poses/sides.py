@@ -151,7 +151,7 @@ class Sites:
 def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
     """Whether no dyad meets the requirements on a side; None where that is open at the end of the budget.
 
-    TooMany where nothing bounds the places of its pivots; `Stopped` on request.
+    TooMany where nothing bounds the places of its pivots; `StopRequested` on request.
     """
     active, count = side.tiles, 0
     while len(active):
@@ -182,7 +182,7 @@ class Tiling:
     def covering(cls, side: OneSide) -> Tiling:
         """Tiles that hold all dyads that may meet the requirements; few enough for all pairs of them.
 
-        TooMany where nothing bounds the places of its pivots; `Stopped` on request.
+        TooMany where nothing bounds the places of its pivots; `StopRequested` on request.
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:

@@ -16,7 +16,7 @@ from grashof.synth.theory import nine_points, solutions
 from grashof.synth.theory.nine_points import linkages_through
 from grashof.synth.theory.point_families import FOUR_BARS
 from grashof.synth.theory.solutions import solutions_at
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 
 def test_system_vanishes_on_a_planted_linkage():
@@ -41,7 +41,7 @@ def test_what_one_run_has_lost_another_finds_and_a_stop_loses_nothing(monkeypatc
 
     def run(*_args):
         if not runs:
-            raise Stopped
+            raise StopRequested
         return runs.pop(0)
 
     monkeypatch.setattr(solutions, "_run", run)
