@@ -22,7 +22,7 @@ from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import problems_in_turn
 from grashof.synth.search.workers import working
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
 SHARDS = "shards"  # their folder
@@ -167,7 +167,7 @@ def solve_shard(
                     run.report(ledger)
                     counts = done, ledger.solved, len(ledger.best)
                     _LOG.info("shard %s: %d chunks, %d solves, %d designs", shard, *counts)
-        except Stopped:
+        except StopRequested:
             journal.close()
         complete = journal.is_open
         if complete:

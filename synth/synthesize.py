@@ -14,8 +14,7 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.claims.bounds import Proving
-from grashof.synth.proof.poses.atlas import atlas_of
-from grashof.synth.proof.poses.first_round import round_of_regions
+from grashof.synth.proof.poses.atlas import atlas_of, round_of_regions
 from grashof.synth.proof.provers import bounds_after, bounds_before, certified_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.conclusion import conclude, needless
@@ -28,7 +27,7 @@ from grashof.synth.search.journal import journal_of
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.workers import working
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
 
@@ -146,7 +145,7 @@ def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) ->
             return conclude(scaled, nothing_to_search(scaled, run), run, stop_condition, bounds)
         dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
-        with suppress(Stopped):  # the finder has a quick pass in place of it
+        with suppress(StopRequested):  # the finder has a quick pass in place of it
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     ledgers = searches(scaled, run, known)

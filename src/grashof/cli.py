@@ -167,7 +167,7 @@ def sweep(
 def check(problem: _Problem) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
-    from grashof.synth.proof.curve.asked import enclosed
+    from grashof.synth.proof.curve.required import enclosed
     from grashof.synth.results.explain import advice
     from grashof.synth.search.finder import refuse_unsearchable
     from grashof.wording.problem import summary

@@ -20,7 +20,7 @@ from grashof.synth.search.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import LARGER
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 _LOG = logging.getLogger(__name__)
 MANY = 64  # starts; of fewer none is spent on a first quick pass
@@ -93,7 +93,7 @@ def _look_onward(ledger: Ledger, run: Run) -> None:
     """Judge linkages that the designs of a search lead to; designs stay where that is cut short."""
     try:
         more = run.onward(ledger)
-    except Stopped:
+    except StopRequested:
         ledger.complete = False
         return
     if more:
@@ -124,7 +124,7 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
                 ledger.absorb(one)
                 run.report(ledger)
                 _log(f"chunk {number} of {count}", one.solved, ledger)
-        except Stopped:
+        except StopRequested:
             pass  # the usual effort is done
 
 
@@ -138,7 +138,7 @@ def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """The quick pass, where a finder has one and starts are not few, and the rounds."""
     quick_pass = None
     if ledger.starts >= MANY:
-        with run.timed("screening"), suppress(Stopped):
+        with run.timed("screening"), suppress(StopRequested):
             quick_pass = run.quick_pass(ledger.scaled)
     if quick_pass is not None:
         yield quick_pass
@@ -150,7 +150,7 @@ def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:
     with run.timed("screening"):
         try:
             return run.screened(ledger.scaled, number)
-        except Stopped:
+        except StopRequested:
             ledger.complete = False
             return None
 

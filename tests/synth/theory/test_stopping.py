@@ -1,19 +1,25 @@
-"""Computations that end when asked: at once, or when they have had time to come to something."""
+"""Computations that end on request: at once, or after some time for results."""
 
 import pytest
 
 from grashof.synth.theory import stopping
-from grashof.synth.theory.stopping import Stopped, overdue, raise_if_overdue, raise_if_stopped, stop_requested
+from grashof.synth.theory.stopping import (
+    StopRequested,
+    overdue,
+    raise_if_overdue,
+    raise_if_stopped,
+    stop_requested,
+)
 
 
-def test_nobody_asks() -> None:
+def test_without_a_request_nothing_stops() -> None:
     assert not stop_requested()
     assert not overdue()
     raise_if_stopped()
     raise_if_overdue()
 
 
-def test_what_soon_comes_to_something_has_time_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_computations_with_results_soon_have_time_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 10.0
     monkeypatch.setattr(stopping, "perf_counter", lambda: now)
     with stopping.stopping(lambda: now >= 20):
@@ -22,10 +28,10 @@ def test_what_soon_comes_to_something_has_time_for_it(monkeypatch: pytest.Monkey
         assert stop_requested()
         assert not overdue()
         raise_if_overdue()
-        with pytest.raises(Stopped):
+        with pytest.raises(StopRequested):
             raise_if_stopped()
         now = 25.1 + stopping.GRACE
         assert overdue()
-        with pytest.raises(Stopped):
+        with pytest.raises(StopRequested):
             raise_if_overdue()
     assert not overdue()

@@ -1,37 +1,32 @@
-"""The eight-point problem: against finite differences, its cognates, the published number of solutions."""
+"""Linkages through N points: against finite differences, cognates, the published number of solutions."""
 
 import numpy as np
 import pytest
 
-from grashof.synth.theory.eight_points import (
-    FAMILIES,
-    INVERTED_SLIDER_CRANKS,
-    SLIDER_CRANKS,
-    general_problem,
-    near,
-)
-from grashof.synth.theory.homotopy import corrected
-from grashof.synth.theory.monodromy import collect
+from grashof.synth.theory.homotopy import corrected, follow
+from grashof.synth.theory.point_families import FAMILIES, INVERTED_SLIDER_CRANKS, SLIDER_CRANKS, near
+from grashof.synth.theory.solutions import collect, general_problem
 
 KINDS = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
 
 
 def at(displacements, solutions):
-    return np.broadcast_to(displacements, (len(solutions), 14))
+    return np.broadcast_to(displacements, (len(solutions), len(displacements)))
 
 
 def correction(family, solutions, displacements):
     """Greatest Newton correction of each solution, as a share of its greatest unknown."""
-    _, moved = corrected(family.system, solutions, at(displacements, solutions))
+    _, moved = corrected(family.precise, solutions, at(displacements, solutions))
     return moved / np.abs(solutions).max(axis=1)
 
 
 @KINDS
 def test_slopes_are_those_of_finite_differences(family):
     rng = np.random.default_rng(0)
-    unknowns = rng.normal(size=(3, 7)) + 1j * rng.normal(size=(3, 7))
-    displacements, change = rng.normal(size=(2, 3, 14)) + 1j * rng.normal(size=(2, 3, 14))
-    turns = np.exp(1j * rng.uniform(0, 2 * np.pi, (3, 7)))
+    size = family.size
+    unknowns = rng.normal(size=(3, size)) + 1j * rng.normal(size=(3, size))
+    displacements, change = rng.normal(size=(2, 3, 2 * size)) + 1j * rng.normal(size=(2, 3, 2 * size))
+    turns = np.exp(1j * rng.uniform(0, 2 * np.pi, (3, size)))
     for system, here in (
         (family.system, unknowns),
         (family.with_turns, np.concatenate([unknowns, turns], axis=1)),
@@ -48,15 +43,15 @@ def test_slopes_are_those_of_finite_differences(family):
 
 
 @KINDS
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_general_problem_has_its_solution_and_so_has_what_is_turned_or_mirrored(family, seed):
     rng = np.random.default_rng(seed)
     displacements, solutions = general_problem(family, rng)
     factors = rng.normal(size=2) + 1j * rng.normal(size=2)
-    swapped = np.concatenate([displacements[7:], displacements[:7]]).conj()
+    swapped = np.concatenate([displacements[family.size :], displacements[: family.size]]).conj()
     for points, found in (
         (displacements, solutions),
-        (displacements * np.repeat(factors, 7), family.turned(solutions, factors)),
+        (displacements * np.repeat(factors, family.size), family.turned(solutions, factors)),
         (swapped, family.mirrored(solutions)),
     ):
         assert correction(family, found, points).max() < 1e-9
@@ -105,10 +100,7 @@ def test_inverted_slider_cranks_share_no_pivot():
 @KINDS
 def test_loops_from_one_solution_lead_to_known_ones(family):
     displacements, solutions = family.known()
-    found = collect(
-        displacements, solutions[:1], np.random.default_rng(5), 8, system=family.system,
-        distinct=family.distinct,
-    )  # fmt: skip
+    found = collect(family, displacements, solutions[:1], np.random.default_rng(5), 8)
     assert len(found) >= 8
     every = family.invariants(solutions)
     assert all(near(every, invariant).any() for invariant in family.invariants(found))
@@ -118,8 +110,39 @@ def test_loops_from_one_solution_lead_to_known_ones(family):
 def test_other_points_have_as_many_slider_cranks():
     rng = np.random.default_rng(11)
     displacements, first = general_problem(SLIDER_CRANKS, rng)
-    found = collect(
-        displacements, first, rng, 10**6, patience=3, system=SLIDER_CRANKS.system,
-        distinct=SLIDER_CRANKS.distinct,
-    )  # fmt: skip
+    found = collect(SLIDER_CRANKS, displacements, first, rng, patience=3)
     assert len(found) == SLIDER_CRANKS.count
+
+
+def cubic(s, q, dq):
+    """s**3 + q0 s + q1 = 0."""
+    return s**3 + q[:, :1] * s + q[:, 1:], (3 * s**2 + q[:, :1])[..., None], dq[:, :1] * s + dq[:, 1:]
+
+
+def test_cubic_roots_are_all_found():
+    rng = np.random.default_rng(0)
+    start = np.array([0.3 - 0.2j, -1 + 0.4j])
+    roots = np.roots([1, 0, *start])[:, None]
+    for _ in range(20):
+        target = rng.normal(size=2) + 0j
+        found, reached = follow(cubic, roots, start, target)
+        assert reached.all()
+        expected = np.roots([1, 0, *target])
+        gap = np.abs(found - expected)
+        assert max(gap.min(axis=0).max(), gap.min(axis=1).max()) < 1e-6
+
+
+def test_root_that_goes_to_infinity_is_not_reached():
+    def line(s, q, dq):  # q s = 1
+        return q * s - 1, q[..., None], dq * s
+
+    _, reached = follow(line, np.array([[1.0 + 0j]]), np.array([1.0 + 0j]), np.array([0j]))
+    assert not reached.any()
+
+
+def test_path_into_a_singular_point_is_given_up():
+    def square(s, q, dq):  # both roots meet half-way
+        return s**2 - q, 2 * s[..., None], -dq
+
+    _, reached = follow(square, np.array([[1.0 + 0j], [-1.0]]), np.array([1.0 + 0j]), np.array([-1.0 + 0j]))
+    assert not reached.any()

@@ -11,17 +11,15 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.strokes.places import KEPT
-from grashof.synth.starts.strokes.placing import Ground, scales
-from grashof.synth.starts.strokes.rocker_places import RockerPlaces
-from grashof.synth.theory.limit_positions import Family, Members, crank_shapers
+from grashof.synth.starts.strokes.rocker_kind import Ground, RockerKind, scales
+from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, across
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, crank_shapers
 
-_POSITIONS = 73  # of a turn, for the size
 _LEAST = 1e-30  # scale
 
 
 @dataclass(frozen=True, slots=True)
-class ShaperPlaces(RockerPlaces):
+class ShaperKind(RockerKind):
     """Of any scale, as crank-rockers; their time ratio follows from the swing."""
 
     what: ClassVar[str] = "crank-shapers"
@@ -38,23 +36,22 @@ class ShaperPlaces(RockerPlaces):
         sides = [1.0] * (most >= 0) + [-1.0] * (least < 0 and (sided or most < 0))
         return [(partial(crank_shapers, swing, side), False) for side in sides]
 
-    def inside(self, members: Members) -> FloatArray:
+    def inside(self, members: StrokeLinkages) -> FloatArray:
         r1, r2, offset = members.lengths.T
         turns = (r1 - r2 - np.abs(offset)) / (r1 + r2 + np.abs(offset))
         low, high = self._scales(members)
         return self.least(members, r1 / r2, turns, self._angle(members), [np.log(high / low)])
 
-    def diagonals(self, members: Members) -> FloatArray:
+    def diagonals(self, members: StrokeLinkages) -> FloatArray:
         _, r2, offset = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
+        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
         places = np.concatenate(
             [a, a + _along_rod(1.0, a, offset), np.tile([0, 1], (len(members), 1))], axis=1
         )
-        across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
-        return across
+        return across(places)
 
     def moving(
-        self, members: Members, points: ComplexArray
+        self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         o2, o4 = points.T[..., None]
         _, r2, offset = members.lengths.T[..., None] * np.abs(o4 - o2)
@@ -67,7 +64,7 @@ class ShaperPlaces(RockerPlaces):
         r1, r2, _, offset = start.lengths
         return float(np.arccos(min(abs(offset) / abs(r1 - r2), 1.0)))
 
-    def _scales(self, members: Members) -> FloatArray:
+    def _scales(self, members: StrokeLinkages) -> FloatArray:
         r1, r2, *_ = self.wanted.link_lengths
         ground = Ground.of(self.wanted).lengths(self._angle(members))
         low, high = scales(members.lengths[:, :2], (r1, r2), ground)

@@ -1,4 +1,4 @@
-"""What a problem asks of a swing or a stroke, as far as sizes alone tell; and what only places do."""
+"""The requirements on a swing or a stroke that sizes alone decide, and those that places decide."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grashof.problems import Requirements, Rotatability, Task
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
 from grashof.problems.values.linkages.mechanisms import closing_dyad
-from grashof.synth.proof.curve.asked import SLACK
+from grashof.synth.proof.curve.required import SLACK
 from grashof.synth.proof.strokes.members import (
     Family,
     StrokeLimits,
@@ -42,8 +42,8 @@ def refusal_of_stroke(scaled: ScaledProblem) -> str:
 
 def floor_of(scaled: ScaledProblem, at_least: float | None = None) -> float:
     """Transmission angle below which no design counts, rad; `at_least` is in deg."""
-    asked = max(scaled.wanted.transmission_min_deg, at_least or 0.0)
-    return max(LEAST, float(np.radians(asked)) - SLACK)
+    required = max(scaled.wanted.transmission_min_deg, at_least or 0.0)
+    return max(LEAST, float(np.radians(required)) - SLACK)
 
 
 def sizes_left_out(scaled: ScaledProblem) -> tuple[str, ...]:

@@ -12,19 +12,18 @@ from grashof.problems import Box
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad, Slider, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
-from grashof.synth.starts.strokes.places import KEPT, Places
-from grashof.synth.theory.limit_positions import Family, Members, lag_of, slider_cranks
+from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, StrokeKind, across
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, lag_of, slider_cranks
 
 _DIRECTIONS = 72  # of a slide that may have any, tried at first
 _CLOSER, _STEPS = 3, 8  # times, by so much
 _NEARLY = 0.05  # strokes
-_POSITIONS = 73  # of a turn, for the size
 _ROUNDING = 1e-12  # strokes
 _ONE_STROKE = 1e-12  # rad: strokes that differ by less take as long
 
 
 @dataclass(frozen=True, slots=True)
-class SlidePlaces(Places):
+class SliderKind(StrokeKind):
     """Of one scale; the stroke, in the direction of the slide, counts as 1."""
 
     what: ClassVar[str] = "slider-cranks"
@@ -42,7 +41,7 @@ class SlidePlaces(Places):
         sides = [lag, -lag] if lag > 0 and (sided or elsewhere) else [lag]
         return [(partial(slider_cranks, side), False) for side in sides]
 
-    def inside(self, members: Members) -> FloatArray:
+    def inside(self, members: StrokeLinkages) -> FloatArray:
         wanted, stroke = self.wanted, self._stroke
         r2, r3, offset = members.lengths.T
         beside = np.abs(offset)
@@ -57,27 +56,25 @@ class SlidePlaces(Places):
             others += [length - least / stroke, greatest / stroke - length]
         return self.least(members, r3 / r2, turns, angle, others)
 
-    def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
+    def factor(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> FloatArray:
         return np.full(len(members), self._stroke)
 
-    def diagonals(self, members: Members) -> FloatArray:
+    def diagonals(self, members: StrokeLinkages) -> FloatArray:
         r2, r3, offset = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, TURN, _POSITIONS))
-        places = np.concatenate([a, _on_slide(a, r3, offset), np.zeros_like(a[:, :1])], axis=1)
-        across: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
-        return across
+        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
+        return across(np.concatenate([a, _on_slide(a, r3, offset), np.zeros_like(a[:, :1])], axis=1))
 
-    def put(self, members: Members, factor: FloatArray) -> ComplexArray:
+    def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
         angle = self._angle(members)
         low, high = self._room_of_o2(members, angle)
         o2 = [np.minimum(np.maximum(0.0, least), most) for least, most in zip(low, high, strict=True)]
         return _both(o2[0] + 1j * o2[1], factor * np.exp(1j * angle))
 
-    def put_anywhere(self, members: Members, room: Box, rng: np.random.Generator) -> ComplexArray:
-        wish, share = rng.uniform(-np.pi, np.pi, len(members)), rng.uniform(0, 1, (2, len(members)))
+    def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
+        preferred, share = rng.uniform(-np.pi, np.pi, len(members)), rng.uniform(0, 1, (2, len(members)))
         angle = self._angle(members)
         if self._turns_freely:
-            angle = np.where(self._room(members, wish) >= 0, wish, angle)
+            angle = np.where(self._room(members, preferred) >= 0, preferred, angle)
         place = []
         ends = zip((room.x, room.y), *self._room_of_o2(members, angle), strict=True)
         for axis, ((least, most), low, high) in enumerate(ends):
@@ -86,7 +83,7 @@ class SlidePlaces(Places):
         return _both(place[0] + 1j * place[1], self._stroke * np.exp(1j * angle))
 
     def moving(
-        self, members: Members, points: ComplexArray
+        self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         along = points[:, 1:] - points[:, :1]
         a, b = self._moved(members)
@@ -102,7 +99,7 @@ class SlidePlaces(Places):
         _, r2, r3, offset = start.lengths
         return float(np.arccos(min((r2 + abs(offset)) / r3, 1.0)))
 
-    def ends(self, members: Members) -> tuple[FloatArray, FloatArray]:
+    def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
         """Of strokes that take as long, the one from the stretched position counts as the slow one."""
         if self.clockwise and lag_of(self.task.time_ratio) <= _ONE_STROKE:
             return members.first, members.last - TURN
@@ -124,7 +121,7 @@ class SlidePlaces(Places):
     def _turns_freely(self) -> bool:
         return self.wanted.theta2_start_deg is None and self.wanted.slide_angle_deg is None
 
-    def _angle(self, members: Members) -> FloatArray:
+    def _angle(self, members: StrokeLinkages) -> FloatArray:
         """Direction of the slide, (n,), rad: as limits fix it, or else one in which there is room for O2."""
         start, fixed = self.wanted.theta2_start_deg, self.wanted.angle_of("slide_angle_deg")
         if start is not None:
@@ -134,7 +131,7 @@ class SlidePlaces(Places):
             return np.full(len(members), fixed or 0.0)
         return self._roomiest(members)
 
-    def _roomiest(self, members: Members) -> FloatArray:
+    def _roomiest(self, members: StrokeLinkages) -> FloatArray:
         """A direction along x or with B in corners of its box where that does, or nearly does; else the best.
 
         Nearly, so that places without any room, which only some lengths reach, are found in such a direction.
@@ -168,13 +165,13 @@ class SlidePlaces(Places):
             *(a - np.pi for a in along),
         ]
 
-    def _room(self, members: Members, angle: FloatArray) -> FloatArray:
+    def _room(self, members: StrokeLinkages, angle: FloatArray) -> FloatArray:
         """How much room is left to O2, strokes, in directions of the slide (n,) or (n, m)."""
         low, high = self._room_of_o2(members, angle)
         room: FloatArray = (high - low).min(axis=0) / self._stroke
         return np.where(room < 0, np.minimum(room + _ROUNDING, 0.0), room)
 
-    def _room_of_o2(self, members: Members, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _room_of_o2(self, members: StrokeLinkages, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where O2 may lie, least and greatest x and y, each (2, ...), for A and B to be in their boxes."""
         turned = self._stroke * np.exp(1j * angle)
         wanted, ways = self.wanted, [np.zeros_like(turned)]
@@ -190,7 +187,7 @@ class SlidePlaces(Places):
             high.append(np.min([side[1] - part(way) for side, way in zip(sides, ways, strict=True)], axis=0))
         return np.array(low), np.array(high)
 
-    def _moved(self, members: Members) -> tuple[ComplexArray, ComplexArray]:
+    def _moved(self, members: StrokeLinkages) -> tuple[ComplexArray, ComplexArray]:
         """A and B in the limit positions, each (n, 2), strokes, of a slide along x and O2 in the origin."""
         r2, r3, offset = members.lengths.T[..., None]
         a = r2 * np.exp(1j * np.stack(self.ends(members), axis=-1))

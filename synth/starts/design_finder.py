@@ -1,4 +1,4 @@
-"""Finders that propose whole designs: nothing is left to solve."""
+"""Finders that propose finished designs: nothing remains to be solved."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 
 @dataclass(frozen=True)
-class WholeDesigns(ABC):
-    """What these finders share; see `Finder`."""
+class DesignFinder(ABC):
+    """The common part of these finders; see `Finder`."""
 
     scaled: ScaledProblem
 
@@ -30,7 +30,7 @@ class WholeDesigns(ABC):
         return None
 
     def refuse(self) -> None:  # noqa: B027  (most have nothing to refuse)
-        """What cannot be is refused where the problem is stated."""
+        """Nothing: impossible tasks are refused where they are stated."""
 
     def degenerate(self) -> str:
         """No such task is without a linkage."""
@@ -51,17 +51,17 @@ class WholeDesigns(ABC):
     @property
     @abstractmethod
     def beginning(self) -> str:
-        """What the search begins with."""
+        """The first step of the search, in words."""
 
     @property
     @abstractmethod
     def exhausted(self) -> str:
-        """Why there are no others."""
+        """Why the list has ended."""
 
     @property
     @abstractmethod
     def rounds_a_pass(self) -> int:
-        """After so many rounds they may begin again."""
+        """Number of rounds after which they may begin again."""
 
     @abstractmethod
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
@@ -69,10 +69,10 @@ class WholeDesigns(ABC):
 
     @abstractmethod
     def follow(self, design: Candidate) -> Sequence[Start | Linkage]:
-        """What does the task near a design of another one; none where nothing does."""
+        """Linkages near a design of another task that do this one."""
 
     @abstractmethod
     def closest_to(
-        self, asked: ScaledProblem, key: str, rng: np.random.Generator
+        self, required: ScaledProblem, key: str, rng: np.random.Generator
     ) -> Sequence[Start | Linkage]:
-        """Without a requirement: linkages that miss it least as it is `asked`, and the other limits not."""
+        """Linkages that keep these limits, and miss the additional one of `required` by least."""

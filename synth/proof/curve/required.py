@@ -1,4 +1,4 @@
-"""What a problem asks for, as far as there are forms for it; and what there are none for."""
+"""The requirements of a problem that have forms, and those that have none."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ import numpy as np
 from grashof.problems import Box, Problem, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.proof.curve.curve import Curve
-from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.curve.curve import Curve, poles
 from grashof.synth.proof.forms.loop import LoopLimits
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements
@@ -31,14 +30,14 @@ _FORMS = (
     "o2", "o4", "a", "b", "a_on_body", "b_on_body",
     "driver_sense", "driver_rotation_deg", "theta2_start_deg", "ground_angle_deg",
 )  # fmt: skip
-_GROUND = {"o2", "o4"}  # what areas kept out have a form for
+_GROUND = {"o2", "o4"}  # pivots for which areas kept out have a form
 _OF_ORDER = ("driver_sense", "driver_rotation_deg")  # these have forms where the poses are met in order
 ANY_LENGTH = (0.0, np.inf)
 
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """What is asked of one of the two dyads, in the frame of a `Curve`, in sizes."""
+    """The requirements on one of the two dyads, in the frame of a `Curve`, in sizes."""
 
     length: Limits  # limits of the distance from its ground pivot to its moving pivot
     arm: Limits  # limits of the distance from its moving pivot to P
@@ -49,7 +48,7 @@ class Dyad:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class Required:
     """All requirements that have forms, widened by the slack of the judge."""
 
     curve: Curve
@@ -59,7 +58,7 @@ class Asked:
     driven: Dyad
     loop: LoopLimits
     ordered: bool
-    over_turn: bool  # whether the transmission angle counts over the whole turn
+    over_turn: bool  # whether the transmission angle counts over the full turn
     sense: int  # of the driver; 0 for either
     rotation: Limits  # rad, of the driver from the first pose to the last
     theta2_start: float | None  # rad
@@ -67,8 +66,8 @@ class Asked:
     floor: float  # rad, transmission angle below which no design counts
 
     @classmethod
-    def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Asked:
-        """What is asked of the first four poses of a problem, or three; `at_least` a greater angle (deg)."""
+    def of(cls, scaled: ScaledProblem, at_least: float | None = None) -> Required:
+        """The requirements on the first four (or three) poses; `at_least` is a greater angle (deg)."""
         motion, wanted = scaled.motion, scaled.wanted
         if motion is None:
             raise TypeError("only whole poses that are met exactly have a curve of dyads")
@@ -104,7 +103,7 @@ class Asked:
         )
 
     @classmethod
-    def within(cls, motion: Displacements, reach: float, least: float = 0.0) -> Asked:
+    def within(cls, motion: Displacements, reach: float, least: float = 0.0) -> Required:
         """Dyads alone: with arms and lengths from `least` up to `reach`, sizes."""
         limits = _widened((least, reach))
         dyad = Dyad(limits, limits, Box(), Box(), Box())
@@ -220,7 +219,7 @@ def _transmits_nothing(scaled: ScaledProblem) -> str:
 
 
 def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
-    """Why there is no proof of so many poses; empty where there can be one, None of other problems.
+    """Why there is no proof for this number of poses; empty where there can be one, None for other problems.
 
     >>> from grashof import load
     >>> refusal(ScaledProblem.of(load("luggage"))), refusal(ScaledProblem.of(load("straight-line")))
@@ -284,5 +283,5 @@ def enclosed(problem: Problem) -> str:
         return "--prove encloses all four-bars through three poses, and bounds what they transmit"
     if refusal(scaled) != "":
         return ""
-    told = "all four-bars through four poses are enclosed"
-    return f"{told}: seed and effort change nothing where that finds enough"
+    why = "all four-bars through four poses are enclosed"
+    return f"{why}: seed and effort change nothing where that finds enough"

@@ -1,4 +1,4 @@
-"""What a kind of linkage is to the search by limit positions: its families, and where its members lie."""
+"""Kinds of linkage in the search by limit positions: families, and places of their members."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from grashof.problems import Box, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import ClosingDyad
 from grashof.synth.programme.start import Start
-from grashof.synth.theory.limit_positions import Family, Members
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages
 
+POSITIONS = 73  # of a turn, for the size
 # Fields that every kind keeps by itself.
 KEPT = frozenset({
     "transmission_min_deg", "link_length", "r2", "r3", "link_ratio_max", "o2", "theta2_start_deg",
@@ -22,8 +23,8 @@ KEPT = frozenset({
 
 
 @dataclass(frozen=True, slots=True)
-class Places(ABC):
-    """Members of the families of a task, inside limits and in the plane.
+class StrokeKind(ABC):
+    """Linkages of the families of a task, inside limits and in the plane.
 
     A member is put there by two points: O2, and the end of the length that counts as 1 in its family, along
     the ground line or the slide.
@@ -33,7 +34,9 @@ class Places(ABC):
     wanted: Requirements  # resolved, in the problem's unit
 
     what: ClassVar[str]  # the linkages, in words
-    advised: ClassVar[str] = ""  # a stroke whose best transmission the time ratio tells, in a word
+    advised: ClassVar[str] = (
+        ""  # a word for the stroke, where the time ratio determines its best transmission
+    )
     dyad: ClassVar[type[ClosingDyad]]
     line: ClassVar[str] = "ground_angle_deg"  # the field that turns the ground line, or the slide
     kept: ClassVar[frozenset[str]] = KEPT  # fields that families and places keep
@@ -46,18 +49,18 @@ class Places(ABC):
 
     @abstractmethod
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
-        """The families, and whether their mirror images are meant; both where limits tell them apart.
+        """The families, and whether they are mirror images; both where limits distinguish them.
 
         `elsewhere`: places decide that the families do not know of.
         """
 
     @abstractmethod
-    def inside(self, members: Members) -> FloatArray:
+    def inside(self, members: StrokeLinkages) -> FloatArray:
         """How far members are inside the limits of lengths, places and transmission, (n,)."""
 
     def least(
         self,
-        members: Members,
+        members: StrokeLinkages,
         ratio: FloatArray,
         turns: FloatArray,
         angle: FloatArray,
@@ -82,24 +85,24 @@ class Places(ABC):
         return margin
 
     @abstractmethod
-    def factor(self, members: Members, wish: float | FloatArray = 1.0) -> FloatArray:
-        """By which members are scaled, (n,), length: as wished where it is allowed, or else nearly so."""
+    def factor(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> FloatArray:
+        """By which members are scaled, (n,), length: as preferred where it is allowed, or else nearly so."""
 
     @abstractmethod
-    def diagonals(self, members: Members) -> FloatArray:
+    def diagonals(self, members: StrokeLinkages) -> FloatArray:
         """Diagonals of the boxes around the pivots and all that A and B reach, unscaled; (n,)."""
 
     @abstractmethod
-    def put(self, members: Members, factor: FloatArray) -> ComplexArray:
+    def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
         """Both points of members as the limits put them into the plane, (n, 2), length."""
 
     @abstractmethod
-    def put_anywhere(self, members: Members, room: Box, rng: np.random.Generator) -> ComplexArray:
+    def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
         """The same at random, of random size where that is free; O2 in a room where it is not bounded."""
 
     @abstractmethod
     def moving(
-        self, members: Members, points: ComplexArray
+        self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         """O4 (n,) as `Start` has it, and A, B and theta2 in the limit positions, each (n, 2).
 
@@ -114,7 +117,13 @@ class Places(ABC):
     def worst(self, start: Start) -> float:
         """Worst transmission angle over the turn, rad, by the sizes of a start."""
 
-    def ends(self, members: Members) -> tuple[FloatArray, FloatArray]:
+    def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
         """Driver angles at the beginning and at the end of the slow stroke, each (n,), rad."""
         first, last = members.first, members.last
         return (last, first) if self.clockwise else (first, last)
+
+
+def across(places: ComplexArray) -> FloatArray:
+    """Diagonals of the boxes around places (n, N), shape (n,)."""
+    diagonal: FloatArray = np.hypot(np.ptp(places.real, axis=1), np.ptp(places.imag, axis=1))
+    return diagonal
