@@ -22,7 +22,7 @@ from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import asked_in_turn
 from grashof.synth.search.workers import working
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
 SHARDS = "shards"  # folder of theirs
@@ -219,7 +219,7 @@ def solve_shard(
                     run.tell(ledger)
                     told = shard, done, ledger.solved, len(ledger.best)
                     _LOG.info("shard %s: %d chunks, %d solves, %d designs", *told)
-        except Stopped:
+        except StopRequested:
             journal.close()
         whole = journal.is_open
         if whole:

@@ -23,13 +23,13 @@ from grashof.synth.results.mixed import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.finder import finder_for
-from grashof.synth.search.history import Ending, StopCondition
+from grashof.synth.search.history import StopCondition, StopReason
 from grashof.synth.search.journal import journal_of
 from grashof.synth.search.rounds import solve
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.workers import working
-from grashof.synth.theory.stopping import Stopped, stopping
+from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
 
@@ -134,7 +134,7 @@ def synthesize(
             with stopping(part):
                 run = replace(run, stop_requested=part)
                 found.append(_one_kind(scaled, run, part))
-            if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
+            if part.ending not in (StopReason.COMPLETE, StopReason.TIME_LIMIT):
                 break
     return one_list(problem, found)
 
@@ -147,7 +147,7 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: StopCondition) -> Result:
             return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
         dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
-        with suppress(Stopped):  # the finder has a quick pass for those in haste
+        with suppress(StopRequested):  # the finder has a quick pass for those in haste
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     ledgers = searches(scaled, run, known)

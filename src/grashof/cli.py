@@ -30,7 +30,7 @@ from grashof.options import (
     SweepOptions,
     parameters,
 )
-from grashof.output.ending import Exit
+from grashof.output.ending import ExitCode
 from grashof.output.streams import say
 from grashof.problems import (
     ProblemError,
@@ -60,16 +60,16 @@ class _Commands(TyperGroup):
             code = super().main(given, *rest, **{**options, "standalone_mode": False})
         except _UsageError as error:
             say(f"grashof: {_one_line(error)}", err=True)
-            code = Exit.BAD_INPUT
+            code = ExitCode.BAD_INPUT
         except OSError as error:  # of the help or the version: commands report their own
             say(f"grashof: {f'standard output: {error.strerror}' if error.strerror else error}", err=True)
-            code = Exit.SURROUNDINGS
+            code = ExitCode.SURROUNDINGS
         except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)
             say(f"grashof: {_unexpected(error)}", err=True)
-            code = Exit.SURROUNDINGS
-        sys.exit(code or Exit.OK)
+            code = ExitCode.SURROUNDINGS
+        sys.exit(code or ExitCode.OK)
 
 
 app = typer.Typer(
@@ -91,7 +91,7 @@ _Linkage = Annotated[
 ]
 
 
-def _tell_version(wanted: bool) -> None:
+def _print_version(wanted: bool) -> None:
     if wanted:
         say(f"grashof {version('grashof')}")
         raise typer.Exit
@@ -100,13 +100,13 @@ def _tell_version(wanted: bool) -> None:
 @app.callback()
 def grashof(
     _version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print it and exit.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print it and exit.")
     ] = False,
 ) -> None:
     """The command without a subcommand."""
 
 
-def _command(run: Callable[..., Exit | None]) -> Callable[..., None]:
+def _command(run: Callable[..., ExitCode | None]) -> Callable[..., None]:
     """Register a command; `options`, where it has them, are of a class of which each field is an option."""
     hints = get_type_hints(run, include_extras=True)
     stated = list(signature(run).parameters.values())
@@ -115,17 +115,17 @@ def _command(run: Callable[..., Exit | None]) -> Callable[..., None]:
 
     @wraps(run)
     def command(**given: Any) -> None:
-        with _errors_told():
+        with _reported_errors():
             if kept:
                 given["options"] = hints["options"](**{each.name: given.pop(each.name) for each in kept})
-            raise typer.Exit(run(**given) or Exit.OK)
+            raise typer.Exit(run(**given) or ExitCode.OK)
 
     command.__signature__ = Signature([*own, *kept])  # type: ignore[attr-defined]
     return app.command()(command)
 
 
 @_command
-def solve(problem: _Problem, options: SolveOptions) -> Exit:
+def solve(problem: _Problem, options: SolveOptions) -> ExitCode:
     """Find designs for PROBLEM; write the ranked list, a page, drawings and the record of the run.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
@@ -141,7 +141,7 @@ def solve(problem: _Problem, options: SolveOptions) -> Exit:
 def merge(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The --out of the shards.")],
     options: MergeOptions,
-) -> Exit:
+) -> ExitCode:
     """Make the list of a search from the shards in DIR; write it there, as solve does.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input, or shards are missing;
@@ -154,7 +154,7 @@ def merge(
 def sweep(
     study: Annotated[str, typer.Argument(metavar="STUDY", help="A TOML file that states what varies.")],
     options: SweepOptions,
-) -> Exit:
+) -> ExitCode:
     """Solve every combination of STUDY; write a table, a plot, a page and the record of the sweep.
 
     Exit code 0: at least one verified design; 1: none; 2: bad input; 3: environment error;
@@ -182,7 +182,7 @@ def check(problem: _Problem) -> None:
 
 
 @_command
-def prove(problem: _Problem, options: ProveOptions) -> Exit:
+def prove(problem: _Problem, options: ProveOptions) -> ExitCode:
     """Prove how large the transmission angle of the best design can be, or that there is no design.
 
     For three to five whole poses, or pairs of a function, of a four-bar; four whole poses of a
@@ -193,7 +193,7 @@ def prove(problem: _Problem, options: ProveOptions) -> Exit:
 
 
 @_command
-def judge(linkage: _Linkage, problem: _Problem) -> Exit:
+def judge(linkage: _Linkage, problem: _Problem) -> ExitCode:
     """Print whether LINKAGE, your own, does what PROBLEM asks for, what it misses, and its figures.
 
     By the judge of every search, from the linkage alone. Exit code 0: it does; 1: it does not; 2: bad input;
@@ -248,7 +248,7 @@ def live(
             metavar="PROBLEM", help="Name in the catalogue, or a TOML file.", show_default="luggage"
         ),
     ] = None,
-) -> Exit:
+) -> ExitCode:
     """Edit PROBLEM by hand in the browser, and see the verified list follow.
 
     Exit code 0: ended by Ctrl-C; 2: bad input; 3: environment error.
@@ -317,17 +317,17 @@ def _unexpected(error: Exception) -> str:
 
 
 @contextmanager
-def _errors_told() -> Iterator[None]:
+def _reported_errors() -> Iterator[None]:
     """Bad input and environment errors end the program with one line, not with a traceback."""
     try:
         yield
     except ProblemError as error:
         for line in str(error).splitlines():
             say(f"grashof: {line}", err=True)
-        raise typer.Exit(Exit.BAD_INPUT) from None
+        raise typer.Exit(ExitCode.BAD_INPUT) from None
     except (SolverError, OSError) as error:
         say(f"grashof: {error}", err=True)
-        raise typer.Exit(Exit.SURROUNDINGS) from None
+        raise typer.Exit(ExitCode.SURROUNDINGS) from None
     except KeyboardInterrupt:
         say("grashof: interrupted", err=True)
-        raise typer.Exit(Exit.INTERRUPTED) from None
+        raise typer.Exit(ExitCode.INTERRUPTED) from None

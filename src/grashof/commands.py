@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from grashof.options import TOP, AnimateOptions, MergeOptions, ProveOptions, SolveOptions, SweepOptions
-from grashof.output.ending import Exit, Interruption, interruptible
+from grashof.output.ending import ExitCode, Interruption, interruptible
 from grashof.output.streams import say
 from grashof.problems import AssemblyError, Problem, ProblemError, Search, load, load_linkage_spec
 from grashof.problems.values.checks import counted
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grashof.synth.search.run import Progress
 
 
-def solve(problem: Problem, text: str, options: SolveOptions) -> Exit:
+def solve(problem: Problem, text: str, options: SolveOptions) -> ExitCode:
     """Search for designs and write them; `text` is the problem file."""
     from grashof.output.folder import SEARCH, check_writable, in_use
     from grashof.output.log_file import logged
@@ -33,11 +33,11 @@ def solve(problem: Problem, text: str, options: SolveOptions) -> Exit:
         return _solve(problem, text, options, folder)
 
 
-def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> Exit:
+def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> ExitCode:
     from grashof.output.drawing import drawer
     from grashof.output.folder import SEARCH
     from grashof.synth.results.so_far import SoFar
-    from grashof.synth.search.history import Ending
+    from grashof.synth.search.history import StopReason
     from grashof.synth.search.journal import remove_record
 
     given = {name: getattr(options, name) for name in ("starts", "seed", "effort")}
@@ -69,7 +69,7 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
             if (verified := so_far.result()).candidates:
                 deliver(verified)
             raise
-        whole = found.history is not None and found.history.ending is Ending.COMPLETE
+        whole = found.history is not None and found.history.ending is StopReason.COMPLETE
         return deliver(found, listed=partial(remove_record, record) if whole else None)
 
 
@@ -136,7 +136,7 @@ def _deliver(
     interrupted: Interruption,
     drawing: Drawer | None = None,
     listed: Callable[[], None] | None = None,
-) -> Exit:
+) -> ExitCode:
     """Write what a search found, and print the list; `listed` is called in between, see `write_run`."""
     from grashof.output.folder import PAGE
     from grashof.output.run_files import left_out, write_run
@@ -150,7 +150,7 @@ def _deliver(
     result = found.top(settings["top"])
     if not (result.candidates or result.complete):  # an interrupted search replaces nothing
         say(result.note, err=True)
-        return interrupted.code if interrupted() else Exit.NO_DESIGN
+        return interrupted.code if interrupted() else ExitCode.NO_DESIGN
     try:
         files = write_run(folder, result, settings, drawings, interrupted, text, drawing, listed)
         if not result.candidates and (proven := proof_line(result)):
@@ -164,10 +164,10 @@ def _deliver(
     _point_to(folder / PAGE)
     if interrupted():
         return interrupted.code
-    return Exit.OK if result.candidates else Exit.NO_DESIGN
+    return ExitCode.OK if result.candidates else ExitCode.NO_DESIGN
 
 
-def solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions) -> Exit:
+def solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions) -> ExitCode:
     """Make a shard of a search, such as 7/200; what its folder has of it is not done again."""
     from grashof.output.cluster import cluster
     from grashof.output.folder import part_in_use
@@ -206,10 +206,10 @@ def solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions)
     say(f"shard {shard}: {made.chunks} of {counted(made.of, 'chunk')}, {counts}; {next_step}", err=True)
     if interrupted():
         return interrupted.code
-    return Exit.OK if made.whole else Exit.NO_DESIGN
+    return ExitCode.OK if made.whole else ExitCode.NO_DESIGN
 
 
-def merge(folder: Path, options: MergeOptions) -> Exit:
+def merge(folder: Path, options: MergeOptions) -> ExitCode:
     """Make the list of a search from its shards, and write it into the same folder."""
     from grashof.output.folder import check_writable, in_use
     from grashof.output.terminal import search_progress
@@ -234,7 +234,7 @@ def merge(folder: Path, options: MergeOptions) -> Exit:
         return _deliver(found, shards.text, settings, folder, options.drawings, interrupted)
 
 
-def sweep(study: str, options: SweepOptions) -> Exit:
+def sweep(study: str, options: SweepOptions) -> ExitCode:
     """Solve a study file into a folder, here or on a Dask cluster, and say how it goes."""
     from grashof.output.cluster import cluster
     from grashof.output.folder import SWEEP_PAGE, in_use
@@ -268,7 +268,7 @@ def sweep(study: str, options: SweepOptions) -> Exit:
     if not done.complete:
         say(f"interrupted: --resume goes on; what is finished is in {folder}", err=True)
         return interrupted.code
-    return Exit.OK if done.with_designs else Exit.NO_DESIGN
+    return ExitCode.OK if done.with_designs else ExitCode.NO_DESIGN
 
 
 def _begin_record(folder: Path, *, resume: bool) -> None:
@@ -335,7 +335,7 @@ def _point_to(page: Path) -> None:
     say(f"Open {page} in a browser to look at it.", err=True)
 
 
-def prove(problem: str, options: ProveOptions) -> Exit:
+def prove(problem: str, options: ProveOptions) -> ExitCode:
     """Print what is proven of a problem."""
     from grashof.synth import prove as proven
     from grashof.synth.prove import has_certificate
@@ -351,10 +351,10 @@ def prove(problem: str, options: ProveOptions) -> Exit:
             say(f"certificate {options.certificate}: not written, for no bound was reached", err=True)
         if interrupted():
             return interrupted.code
-    return Exit.OK if is_decided(proof, options.at_least) else Exit.NO_DESIGN
+    return ExitCode.OK if is_decided(proof, options.at_least) else ExitCode.NO_DESIGN
 
 
-def judge(linkage: str, problem: str) -> Exit:
+def judge(linkage: str, problem: str) -> ExitCode:
     """Print the verdict on a linkage that is not out of a search."""
     from grashof.wording.verdict import judged_for, verdict_lines
 
@@ -362,4 +362,4 @@ def judge(linkage: str, problem: str) -> Exit:
     judged = judged_for(load(problem), spec)
     for line in verdict_lines(judged, spec.name):
         say(line)
-    return Exit.OK if judged.verdict.ok else Exit.NO_DESIGN
+    return ExitCode.OK if judged.verdict.ok else ExitCode.NO_DESIGN

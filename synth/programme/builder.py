@@ -101,7 +101,7 @@ class Builder:
         }
 
     def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
-        """The programme that makes a cost least; a `long` one ends when asked to stop, here by `Stopped`."""
+        """The programme that makes a cost least; a `long` one ends early by `StopRequested`."""
         stated = self.stated(cost)
         asking = StopCondition(stated) if long else None
         if long:

@@ -33,7 +33,7 @@ from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import Stopped, raise_if_stopped
+from grashof.synth.theory.stopping import StopRequested, raise_if_stopped
 
 LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
 MOST_ITERATIONS = 150
@@ -68,7 +68,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         if form.targets > LONG:
             raise_if_stopped()
         programme = _programme(form, most, scaled.constraints, scaled.own_objective)
-    except Stopped:
+    except StopRequested:
         return _as_it_is(start, STOPPED)
     given = programme.arguments(scaled, start)
     fixed = sum(np.count_nonzero(given[f"lb{kind}"] == given[f"ub{kind}"]) for kind in "xg")

@@ -22,7 +22,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import search_designs
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 STOPPED = "no design: the search was stopped before it found one"
 UNEXPLAINED = "no design: the search for the reason was stopped"
@@ -59,7 +59,7 @@ def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> 
     try:
         with run.timed("explaining"):
             return _explained(asked, ledger, chosen.rejected, run)
-    except Stopped:
+    except StopRequested:
         return Explanation(UNEXPLAINED)
 
 

@@ -12,7 +12,7 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.result import Result
-from grashof.synth.search.history import Ending, RunHistory
+from grashof.synth.search.history import RunHistory, StopReason
 from grashof.synth.search.tally import DISTINCT, Tally
 
 
@@ -66,6 +66,6 @@ def _by_kind(found: Sequence[Result], name: str) -> str:
 def _history(parts: Sequence[RunHistory]) -> RunHistory | None:
     if not parts:
         return None
-    endings = [part.ending for part in parts if part.ending is not Ending.COMPLETE]
-    ending = endings[0] if endings else Ending.COMPLETE
+    endings = [part.ending for part in parts if part.ending is not StopReason.COMPLETE]
+    ending = endings[0] if endings else StopReason.COMPLETE
     return replace(parts[-1], begun=parts[0].begun, ending=ending)

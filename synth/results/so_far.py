@@ -10,7 +10,7 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.results.mixed import within_factor
 from grashof.synth.results.result import Result
-from grashof.synth.search.history import Ending, RunHistory, now
+from grashof.synth.search.history import RunHistory, StopReason, now
 from grashof.synth.search.run import Progress
 
 
@@ -36,7 +36,7 @@ class SoFar:
             listed(self._problem, within_factor(self._problem, judged, least)),
             complete=False,
             note="the search failed; listed is what was verified until then",
-            history=RunHistory(begun=self._begun, ended=now(), ending=Ending.FAILED),
+            history=RunHistory(begun=self._begun, ended=now(), ending=StopReason.FAILED),
         )
 
     def _judged(self, one: Candidate) -> Candidate:

@@ -25,7 +25,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import overdue, stop_requested
 
 # Status of a start that was left alone because the search had long been asked to stop.
-LEFT_ALONE = "Stopped"
+LEFT_ALONE = "StopRequested"
 AS_IT_IS = "Not_Solved"  # that of a design that was judged as the search proposed it
 # The judge may put the driver a little elsewhere than the programme, and looks between the targets: so many
 # solves at most ask for that much more, unless what is missing is more than a little (as in `Defect.miss`;

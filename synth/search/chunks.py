@@ -22,7 +22,7 @@ AHEAD = 3  # chunks begun for each process before it is known that they are want
 
 
 def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
-    """One chunk of at most `starts` solves, a function of what it is given; `Stopped` if asked to end."""
+    """One chunk of at most `starts` solves, a function of its arguments; `StopRequested` if asked to end."""
     return _made_by(Here(), scaled, number, enough, seed, starts)
 
 
@@ -39,7 +39,7 @@ def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: 
 
 
 def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> Iterator[Chunk]:
-    """Chunks of at most `starts` solves by their numbers, several at a time; `Stopped` if asked to end."""
+    """Chunks of at most `starts` solves by number, several at a time; `StopRequested` if asked to end."""
     rest = which(run.search, starts)
     for place, number in enumerate(numbers):
         if not run.journal.recorded:

@@ -12,7 +12,7 @@ from time import perf_counter
 _LOG = logging.getLogger(__name__)
 
 
-class Ending(StrEnum):
+class StopReason(StrEnum):
     """What ended a run."""
 
     COMPLETE = "complete"
@@ -29,7 +29,7 @@ class RunHistory:
 
     begun: datetime  # of the search, in ``run.json`` with what is written, as `ended`
     ended: datetime
-    ending: Ending
+    ending: StopReason
     resumed: int = 0  # how often it was gone on with from its record
     steps_recorded: int = 0  # screenings, solves and chunks taken from the record
     record_lost: str = ""  # why the record ended before the search; empty where it did not
@@ -50,24 +50,24 @@ class StopCondition:
 
     time_limit: float | None  # s, from now on
     stop: Callable[[], bool] | None  # asks it by True
-    ending: Ending = Ending.COMPLETE
+    ending: StopReason = StopReason.COMPLETE
     begun: datetime = field(default_factory=now)  # UTC
     _since: float = field(default_factory=perf_counter)
 
     def __call__(self) -> bool:
         """Whether it is asked to end."""
-        if self.ending is Ending.COMPLETE:
+        if self.ending is StopReason.COMPLETE:
             self.ending = self._asked()
-            if self.ending is not Ending.COMPLETE:
+            if self.ending is not StopReason.COMPLETE:
                 _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
-        return self.ending is not Ending.COMPLETE
+        return self.ending is not StopReason.COMPLETE
 
     def part(self, number: int, of: int) -> StopCondition:
         """The same for the first `number` of so many parts of a search, with their share of the time."""
         limit = None if self.time_limit is None else self.time_limit * number / of
         return replace(self, time_limit=limit)
 
-    def _asked(self) -> Ending:
+    def _asked(self) -> StopReason:
         if self.time_limit is not None and perf_counter() - self._since > self.time_limit:
-            return Ending.TIME_LIMIT
-        return Ending.STOPPED if self.stop is not None and self.stop() else Ending.COMPLETE
+            return StopReason.TIME_LIMIT
+        return StopReason.STOPPED if self.stop is not None and self.stop() else StopReason.COMPLETE

@@ -21,7 +21,7 @@ from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.rounds import solve, solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import LARGER
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 _LOG = logging.getLogger(__name__)
 MANY = 64  # starts; of fewer none is spent on a first quick pass
@@ -94,7 +94,7 @@ def _look_onward(ledger: Ledger, run: Run) -> None:
     """Judge what the designs of a search lead to; what it has found stays where that is cut short."""
     try:
         more = run.onward(ledger)
-    except Stopped:
+    except StopRequested:
         ledger.complete = False
         return
     if more:
@@ -125,7 +125,7 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
                 ledger.absorb(one)
                 run.tell(ledger)
                 _log(f"chunk {number} of {count}", one.solved, ledger)
-        except Stopped:
+        except StopRequested:
             pass  # what the usual effort asks for is done
 
 
@@ -139,7 +139,7 @@ def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
     """What is found at once, where a finder has that and starts are not few, and the rounds."""
     quick_pass = None
     if ledger.starts >= MANY:
-        with run.timed("screening"), suppress(Stopped):
+        with run.timed("screening"), suppress(StopRequested):
             quick_pass = run.quick_pass(ledger.scaled)
     if quick_pass is not None:
         yield quick_pass
@@ -151,7 +151,7 @@ def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:
     with run.timed("screening"):
         try:
             return run.screened(ledger.scaled, number)
-        except Stopped:
+        except StopRequested:
             ledger.complete = False
             return None
 

@@ -23,7 +23,7 @@ from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import LEFT_ALONE, Attempt, attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.theory.stopping import Stopped, stop_requested, stop_when
+from grashof.synth.theory.stopping import StopRequested, stop_requested, stop_when
 
 _LOG = logging.getLogger(__name__)
 # Solves begun for each process before it is known that they are wanted: of least squares, and exact ones, of
@@ -134,7 +134,7 @@ class Elsewhere:
                 one = self._solved(scaled, start, starts[number:])
             except CrashError:
                 one = Attempt(CRASHED, None)
-            except Stopped:
+            except StopRequested:
                 one = Attempt(LEFT_ALONE, None)
             made.append(_numbered(one, first + number))
         return made
@@ -222,7 +222,7 @@ class Elsewhere:
 
     def _look(self) -> None:
         if stop_requested():
-            raise Stopped
+            raise StopRequested
 
     def _lost(self, error: BrokenExecutor) -> None:
         raise SolverError(f"a worker process was lost: {error}") from error

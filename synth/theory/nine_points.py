@@ -15,7 +15,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray
 from grashof.synth.theory.homotopy import corrected, follow
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 TRIPLETS = 1442
 REAL = 1e-6  # a vector and its conjugate agree so far, relative to the largest, in a real linkage
@@ -93,7 +93,7 @@ def _all_solutions(target: ComplexArray, rng: np.random.Generator) -> ComplexArr
     What one run has lost, another one finds; so does the mirror image of a solution, which is one, too.
     """
     found = _run(target, rng)
-    with suppress(Stopped):
+    with suppress(StopRequested):
         for _ in range(RUNS - 1):
             if len(found) >= TRIPLETS:
                 break

@@ -11,7 +11,7 @@ from time import perf_counter
 GRACE = 1.0  # s: so long what is under way may still come to something
 
 
-class Stopped(Exception):  # noqa: N818  (no error: it was asked for)
+class StopRequested(Exception):  # noqa: N818  (no error: it was asked for)
     """A computation was asked to end before it was done."""
 
 
@@ -61,9 +61,9 @@ def stop_requested() -> bool:
 
 
 def raise_if_stopped() -> None:
-    """Raise `Stopped` where asked to stop; for what is of no use unless it is done."""
+    """Raise `StopRequested` where asked to stop; for what is of no use unless it is done."""
     if stop_requested():
-        raise Stopped
+        raise StopRequested
 
 
 def overdue() -> bool:
@@ -75,6 +75,6 @@ def overdue() -> bool:
 
 
 def raise_if_overdue() -> None:
-    """Raise `Stopped` where that is overdue; for what soon comes to something."""
+    """Raise `StopRequested` where that is overdue; for what soon comes to something."""
     if overdue():
-        raise Stopped
+        raise StopRequested

@@ -8,14 +8,14 @@ from importlib.util import find_spec
 from socket import AF_INET, SO_REUSEADDR, SOCK_STREAM, SOL_SOCKET, socket
 
 from grashof.live.asked import beginning
-from grashof.output.ending import Exit
+from grashof.output.ending import ExitCode
 from grashof.output.streams import say
 from grashof.problems import ProblemError, SolverError
 
 NEEDED = ("starlette", "uvicorn")
 
 
-def live(problem: str | None, port: int, *, browser: bool) -> Exit:
+def live(problem: str | None, port: int, *, browser: bool) -> ExitCode:
     """Serve the live page of a problem, by name or file, until Ctrl-C; port 0 takes a free one.
 
     ProblemError where the problem is invalid or what `grashof[live]` installs is missing; SolverError where
@@ -45,4 +45,4 @@ def live(problem: str | None, port: int, *, browser: bool) -> Exit:
         )
         with suppress(KeyboardInterrupt):  # uvicorn raises it again once all is closed
             Server(config).run(sockets=[own])
-    return Exit.OK
+    return ExitCode.OK

@@ -11,7 +11,7 @@ from types import FrameType
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
-class Exit(IntEnum):
+class ExitCode(IntEnum):
     """Exit codes."""
 
     OK = 0
@@ -26,11 +26,11 @@ class Interruption:
     """Whether the user, or the system, has asked the program to end, by what, and its exit code then."""
 
     def __init__(self) -> None:
-        self.code, self.by = Exit.OK, ""
+        self.code, self.by = ExitCode.OK, ""
 
     def __call__(self) -> bool:
         """Whether it was asked for."""
-        return self.code is not Exit.OK
+        return self.code is not ExitCode.OK
 
 
 @contextmanager
@@ -41,7 +41,7 @@ def interruptible() -> Iterator[Interruption]:
     before = {number: handler for number, handler in handlers.items() if handler is not signal.SIG_IGN}
 
     def ask(number: int, _frame: FrameType | None) -> None:
-        asked.code = Exit.INTERRUPTED if number == signal.SIGINT else Exit.TERMINATED
+        asked.code = ExitCode.INTERRUPTED if number == signal.SIGINT else ExitCode.TERMINATED
         asked.by = "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
         restore()
 

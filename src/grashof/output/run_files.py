@@ -19,14 +19,14 @@ from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
 from grashof.output.drawing import Drawer, Files, drawer
-from grashof.output.ending import Exit, Interruption
+from grashof.output.ending import ExitCode, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
-from grashof.synth.search.history import Ending, now
+from grashof.synth.search.history import StopReason, now
 from grashof.wording.enclosure import enclosure_record
 
 if TYPE_CHECKING:
@@ -186,7 +186,7 @@ def versions_of(packages: Iterable[str]) -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in packages}}
 
 
-_ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}
+_ENDINGS = {ExitCode.INTERRUPTED: StopReason.INTERRUPTED, ExitCode.TERMINATED: StopReason.TERMINATED}
 
 
 def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:

@@ -113,7 +113,7 @@ class Table:
     def covering(cls, asked: Asked, trail: Trail | None = None) -> Table:
         """Pieces that hold all dyads that may meet what is asked of one.
 
-        TooMany where they take more rectangles than a cover may have; Stopped if asked to stop.
+        TooMany where they take more rectangles than a cover may have; StopRequested if asked to stop.
         """
         active = squares(asked)
         parents = np.full(len(active), ROOT)

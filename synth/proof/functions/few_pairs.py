@@ -30,7 +30,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.functions.four_bar import FourBars
-from grashof.synth.theory.stopping import Stopped, raise_if_stopped
+from grashof.synth.theory.stopping import StopRequested, raise_if_stopped
 
 THREE, FOUR = 3, 4
 # Of the budget of pairs: a piece takes longer, and most are needed where a centre stays open.
@@ -67,7 +67,7 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
         why = ""
     except TooMany as ended:
         why = str(ended)
-    except Stopped:
+    except StopRequested:
         why = "it was stopped"
     beyond = [name for name in stated if name not in _FORMS] + ["constraints"] * bool(scaled.constraints)
     return Bounds(

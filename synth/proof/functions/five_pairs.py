@@ -12,7 +12,7 @@ from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certi
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.theory.burmester import Displacements
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 _TRIVIAL = 1e-6  # of r1: the ground link itself is a dyad of every function
 
@@ -35,7 +35,7 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
         motion = Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))
         try:
             made = certified_dyads(Asked.within(motion, aims.wanted.link_ratio_max), motion)
-        except Stopped:
+        except StopRequested:
             return replace(Certified.nothing(), why=STOPPED)
         made = replace(made, within=int(made.within - _trivial(made)), why=why_open(made, motion))
         found.append(made)

@@ -71,7 +71,7 @@ class Atlas:
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     """All four-bars of four poses above half the best that bounds know; None where they know none.
 
-    Stopped if asked to stop.
+    StopRequested if asked to stop.
     """
     if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES or scaled.motion is None:
         return None

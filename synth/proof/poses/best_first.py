@@ -32,7 +32,7 @@ class Tilings:
     def covering(cls, asked: Asked) -> Tilings:
         """Tiles that hold all dyads that may meet what is asked of one.
 
-        TooMany where they take more tiles than a cover may have; Stopped if asked to stop.
+        TooMany where they take more tiles than a cover may have; StopRequested if asked to stop.
         """
         driver, driven = (Tiling.covering(OneSide.of(asked, is_driver=each)) for each in (True, False))
         return cls(asked, driver, driven)

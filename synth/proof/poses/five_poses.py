@@ -20,7 +20,7 @@ from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.five_poses import five_pose_dyads
-from grashof.synth.theory.stopping import Stopped, raise_if_stopped
+from grashof.synth.theory.stopping import StopRequested, raise_if_stopped
 
 FIVE = 5
 STOPPED = "it was stopped"
@@ -69,7 +69,7 @@ def certified_poses(scaled: ScaledProblem) -> Certified | None:
     motion = Displacements(scaled.motion.rotation, shift)
     try:
         made = certified_dyads(asked, motion)
-    except Stopped:
+    except StopRequested:
         return replace(Certified.nothing(), why=STOPPED)
     why = why_open(made, motion)
     return replace(made, complete=not why, seconds=perf_counter() - since, why=why)
@@ -90,7 +90,7 @@ def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
     The curve of `asked` is that of the first four poses, and the displacements are seen from its origin. A
     cover of the curve is taken; a piece is dropped where the equation of the fifth pose has no zero on it,
     and settled where it lies in a box in which Krawczyk's test (*Computing* 4, 1969) proves that there is
-    exactly one zero of all four equations. Stopped if asked to stop.
+    exactly one zero of all four equations. StopRequested if asked to stop.
     """
     known = _certified(motion, five_pose_dyads(motion))
     active, count = squares(asked), 0

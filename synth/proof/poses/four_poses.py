@@ -13,7 +13,7 @@ from grashof.synth.proof.curve.trail import Trail
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 
 def bounds_of_four(
@@ -43,7 +43,7 @@ def bounds_of_four(
         why = "" if search.done or (search.lower and at_least is not None) else _open(search)
     except TooMany as ended:
         why = str(ended)
-    except Stopped:
+    except StopRequested:
         why = STOPPED
     return search.bounds(since, begun, look.best, without, why)
 

@@ -151,7 +151,7 @@ class Sites:
 def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
     """Whether no dyad meets what is asked of a side; None where that is open after so many tiles.
 
-    TooMany where nothing bounds the places of its pivots; Stopped if asked to stop.
+    TooMany where nothing bounds the places of its pivots; StopRequested if asked to stop.
     """
     active, count = side.tiles, 0
     while len(active):
@@ -182,7 +182,7 @@ class Tiling:
     def covering(cls, side: OneSide) -> Tiling:
         """Tiles that hold all dyads that may meet what is asked of one; not so many that pairs are too many.
 
-        TooMany where nothing bounds the places of its pivots; Stopped if asked to stop.
+        TooMany where nothing bounds the places of its pivots; StopRequested if asked to stop.
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:

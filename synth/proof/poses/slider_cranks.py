@@ -24,7 +24,7 @@ from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.cranks import Cranks
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
-from grashof.synth.theory.stopping import Stopped, stop_requested
+from grashof.synth.theory.stopping import StopRequested, stop_requested
 
 MOST_LEVELS = 60  # pieces are as small as rounding then
 MOST, JUDGED = 4000, 4  # pieces looked at of each level, and how many of them by the judge, twice
@@ -68,7 +68,7 @@ def bounds_of_slider_cranks(
         why = "" if search.done or (search.best and at_least is not None) else search.why
     except TooMany as ended:
         why = str(ended)
-    except Stopped:
+    except StopRequested:
         why = STOPPED
     made = Bounds(
         lower=search.lower,

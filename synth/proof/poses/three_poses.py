@@ -17,7 +17,7 @@ from grashof.synth.proof.poses.sides import OneSide, is_empty
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Dyads, polish
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 FEW = 100  # pairs of first tiles, as where pivots are given: these are bounded at once
 FEW_PAIRS = 20_000  # in all, then
@@ -61,7 +61,7 @@ def sides_of(scaled: ScaledProblem) -> Bounds | None:
     for is_driver, words in SIDES.items():
         try:
             empty = is_empty(OneSide.of(asked, is_driver=is_driver))
-        except (TooMany, Stopped):
+        except (TooMany, StopRequested):
             return None
         if empty:
             why = f"{words} meets the poses nowhere within its limits"
@@ -109,7 +109,7 @@ def bounds_of_three(
         why = "" if decided else _open(search)
     except TooMany as ended:
         why = str(ended)
-    except Stopped:
+    except StopRequested:
         why = STOPPED
     if not (proving.minutes or search.done):
         return None

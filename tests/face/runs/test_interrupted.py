@@ -17,7 +17,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
-from grashof.output.ending import Exit, interruptible
+from grashof.output.ending import ExitCode, interruptible
 from grashof.problems import Problem, problem_text
 from grashof.synth import Candidate
 
@@ -146,7 +146,7 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
 def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> None:
     with interruptible() as asked:
         os.kill(os.getpid(), signal.SIGHUP)
-        assert (asked(), asked.code, asked.by) == (True, Exit.TERMINATED, "SIGHUP")
+        assert (asked(), asked.code, asked.by) == (True, ExitCode.TERMINATED, "SIGHUP")
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     try:
         with interruptible() as asked:

@@ -23,7 +23,7 @@ from grashof.synth.theory.nine_points import (
     system,
     triplet_invariants,
 )
-from grashof.synth.theory.stopping import Stopped
+from grashof.synth.theory.stopping import StopRequested
 
 
 def test_system_vanishes_on_a_planted_linkage_and_its_slopes_are_right():
@@ -83,7 +83,7 @@ def test_what_one_run_has_lost_another_finds_and_a_stop_loses_nothing(monkeypatc
 
     def run(_target, _rng):
         if not runs:
-            raise Stopped
+            raise StopRequested
         return runs.pop(0)
 
     monkeypatch.setattr(nine_points, "_run", run)

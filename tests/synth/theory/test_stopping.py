@@ -3,7 +3,13 @@
 import pytest
 
 from grashof.synth.theory import stopping
-from grashof.synth.theory.stopping import Stopped, overdue, raise_if_overdue, raise_if_stopped, stop_requested
+from grashof.synth.theory.stopping import (
+    StopRequested,
+    overdue,
+    raise_if_overdue,
+    raise_if_stopped,
+    stop_requested,
+)
 
 
 def test_nobody_asks() -> None:
@@ -22,10 +28,10 @@ def test_what_soon_comes_to_something_has_time_for_it(monkeypatch: pytest.Monkey
         assert stop_requested()
         assert not overdue()
         raise_if_overdue()
-        with pytest.raises(Stopped):
+        with pytest.raises(StopRequested):
             raise_if_stopped()
         now = 25.1 + stopping.GRACE
         assert overdue()
-        with pytest.raises(Stopped):
+        with pytest.raises(StopRequested):
             raise_if_overdue()
     assert not overdue()
