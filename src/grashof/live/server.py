@@ -15,11 +15,9 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from grashof.live.asked import MOST_BYTES, job_of, opened, request_of
 from grashof.live.front import FRONT, live_page
-from grashof.live.jobs import error_line
-from grashof.live.session import Sessions
-from grashof.live.solvers import Solvers
+from grashof.live.requests import MOST_BYTES, error_line, job_of, opened, request_of
+from grashof.live.solvers import Sessions, Solvers
 from grashof.problems import ProblemError
 
 HOST = "127.0.0.1"

@@ -1,23 +1,27 @@
-"""Solver processes of the live page: warm, interruptible, replaced when one is lost."""
+"""Live pages, and the solver processes that work for them: warm, interruptible, replaced when one is lost."""
 
 from __future__ import annotations
 
 import asyncio
 import signal
+from collections import OrderedDict
 from collections.abc import AsyncGenerator, Callable
-from contextlib import suppress
-from dataclasses import dataclass, field
+from contextlib import aclosing, suppress
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from time import monotonic
 
-from grashof.live.jobs import Job, Line, error_line
+from grashof.live.requests import Job, Line, error_line
+from grashof.problems.values.errors import wrong_value
 
 WARM = 2  # one works, the other one takes over where that one does not stop at once
 GRACE = 2.0  # s after which a solver that was asked to stop is replaced
 PAUSE = 0.002  # s between two looks at a solver
+MOST_PAGES = 16
+_MOST_NAME = 64
 
 
 class State(Enum):
@@ -189,3 +193,51 @@ class Solvers:
         solver.end()
         if solver in self.every:
             self.every[self.every.index(solver)] = Solver.started()
+
+
+@dataclass(slots=True, eq=False)
+class Session:
+    """A page: its designs, as a solver wrote them, and its newest job; earlier jobs are left."""
+
+    solvers: Solvers
+    shown: bytes = b""
+    newest: Job | None = None
+
+    async def lines(self, job: Job) -> AsyncGenerator[str]:
+        """Lines of a job, as JSON; they end early when the page requests a newer one.
+
+        A file is made beside the other jobs.
+        """
+        aside = job.what == "file"
+        if not aside:
+            self.newest = job
+        job = job if aside else replace(job, shown=self.shown)
+        mine = self.newest
+
+        def left() -> bool:
+            return not aside and self.newest is not mine
+
+        async with aclosing(self.solvers.lines(job, left)) as lines:
+            async for line in lines:
+                if line.shown is not None and not left():
+                    self.shown = line.shown
+                yield line.text
+
+
+@dataclass(slots=True)
+class Sessions:
+    """Pages by their names; of more than `MOST_PAGES` the least recently used is forgotten."""
+
+    solvers: Solvers
+    pages: OrderedDict[str, Session] = field(default_factory=OrderedDict)
+
+    def of(self, page: object) -> Session:
+        """The page of a name; ProblemError where the name is invalid."""
+        if not isinstance(page, str) or not 0 < len(page) <= _MOST_NAME:
+            raise wrong_value("page", page, f"a name of up to {_MOST_NAME} characters")
+        if page not in self.pages:
+            self.pages[page] = Session(self.solvers)
+            if len(self.pages) > MOST_PAGES:
+                self.pages.popitem(last=False)
+        self.pages.move_to_end(page)
+        return self.pages[page]

@@ -8,11 +8,9 @@ from typing import Any
 
 import anywidget
 
-from grashof.live.asked import beginning, job_of, opened, request_of
 from grashof.live.front import widget_module
-from grashof.live.jobs import error_line
-from grashof.live.session import Session
-from grashof.live.solvers import Solvers
+from grashof.live.requests import beginning, error_line, job_of, opened, request_of
+from grashof.live.solvers import Session, Solvers
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Candidate

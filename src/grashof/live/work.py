@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.live.jobs import Job, Line, error_line
+from grashof.live.requests import Job, Line, error_line
 from grashof.page.designs import moves
 from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError

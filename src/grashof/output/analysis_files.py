@@ -12,8 +12,8 @@ import pandas as pd
 from rich.table import Table
 
 from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
+from grashof.output.process import say
 from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
-from grashof.output.streams import say
 from grashof.output.terminal import fitting, folded, plain_table
 from grashof.survey import Fact, LinkageReport, Section
 from grashof.wording.linkage import dimensions_text

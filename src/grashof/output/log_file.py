@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from grashof.output.folder import is_own_name
-from grashof.output.streams import say
+from grashof.output.process import say
 from grashof.problems import ProblemError
 from grashof.synth.search.journal import is_record_name
 

@@ -19,8 +19,8 @@ from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.driven import cylinder_forces
 from grashof.output.drawing import Drawer, Files, drawer
-from grashof.output.ending import ExitCode, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
+from grashof.output.process import ExitCode, Interruption
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
@@ -82,8 +82,8 @@ def _write_lists(folder: Path, result: Result) -> list[Row]:
     return rows
 
 
-def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
-    """How many drawings that were asked for are not among the files of a run."""
+def missing_drawings(result: Result, drawings: int, files: Iterable[str]) -> int:
+    """Number of requested drawings that are not among the files of a run."""
     return min(drawings, len(result)) - sum(name.endswith(".png") for name in files)
 
 
@@ -105,7 +105,7 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = listed_files(folder, RECORD, others)
-    history = _history(result, left_out(result, drawings, files), stop)
+    history = _history(result, missing_drawings(result, drawings, files), stop)
     write_json(folder / RECORD, _record(result, settings, history, files))
     return files
 

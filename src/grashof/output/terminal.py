@@ -15,7 +15,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.output.streams import say
+from grashof.output.process import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted

@@ -44,7 +44,7 @@ class Checkpoints:
             if record is not None and not record["complete"]:
                 raise ProblemError(
                     f"{self.folder}: holds an unfinished sweep, {len(self._files())} of {record['tasks']} "
-                    "tasks done; --resume goes on with it, or name another folder"
+                    "tasks done; --resume continues it, or name another folder"
                 )
             return {}
         if record is None:

@@ -79,7 +79,7 @@ def _elsewhere(
                     yield key, result
     except BrokenExecutor as error:
         if not stop():  # who ends a group of processes ends these, too
-            raise SolverError(f"a worker process was lost: {error}; --resume goes on") from error
+            raise SolverError(f"a worker process was lost: {error}; --resume continues it") from error
     finally:
         for future in left:
             future.cancel()

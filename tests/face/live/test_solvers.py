@@ -13,9 +13,8 @@ from typing import Any
 import pytest
 
 from grashof import load, synthesize
-from grashof.live.jobs import Job, Line
-from grashof.live.session import MOST_PAGES, Sessions
-from grashof.live.solvers import GRACE, TRIES, Solvers, State
+from grashof.live.requests import Job, Line
+from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
 from grashof.problems.files.toml_file import document_of

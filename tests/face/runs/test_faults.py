@@ -15,7 +15,7 @@ from matplotlib.animation import FuncAnimation
 from grashof.cli import main
 from grashof.output import run_files
 from grashof.output.analysis_files import write_report
-from grashof.output.streams import say
+from grashof.output.process import say
 from grashof.problems import SolverError, load_linkage_spec
 from grashof.survey import report_on
 from grashof.synth.search import journal
@@ -178,7 +178,7 @@ def test_a_full_disk_costs_neither_the_table_nor_the_search(
         done = grashof("solve", "luggage", *QUICK)
     assert done.exit_code == 3
     assert "No space left on device" in done.stderr
-    assert "search so far; --resume goes on with it" in done.stderr
+    assert "search so far; --resume continues it" in done.stderr
     assert "distinct verified" in done.stdout
     folder = tmp_path / "luggage-designs"
     assert [path.name for path in folder.iterdir()] == ["search"]
@@ -200,7 +200,7 @@ def test_a_record_that_cannot_be_written_ends_the_record_alone(
     monkeypatch.setattr(journal, "write_whole", fail)
     done = grashof("solve", "luggage", *QUICK)
     assert (done.exit_code, done.stdout) == (0, whole.stdout)
-    assert done.stderr.count("No space left on device; the search went on without its record") == 1
+    assert done.stderr.count("No space left on device; the search continued without its record") == 1
     folder = tmp_path / "luggage-designs"
     assert "No space left on device" in json.loads((folder / "run.json").read_text())["run"]["record_lost"]
     assert not (folder / "search").exists()
@@ -226,7 +226,7 @@ def test_a_kind_that_fails_costs_no_design_of_another(
     assert done.exit_code == 3
     assert said in done.stderr
     assert "the search failed; listed is what was verified until then" in done.stderr
-    assert "search so far; --resume goes on with it" in done.stderr
+    assert "search so far; --resume continues it" in done.stderr
     designs = json.loads((tmp_path / "line-designs" / "candidates.json").read_text())["designs"]
     assert {each["mechanism"] for each in designs} == {"four-bar"}
     assert json.loads((tmp_path / "line-designs" / "run.json").read_text())["run"]["ending"] == "failed"

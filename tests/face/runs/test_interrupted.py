@@ -17,7 +17,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
-from grashof.output.ending import ExitCode, interruptible
+from grashof.output.process import ExitCode, interruptible
 from grashof.problems import Problem, problem_text
 from grashof.synth import Candidate
 

@@ -95,7 +95,7 @@ def test_a_signal_ends_the_search_and_writes_what_it_has(
     _, said = process.communicate(timeout=60)
     assert process.returncode == code
     assert time.monotonic() - begun < 6  # of which 2 are the search's; machines are busy
-    assert "--resume goes on with it" in said
+    assert "--resume continues it" in said
     assert f"drawings are left out: {name} came before 1 of them were made" in said.splitlines()
     told = json.loads((out / "run.json").read_text())["run"]
     assert told["ending"] == told["why_left_out"] == ending

@@ -145,7 +145,7 @@ def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> Non
     said = process.stderr.read()
     assert process.wait(timeout=60) == 143
     assert time.monotonic() - begun < 6
-    first = re.search(r"shard 1/1: (\d+) of 40 chunks.*; the same command goes on with it", said)
+    first = re.search(r"shard 1/1: (\d+) of 40 chunks.*; the same command continues it", said)
     assert first is not None
     process.stderr.close()
     again = subprocess.run([*command, "--time-limit", "1"], cwd=tmp_path, capture_output=True, text=True)

@@ -90,13 +90,13 @@ def test_a_signal_leaves_what_is_finished(
     ended = grashof("sweep", write(), "--out", tmp_path / "out")
     assert ended.exit_code == 128 + number
     assert "3 of 12 combinations done" in ended.stdout
-    assert "--resume goes on" in ended.stderr
+    assert "--resume continues it" in ended.stderr
     assert signal.getsignal(number) is before
     assert len(pd.read_csv(tmp_path / "out" / "sweep.csv")) == 3
     refused = grashof("sweep", write(), "--out", tmp_path / "out")
     assert refused.exit_code == 2
     assert refused.stderr.count("\n") == 1
-    assert "3 of 12 tasks done; --resume goes on with it" in refused.stderr
+    assert "3 of 12 tasks done; --resume continues it" in refused.stderr
     assert grashof("sweep", write(), "--out", tmp_path / "out", "--resume").exit_code == 0
     assert len(done) == 4 + 9
 

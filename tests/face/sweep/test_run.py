@@ -116,7 +116,7 @@ def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pyt
     kept = sorted((out / "tasks").iterdir())
     other = write('problem = "base.toml"\n[vary]\nsearch.seed = [1]\n', "other.toml")
     refusals = [
-        (study, {}, "holds an unfinished sweep, 4 of 12 tasks done; --resume goes on with it"),
+        (study, {}, "holds an unfinished sweep, 4 of 12 tasks done; --resume continues it"),
         (study, {"resume": True, "designs": 2}, "holds a sweep of another study or of other options"),
         (other, {"resume": True}, "holds a sweep of another study"),
     ]
