@@ -11,8 +11,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.mechanism.position import places
 from grashof.drawing.scene import Scene
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems import Linkage
 from grashof.problems.values.linkages.mechanism import DyadKind
 

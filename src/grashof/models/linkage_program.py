@@ -7,8 +7,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 
 from grashof.drawing.scene import Scene, Slide
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 

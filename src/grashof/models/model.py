@@ -1,7 +1,8 @@
-"""What models of a linkage begin from: the linkage as it is used, its driver's way, and its links' masses."""
+"""The common base of models: a linkage as it is used, the range of its driver, the masses of its links."""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -111,3 +112,8 @@ class Model:
 def _has_masses(dynamics: DynamicsSpec) -> bool:
     stated = (dynamics.masses, dynamics.density, dynamics.mass_per_length)
     return any(each is not None for each in stated)
+
+
+def add(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
+    """Add an element to another one."""
+    return ET.SubElement(parent, tag, attributes)

@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.drawing.scene import Scene
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
 

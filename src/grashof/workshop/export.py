@@ -14,13 +14,12 @@ from grashof.problems.values.checks import finite_number, positive_number
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.linkage_spec import ListedDesign
-from grashof.workshop.dxf import dxf
 from grashof.workshop.files import write_whole
+from grashof.workshop.formats import dxf, svg
 from grashof.workshop.plan import Plan, plan_parts
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.sheet import sheet
 from grashof.workshop.solids import step, stl
-from grashof.workshop.svg import svg
 from grashof.workshop.workbook import listed_candidates, workbook
 
 

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 from grashof.problems import LinkageSpec
 from grashof.problems.values.specs.linkage_spec import ListedDesign
-from grashof.workshop.dxf import dxf
+from grashof.workshop.formats import dxf, svg
 from grashof.workshop.plan import Plan
 from grashof.workshop.sheet import sheet
-from grashof.workshop.svg import svg
 from grashof.workshop.workbook import workbook
 
 if TYPE_CHECKING:

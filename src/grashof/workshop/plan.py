@@ -11,9 +11,8 @@ from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
-from grashof.workshop.link_plates import base_plate, link_plates
+from grashof.workshop.link_plates import Slot, base_angle, base_plate, link_plates, slots_of
 from grashof.workshop.plates import Plate, PlateSizes, spacer
-from grashof.workshop.slots import Slot, base_angle, slots_of
 from grashof.workshop.stacking import GROUND, Pin, Stack, pinned, placed, poses, ranges_of_use, stack, sweep
 
 _MOST_MET = 8  # pairs that notes name

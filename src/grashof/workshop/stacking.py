@@ -24,13 +24,12 @@ from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.workshop.plates import Plate, PlateSizes
-from grashof.workshop.return_crank import ReturnCrank, return_cranks
-from grashof.workshop.slots import base_angle
+from grashof.workshop.link_plates import base_angle
+from grashof.workshop.plates import Plate, PlateSizes, bar, plate_of
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
 _SAMPLES = 721
-GROUND = "ground"
+GROUND, DRIVER, RETURN_CRANK = "ground", "driver", "return crank"
 _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
 
 
@@ -61,6 +60,27 @@ class Pin:
     def passed(self) -> tuple[int, ...]:
         """Layers between, where it runs in spacers."""
         return tuple(layer for layer in range(self.low + 1, self.high) if layer not in self.held)
+
+
+class ReturnCrank(NamedTuple):
+    """A driver in two plates on `pin`, of which the return crank, `turned` by so many rad, holds `far`."""
+
+    pin: str
+    far: str
+    turned: float
+    plates: dict[str, Plate]
+
+    def pinned(self, joints: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+        """What each pin joins then."""
+        found = dict(joints)
+        found[self.pin] = (*joints[self.pin], RETURN_CRANK)
+        found[self.far] = tuple(RETURN_CRANK if part == DRIVER else part for part in joints[self.far])
+        return found
+
+    def placed(self, places: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        """The places of links and pins, with that of the return crank."""
+        angle = places[DRIVER][:, 2] + self.turned
+        return {**places, RETURN_CRANK: np.column_stack([places[self.pin][:, :2], angle])}
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +187,19 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
         f"no order of the layers lets the plates of the {linkage.mechanism.word} pass each other; on one "
         f"base {next(iter(met))}"
     )
+
+
+def return_cranks(plates: Mapping[str, Plate], sizes: PlateSizes) -> Iterator[ReturnCrank]:
+    """The two ways to divide a driver that has two crank pins, A and C; none of others."""
+    driver = plates[DRIVER]
+    for pin, far in (("A", "C"), ("C", "A")):
+        holes = dict(zip(driver.joints, driver.holes, strict=True))
+        if far not in holes or pin not in holes:
+            continue
+        x, y = holes.pop(far) - holes[pin]
+        crank = bar(RETURN_CRANK, (pin, far), (0.0, float(np.hypot(x, y))), sizes)
+        divided = {DRIVER: plate_of(DRIVER, holes, sizes), RETURN_CRANK: crank}
+        yield ReturnCrank(pin, far, float(np.arctan2(y, x)), {**plates, **divided})
 
 
 class _Bench:

@@ -24,9 +24,8 @@ from grashof.problems import FourBar, ProblemError, load_linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result
 from grashof.workshop import Plan, PlateSizes, plan_parts, write_dxf, write_svg
-from grashof.workshop.dxf import dxf
+from grashof.workshop.formats import dxf, svg
 from grashof.workshop.sheet import sheet
-from grashof.workshop.svg import svg
 
 SIZES = PlateSizes(width=20, hole=6, thickness=5, clearance=1)
 LINKAGES = {
