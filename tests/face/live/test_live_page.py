@@ -49,6 +49,7 @@ def test_a_pose_is_dragged_by_its_place_and_by_its_angle(page: Page) -> None:
     assert searched(page)["document"]["motion"]["poses"] == after
 
 
+@pytest.mark.slow
 def test_a_locked_target_stays(page: Page) -> None:
     page.locator("tr[data-target='1'] [data-do=lock]").click()
     before = state(page)["document"]

@@ -1,4 +1,4 @@
-"""Runs that are killed, interrupted or ended, and gone on with."""
+"""Runs that are killed, interrupted or ended, and resumed."""
 
 from __future__ import annotations
 
@@ -103,20 +103,23 @@ def test_a_signal_ends_the_search_and_writes_what_it_has(
     assert (out / "search" / "search.json").exists()
 
 
-def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_record_that_is_not_resumed_is_kept(
+    grashof: Grashof, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     record = tmp_path / "luggage-designs" / "search"
     record.mkdir(parents=True)
     (record / "search.json").write_text("{}", encoding="utf-8")
     refused = grashof(*FOUR, "--resume")
     assert refused.exit_code == 2
     assert "search.json: is not the record of a search" in refused.stderr
+    request.getfixturevalue("found_at_once")
     done = grashof(*FOUR)
     assert done.exit_code == 0
     assert "the record of an unfinished search is kept as search-old" in done.stderr
     assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
 
 
-@pytest.mark.quick("search-old")
+@pytest.mark.usefixtures("found_at_once")
 @pytest.mark.parametrize("place", ["search", "search-old"])
 def test_files_of_others_beside_a_record_are_never_deleted(
     grashof: Grashof, tmp_path: Path, place: str
@@ -136,14 +139,6 @@ def test_files_of_others_beside_a_record_are_never_deleted(
     assert kept.read_text(encoding="utf-8") == "mine"
 
 
-def test_a_folder_of_others_named_search_stays(grashof: Grashof, tmp_path: Path) -> None:
-    mine = tmp_path / "luggage-designs" / "search" / "notes"
-    mine.parent.mkdir(parents=True)
-    mine.touch()
-    assert grashof(*FOUR).exit_code == 0
-    assert mine.exists()
-
-
 def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> None:
     folder = tmp_path / "luggage-designs"
     folder.mkdir()
@@ -154,22 +149,26 @@ def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> Non
     assert [path.name for path in folder.iterdir()] == ["search"]
 
 
-def test_two_runs_do_not_share_a_folder(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_run_has_its_folder_to_itself_and_removes_the_rest_of_a_killed_one(
+    grashof: Grashof, tmp_path: Path
+) -> None:
     folder = tmp_path / "luggage-designs"
     with in_use(folder):
         done = grashof(*FOUR)
     assert done.exit_code == 2
     assert done.stderr.splitlines()[-1].endswith("name another folder")
-    assert grashof(*FOUR).exit_code == 0
+    left, mine = folder / ".writing-abc", folder / "search" / "notes"
+    for path in (left / "candidates.csv", mine):
+        path.parent.mkdir(parents=True)
+        path.touch()
+    done = grashof(*FOUR)
+    assert done.exit_code == 0
+    assert not left.exists()
+    assert mine.exists()
 
 
-def test_what_a_killed_run_left_is_removed_and_without_a_record_it_begins_anew(
-    grashof: Grashof, tmp_path: Path
-) -> None:
-    left = tmp_path / "luggage-designs" / ".writing-abc"
-    left.mkdir(parents=True)
-    (left / "candidates.csv").touch()
+@pytest.mark.usefixtures("found_at_once")
+def test_without_a_record_a_resumed_search_begins_anew(grashof: Grashof) -> None:
     done = grashof(*FOUR, "--resume")
     assert done.exit_code == 0
     assert "has no record of a search; it begins anew" in done.stderr
-    assert not left.exists()
