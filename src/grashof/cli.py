@@ -22,7 +22,7 @@ from grashof.options import parameters
 from grashof.output.process import ExitCode, say
 from grashof.problems import ProblemError, SolverError
 
-TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: unexpected errors with their traceback
+TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: print tracebacks of unexpected errors
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
@@ -42,7 +42,7 @@ class _Commands(TyperGroup):
         except OSError as error:  # of the help or the version: commands report their own
             say(f"grashof: {f'standard output: {error.strerror}' if error.strerror else error}", err=True)
             code = ExitCode.SURROUNDINGS
-        except Exception as error:  # noqa: BLE001  (the outermost boundary: nobody else reports what is left)
+        except Exception as error:  # noqa: BLE001  (the outermost boundary: nothing else reports it)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)
             say(f"grashof: {_unexpected(error)}", err=True)
@@ -112,10 +112,10 @@ for _run in (
 
 def main() -> None:
     """Entry point of the `grashof` command."""
-    # Drawings go to files: a backend meant for windows, or a misspelt one, must not stand in the way.
+    # Drawings go to files: a backend for windows, or a misspelt one, must not interfere.
     os.environ["MPLBACKEND"] = "agg"
-    gc.set_threshold(50_000)  # what is loaded stays: to look through it often takes time
-    atexit.register(gc.freeze)  # looking through it at the end takes 0.15 s
+    gc.set_threshold(50_000)  # loaded modules stay: scanning them often takes time
+    atexit.register(gc.freeze)  # a scan at the end takes 0.15 s
     app(prog_name="grashof")
 
 

@@ -1,4 +1,4 @@
-"""What notebooks show of linkages, designs and results: a table and a small drawing, as HTML."""
+"""Linkages, designs and results in notebooks: a table and a small drawing, as HTML."""
 
 from __future__ import annotations
 

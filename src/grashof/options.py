@@ -45,7 +45,7 @@ _Drawings = Annotated[int, _option("Designs to draw.", min=0)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolveOptions:
-    """How to search and what to write; None where the problem, or its default, states it."""
+    """How to search, and files to write; None where the problem, or its default, states it."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-designs by default.")] = None
     starts: Annotated[int | None, _unset("Most Ipopt solves.", min=1)] = None
@@ -65,14 +65,14 @@ class SolveOptions:
     resume: Annotated[bool, _option("Continue the unfinished search in --out.", "--resume")] = False
     scheduler: _Scheduler = None
     shard: Annotated[
-        str | None, _unset("Part I of N of the whole search; grashof merge follows.", metavar="I/N")
+        str | None, _unset("Part I of N of the search; grashof merge follows.", metavar="I/N")
     ] = None
-    log: Annotated[Path | None, _unset("File to append a log to: rounds, every start, what was lost.")] = None
+    log: Annotated[Path | None, _unset("File to append a log to: rounds, starts, lost processes.")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MergeOptions:
-    """Which shards the list is made from, and what is written."""
+    """Shards of the list, and files to write."""
 
     partial: Annotated[bool, _option("Accept the shards that are done.", "--partial")] = False
     workers: _Workers = 1
@@ -82,7 +82,7 @@ class MergeOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SweepOptions:
-    """Where a study is solved and what is listed of it."""
+    """Where a study is solved, and how many designs are listed."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-sweep by default.")] = None
     workers: _Workers = 1
@@ -93,7 +93,7 @@ class SweepOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProveOptions:
-    """What to prove, and for how long."""
+    """The claim to prove, and the time for it."""
 
     at_least: Annotated[
         float | None, _unset("Only decide whether a design has this many deg.", min=0, max=90)
@@ -108,7 +108,7 @@ class ProveOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnalyseOptions:
-    """What to analyse and what to write."""
+    """Contents of an analysis, and its files."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-analysis by default.")] = None
     speed_rpm: Annotated[float | None, _unset("Of the driver, clockwise below 0; the file's by default.")] = (

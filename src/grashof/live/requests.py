@@ -133,7 +133,7 @@ def refuse_too_much(document: dict[str, Any]) -> None:
     targets = max(map(len, lists), default=0)
     if targets > MOST_TARGETS:
         raise ProblemError(f"the task has {targets} targets; the live page takes at most {MOST_TARGETS}")
-    _count_numbers(document)  # refuses what is too deep
+    _count_numbers(document)  # refuses deep nesting
     corners = _count_numbers([document.get("scene"), _entry(document, "requirements", "keep_out")])
     if corners > 2 * MOST_CORNERS:
         raise ProblemError(

@@ -36,9 +36,9 @@ JSON_LINES = "application/x-ndjson"
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What is served: `begin` has the "document" and "name" of a new page, `port` and host its own origin.
+    """A server: `begin` has the "document" and "name" of a new page; host and `port` are its origin.
 
-    Every request has to bring the token along; the page has it from the fragment of its address.
+    Every request needs the token, which the page has from the fragment of its address.
     """
 
     begin: dict[str, Any]
@@ -48,17 +48,17 @@ class Live:
 
     @property
     def origin(self) -> str:
-        """Where the page comes from."""
+        """Origin of the page."""
         return f"http://{HOST}:{self.port}"
 
     @property
     def address(self) -> str:
-        """What to open in a browser."""
+        """Address for the browser."""
         return f"{self.origin}/#{self.token}"
 
 
 def application(live: Live) -> Starlette:
-    """The application: the page, its style and scripts, and what the page asks for."""
+    """The application: the page, its style and scripts, and the answers to its requests."""
     sessions = Sessions(live.solvers)
 
     async def page(_request: Request) -> Response:
@@ -100,7 +100,7 @@ def application(live: Live) -> Starlette:
 
 
 async def _until_left(lines: AsyncGenerator[str]) -> AsyncIterator[str]:
-    """Lines of a job; closing the request ends the work."""
+    """Lines of a job, which ends when the request is closed."""
     async with aclosing(lines):
         async for line in lines:
             yield line + "\n"
@@ -110,7 +110,7 @@ Answer = Callable[[Request, dict[str, Any]], Awaitable[Response]]
 
 
 def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Response]]:
-    """An answer to requests of our own page alone."""
+    """Answer only requests of our own page."""
 
     async def guarded(request: Request) -> Response:
         if request.headers.get("origin") != live.origin:
@@ -129,7 +129,7 @@ def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Respon
 
 
 async def _body(request: Request) -> bytes:
-    """The body, as long as it is not too large."""
+    """The body; ProblemError where it is too large."""
     stated = request.headers.get("content-length", "")
     if stated.isdecimal() and int(stated) > MOST_BYTES:
         raise ProblemError(f"the request has {stated} bytes; at most {MOST_BYTES} are allowed")

@@ -17,12 +17,12 @@ from grashof.synth import Candidate
 
 
 class LiveWidget(anywidget.AnyWidget):
-    """A page in a cell; what it shows is read by `problem` and `designs`.
+    """A page in a cell; `problem` and `designs` are those on it.
 
     Parameters
     ----------
     problem : Problem or str
-        What it begins with.
+        At the beginning.
     """
 
     _esm = widget_module()
@@ -53,7 +53,7 @@ class LiveWidget(anywidget.AnyWidget):
         super().close()
 
     def _asked(self, _widget: object, message: dict[str, Any], _buffers: object) -> None:
-        """Answer a message of the page, besides what else the kernel does."""
+        """Answer a message of the page, beside other work of the kernel."""
         number = message.get("number")
         if not isinstance(number, int):
             return

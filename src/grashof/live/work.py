@@ -1,4 +1,4 @@
-"""What a solver of the live page does: designs followed, searched for, written to files; as lines of JSON."""
+"""The work of a solver of the live page: designs followed, searched for, written to files; as JSON lines."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from grashof.wording.problem import summary
 TOP = 50  # families in a list, as `grashof solve` has them
 TIME_LIMIT = 120.0  # s, of a search
 TRACKED = 10  # designs that follow the hand
-# What of a design is known at once; other figures take longer than to follow it.
+# Quantities known at once; others take longer than following the design.
 _FOLLOWED = ("error", "transmission_min_task", "transmission_min_cycle", "size", *DIMENSIONS)
 AT_ONCE = tuple(each for each in LISTED if each.key in _FOLLOWED)
-ABSENT = 100  # designs of lists before that are known when they come back
-SHARE = 0.2  # of the time of a search that telling of it may take
-SAME = 1e-6  # of all that states them: two designs are one
+ABSENT = 100  # designs of earlier lists that are recognised when they return
+SHARE = 0.2  # of the time of a search, for reports
+SAME = 1e-6  # of the largest parameter: then two designs are the same
 
 
 @dataclass(frozen=True, slots=True)
 class Shown:
     """Designs on a page by their keys, which stay while a design is followed.
 
-    `absent` are those of lists before, which a search that goes on may find again.
+    `absent` are those of earlier lists, which a continued search may find again.
     """
 
     designs: Mapping[int, Candidate] = field(default_factory=dict)
@@ -50,15 +50,15 @@ class Shown:
 
     @classmethod
     def read(cls, shown: bytes) -> Shown:
-        """As a job before wrote it."""
+        """As the previous job wrote it."""
         return pickle.loads(shown) if shown else cls()  # noqa: S301  (our own, from a solver)
 
     def written(self) -> bytes:
-        """For the next job, in whatever process."""
+        """For the next job, in any process."""
         return pickle.dumps(self)
 
     def matched(self, found: Sequence[Candidate], result: Result | None = None) -> Shown:
-        """A new list; designs that are known keep their keys, a search that is done forgets the others."""
+        """A new list; known designs keep their keys, and the end of a search forgets the others."""
         known = {**self.designs, **self.absent}
         stated = {key: _numbers(design) for key, design in known.items()}
         designs: dict[int, Candidate] = {}
@@ -73,7 +73,7 @@ class Shown:
         return Shown(designs, dict(islice(absent.items(), ABSENT)), result, key)
 
     def following(self, designs: Mapping[int, Candidate]) -> Shown:
-        """Of the list only those that are followed, as they are now."""
+        """The followed designs of the list, as they are now."""
         others = {key: design for key, design in self.designs.items() if key not in designs}
         return replace(self, designs=designs, absent={**others, **self.absent}, result=None)
 
@@ -87,14 +87,14 @@ def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
     return one.shape == other.shape and bool(np.abs(one - other).max() <= SAME * np.abs(one).max())
 
 
-def lines(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
-    """Do a job, and `tell` each line, the last that it is done; it ends soon after `stop`, asked often."""
+def lines(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) -> None:
+    """Do a job and `send` each line, the last of kind "done"; it ends soon after `stop`, called often."""
     since = perf_counter()
     try:
-        _JOBS[job.what](job, stop, tell)
+        _JOBS[job.what](job, stop, send)
     except ProblemError as error:
-        tell(error_line(*str(error).splitlines()))
-    tell(_line("done", seconds=round(perf_counter() - since, 4)))
+        send(error_line(*str(error).splitlines()))
+    send(_line("done", seconds=round(perf_counter() - since, 4)))
 
 
 def _line(kind: str, shown: Shown | None = None, **content: Any) -> Line:
@@ -106,7 +106,7 @@ def _problem(job: Job) -> Problem:
     return problem_from(job.document, job.name)
 
 
-def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
+def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
     order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
@@ -120,32 +120,32 @@ def _track(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
         if not design.verdict.ok
     }
     # A lost one stays as it last was, and may come back from there.
-    tell(_list_line("track", problem, there, shown.following({**kept, **there}), lost=lost))
+    send(_list_line("track", problem, there, shown.following({**kept, **there}), lost=lost))
 
 
-def _search(job: Job, stop: Callable[[], bool], tell: Callable[[Line], object]) -> None:
+def _search(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
     next_at = 0.0
 
-    def told(progress: Progress) -> None:
+    def report(progress: Progress) -> None:
         nonlocal shown, next_at
         since = perf_counter()
-        tell(_line("progress", solved=progress.solved, starts=progress.starts, verified=progress.verified))
+        send(_line("progress", solved=progress.solved, starts=progress.starts, verified=progress.verified))
         if since < next_at or stop() or not progress.designs:
             return
         so_far = Result(problem, progress.designs).top(TOP)
         shown = shown.matched(so_far.candidates)
-        tell(_list_line("searching", problem, shown.designs, shown))
+        send(_list_line("searching", problem, shown.designs, shown))
         now = perf_counter()
         next_at = now + (now - since) / SHARE
 
-    result = synthesize(problem, progress=told, stop=stop, time_limit=TIME_LIMIT).top(TOP)
+    result = synthesize(problem, progress=report, stop=stop, time_limit=TIME_LIMIT).top(TOP)
     if stop():
         return
     shown = shown.matched(result.candidates, result)
     misses = shown.matched(() if shown.designs else result.nearest)
     shown = replace(shown, next_key=misses.next_key)
-    tell(_list_line("found", problem, shown.designs or misses.designs, shown, result))
+    send(_list_line("found", problem, shown.designs or misses.designs, shown, result))
 
 
 def _list_line(
@@ -160,8 +160,8 @@ def _list_line(
     drawn = {key: one for key, one in designs.items() if moves(one)}
     misses = {key: "; ".join(map(str, one.verdict.defects)) for key, one in drawn.items()}
     listing = Result(problem, tuple(drawn.values())) if result is None else result
-    told = AT_ONCE if phase == "track" else LISTED
-    rows = rows_of(problem, list(drawn.values()), told)
+    columns = AT_ONCE if phase == "track" else LISTED
+    rows = rows_of(problem, list(drawn.values()), columns)
     data = search_data(problem, list(drawn.values()), rows, found=result is None or bool(result.candidates))
     for key, design in zip(drawn, data["designs"], strict=True):
         design |= {"key": key, "misses": misses[key]}
@@ -181,12 +181,12 @@ def _asked(problem: Problem) -> list[str]:
     return [line.strip() for line in summary(problem)][1:]
 
 
-def _file(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
+def _file(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     """A file to save: the problem, or one that `grashof solve` or `grashof export` writes of the list."""
     problem, wanted = _problem(job), job.options["file"]
     text = problem_toml(problem)
     if wanted == "problem":
-        tell(_line("file", name=f"{job.name}.toml", type="application/toml", text=text))
+        send(_line("file", name=f"{job.name}.toml", type="application/toml", text=text))
         return
     shown = Shown.read(job.shown)
     there = {key: design for key, design in shown.designs.items() if design.verdict.ok}
@@ -196,7 +196,7 @@ def _file(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
     with TemporaryDirectory() as name:
         made, kind = _FILES[wanted](Path(name), result, text, there.get(job.options.get("key", 0)))
         content = made.read_text(encoding="utf-8")
-    tell(_line("file", name=f"{job.name}-{made.name}", type=kind, text=content))
+    send(_line("file", name=f"{job.name}-{made.name}", type=kind, text=content))
 
 
 def _run_file(name: str, kind: str) -> Callable[..., tuple[Path, str]]:
@@ -224,12 +224,12 @@ def _dxf(folder: Path, result: Result, text: str, design: Candidate | None) -> t
     return file, "image/vnd.dxf"
 
 
-def _outline(job: Job, _stop: object, tell: Callable[[Line], object]) -> None:
-    """The lines of a DXF drawing, to be seen behind the task."""
+def _outline(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
+    """The lines of a DXF drawing, shown behind the task."""
     from grashof.problems.files.dxf_lines import dxf_polylines
 
     lines = dxf_polylines(job.options["text"])
-    tell(_line("outline", polylines=[line.tolist() for line in lines]))
+    send(_line("outline", polylines=[line.tolist() for line in lines]))
 
 
 _FILES = {
@@ -247,7 +247,7 @@ _JOBS: dict[str, Callable[[Job, Callable[[], bool], Callable[[Line], object]], N
 
 
 def warm_up() -> None:
-    """Load all that a first job would wait for."""
+    """Load all modules and caches of a first job."""
     from grashof.problems import load
     from grashof.problems.files.problem_file import problem_text
     from grashof.problems.files.toml_file import document_of

@@ -1,4 +1,4 @@
-"""What `grashof analyse` writes and prints."""
+"""The files and the output of `grashof analyse`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
 
 def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
-    """Write tables, summary, page, plots (pictures too, if asked) and their record; the files' names, sorted.
+    """Write tables, summary, page, plots, `pictures` too, and their record; the files' names, sorted.
 
     OSError where the disk is full or the folder is lost; it then holds what it held before.
     """
@@ -153,7 +153,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
 
 
 def _finite(value: Any) -> Any:
-    """As JSON knows it: null for NaN, words for infinity."""
+    """A value for JSON: null for NaN, words for infinity."""
     value = value.item() if isinstance(value, np.generic) else value
     if not isinstance(value, float) or np.isfinite(value):
         return value

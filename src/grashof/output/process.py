@@ -1,4 +1,4 @@
-"""How a command speaks and ends: lines on stdout and stderr, exit codes, Ctrl-C, SIGTERM and SIGHUP."""
+"""Lines on stdout and stderr, exit codes, and the handling of Ctrl-C, SIGTERM and SIGHUP."""
 
 from __future__ import annotations
 
@@ -70,16 +70,16 @@ def interruptible() -> Iterator[Interruption]:
 
 
 def say(line: str, *, err: bool = False) -> None:
-    """Print a line; from the moment that nobody reads the stream any more (`| head`), nothing.
+    """Print a line; nothing once nobody reads the stream any more (`| head`).
 
     Control characters, such as of file names, do not reach the terminal. OSError where stdout cannot be
-    written, such as to a full disk; what is said on stderr never costs a result.
+    written, such as to a full disk; lines on stderr never cost a result.
     """
     stream = sys.stderr if err else sys.stdout
     try:
         typer.echo(_LAID_OUT.sub(lambda found: readable(found[0]), line), err=err)
     except OSError as error:
-        # Not only this line: what the stream still holds is flushed when the interpreter ends.
+        # Not only this line: the rest of the buffer is flushed when the interpreter ends.
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, stream.fileno())
         os.close(nowhere)

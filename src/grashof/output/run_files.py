@@ -1,4 +1,4 @@
-"""What a run writes: the candidates as CSV and JSON, the closest miss, the page, the record, the drawings."""
+"""The files of a run: candidates as CSV and JSON, the closest misses, the page, the record, the drawings."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def write_run(
     """Write all files of a run, the lists first; names, sorted. A drawing that fails does not cost the lists.
 
     `settings` go into the record, `problem_text` into the page. `listed` is called once the lists are in the
-    folder; `stop` is asked before each of the `drawings` best is drawn. OSError where the disk is full or the
-    folder is lost; it then holds what it held before, or the lists alone.
+    folder, `stop` before each of the `drawings` best is drawn. OSError for a full disk or a lost folder; it
+    then holds its former files, or the lists alone.
     """
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]
@@ -177,7 +177,7 @@ def _written(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def _about(settings: dict[str, Any]) -> dict[str, Any]:
-    """What it takes to run the search again."""
+    """Versions and settings, from which the search can be repeated."""
     return {"versions": versions_of(_PACKAGES), "settings": settings}
 
 
@@ -190,20 +190,20 @@ _ENDINGS = {ExitCode.INTERRUPTED: StopReason.INTERRUPTED, ExitCode.TERMINATED: S
 
 
 def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:
-    """What happened to the run until now; None of a list that no search made."""
+    """The history of the run until now; None for a list that no search made."""
     if result.history is None:
         return None
     ending = _ENDINGS.get(stop.code, result.history.ending)
     why = ending if stop() else "the run ended before they were drawn"
-    told = replace(
+    history = replace(
         result.history,
         ended=now(),
         ending=ending,
         drawings_left_out=undrawn,
         why_left_out=why if undrawn else "",
     )
-    times = {name: getattr(told, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
-    return {**asdict(told), **times, "processors": os.cpu_count()}
+    times = {name: getattr(history, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
+    return {**asdict(history), **times, "processors": os.cpu_count()}
 
 
 def _record(
@@ -229,7 +229,7 @@ def _record(
     }
 
 
-# What ended solves that would otherwise have gone on.
+# Limits that ended solves before they converged.
 _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 
 

@@ -48,7 +48,7 @@ def test_poses_with_free_parts_and_other_keys(tmp_path: Path) -> None:
         ("x1,y1\n", PATH, ["has no rows"]),
         ("", PATH, ["has no columns x1,y1"]),
         ("x1,y1,x2\n1,2,3\n", PATH, ["column y2 is missing"]),
-        ("x1,y1,x1\n1,2,3\n", PATH, ["column x1 stands there 2 times"]),
+        ("x1,y1,x1\n1,2,3\n", PATH, ["has column x1 2 times"]),
         ("x1,y1,colour\n1,2,3\n", PATH, ["column 'colour' is unknown; for a path they are x1,y1,x2,y2"]),
         ("x1,y1\n1,2\n", MOTION, ["column angle1_deg is missing"]),
         ("x1,y1\n1,2\n", {}, ['has no kind = "path" or "motion"']),
