@@ -11,13 +11,13 @@ from grashof.models.model import Model, add
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 
-_UNITS = {"mm": "Millimeters", "in": "Inches"}  # what the program shows
-_LONGER = 0.1  # share of the travel that a guide is longer at each end
+_UNITS = {"mm": "Millimeters", "in": "Inches"}  # units of the program
+_LONGER = 0.1  # of the travel, added to a guide at each end
 _RPM = 15.0  # as the program has it
 
 
 def linkage2(model: Model) -> str:
-    """A document with the linkage where its motion begins, from where the program goes on.
+    """A document with the linkage at the beginning of its motion, where the program continues.
 
     Places are in mm, as the program counts. The driver turns at the speed of the file, or at 15 rpm.
 

@@ -29,9 +29,9 @@ class Model:
     linkage : Linkage
         A single one.
     low, high : float, rad
-        Driver angles between which it moves: a whole turn, or the dead positions beside `start`.
+        Driver angles between which it moves: a full turn, or the dead positions beside `start`.
     start : float, rad
-        Of a design of a list that of its first target, else the middle of the way.
+        Of a listed design that of its first target, else the middle of the range.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class Model:
 
     @cached_property
     def first(self) -> Position:
-        """Where the links stand at `start`."""
+        """The position at `start`."""
         return solve_position(self.linkage, self.start)
 
     @property

@@ -41,7 +41,7 @@ def dxf(drawing: Sheet) -> str:
             _add_to_dxf(space, shape)
         space.reset_extents((0, 0, 0), (drawing.width, drawing.height, 0))
         middle = (drawing.width / 2, drawing.height / 2)
-        document.set_modelspace_vport(max(drawing.height, drawing.width / 2), middle)  # what is seen at first
+        document.set_modelspace_vport(max(drawing.height, drawing.width / 2), middle)  # the first view
         text = StringIO()
         document.write(text)
     return text.getvalue()

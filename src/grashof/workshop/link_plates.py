@@ -21,7 +21,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage_parts import Link
 from grashof.workshop.plates import Plate, PlateSizes, plate_of
 
-# A link longer than so many widths is a slip in the unit, and no plate.
+# Widths; a longer link is a slip in the unit, not a plate.
 _SLENDEREST = 1000
 _P = "P"
 
@@ -44,7 +44,7 @@ class Slot(NamedTuple):
 
 
 def slots_of(linkage: Linkage, ranges: Iterable[tuple[float, float]], sizes: PlateSizes) -> tuple[Slot, ...]:
-    """Slots, in mm, half a clearance longer at either end than the travel over `ranges` of theta2, rad."""
+    """Slots, mm, half a clearance longer at either end than the travel over `ranges` of theta2, rad."""
     ranges, found = tuple(ranges), []
     for slide in Scene(linkage).slides:
         along = _travel(linkage, slide, ranges) + np.array([-sizes.gap, sizes.gap]) / 2
@@ -55,7 +55,7 @@ def slots_of(linkage: Linkage, ranges: Iterable[tuple[float, float]], sizes: Pla
 
 
 def base_angle(linkage: Linkage) -> float:
-    """Along which the base lies, rad: from O2 to O4, or along the slide."""
+    """Direction of the base, rad: from O2 to O4, or along the slide."""
     return float(getattr(linkage, "slide_angle", linkage.theta1))
 
 
@@ -76,7 +76,7 @@ def _travel(linkage: Linkage, slide: Slide, ranges: Iterable[tuple[float, float]
     for low, high in ranges:
         theta2 = dense_places(low, high, closed=False)
         values = travel(theta2)
-        closes = np.isfinite(values)  # at a dead position that rounding opens it does not
+        closes = np.isfinite(values)  # not at a dead position that rounding opens
         found = refined(travel, theta2[closes], values[closes])
         ends += [found.low, found.high]
     return np.array([min(ends), max(ends)])

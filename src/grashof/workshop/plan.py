@@ -38,7 +38,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """All that is made for a linkage.
+    """All parts of a linkage.
 
     Parameters
     ----------
@@ -101,9 +101,9 @@ def plan_parts(
         One linkage.
     sizes : PlateSizes, optional
     mm_per_unit : float
-        Millimetres of the plates for one unit of the linkage; a scale goes in here, too.
+        Millimetres of the plates for one unit of the linkage, times the scale.
     within : pair of float, rad, optional
-        Range of driver angles used; by default the whole turn, or all between dead positions.
+        Range of driver angles used; by default a full turn, or all between dead positions.
     theta2 : float, rad, optional
         Driver angle of the assembly; by default a quarter into the motion. Of a linkage with two ranges
         between dead positions, only that of this angle is used.
@@ -127,7 +127,7 @@ def plan_parts(
     sizes = sizes or PlateSizes()
     scaled = _in_millimetres(linkage, mm_per_unit)
     if not scaled.mechanism.slides:
-        link_plates(scaled, sizes, ())  # what is too short is refused before what cannot be assembled
+        link_plates(scaled, sizes, ())  # refuse short links before open linkages
     ranges = ranges_of_use(scaled, within, theta2)
     slots = slots_of(scaled, ranges, sizes)
     plates, without_hole = link_plates(scaled, sizes, slots)
@@ -193,7 +193,7 @@ def _joints(linkage: Linkage, theta2: float) -> dict[str, tuple[float, float]]:
 def _use(
     linkage: Linkage, ranges: tuple[tuple[float, float], ...], within: tuple[float, float] | None
 ) -> str:
-    """Over which motion nothing meets."""
+    """The motion over which nothing meets."""
     if within is None and full_rotation(linkage):
         return "free over the whole turn of the driver"
     spans = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))

@@ -19,7 +19,7 @@ _STRAIGHT = 1e-9  # share of a plate's length by which holes in line may be off 
 
 @dataclass(frozen=True, slots=True)
 class PlateSizes:
-    """What the plates of a linkage are cut to.
+    """Dimensions of the plates of a linkage.
 
     Parameters
     ----------

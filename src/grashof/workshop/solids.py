@@ -79,7 +79,7 @@ def _wire(vertices: FloatArray) -> Any:
 
 
 def _place(plan: Plan, pin: Pin) -> tuple[float, float]:
-    """Where a pin stands, mm: in its joint, or as a post in its hole of the base."""
+    """Place of a pin, mm: in its joint, or as a post in its hole of the base."""
     if pin.name in plan.joints:
         return plan.joints[pin.name]
     base = plan.parts[0]
@@ -94,7 +94,7 @@ def _named(solid: Any, name: str) -> Any:
 
 
 def _written(write: Callable[[str], object], ending: str) -> bytes:
-    """What the library writes, which wants a file of its own."""
+    """Output of the library, which requires a file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"linkage{ending}"
         write(str(path))

@@ -84,7 +84,7 @@ def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFra
 
 
 def _value(text: str) -> bool | int | float | str | None:
-    """Value of a cell of a CSV file; pandas would lose the last digit of some numbers."""
+    """Value of a cell of a CSV file; pandas would lose the last digit of some."""
     if text in ("", "True", "False"):
         return None if not text else text == "True"
     for kind in (int, float):
@@ -117,7 +117,7 @@ def _list_sheet(page: Worksheet, frame: pd.DataFrame, unit: str) -> None:
 
 
 def _number_format(values: Sequence[Any]) -> str:
-    """Six digits of the greatest of some numbers; by powers of ten where zeros would take their place."""
+    """Format for six digits of the greatest of some numbers, exponential where they would be zeros."""
     sizes = [abs(value) for value in values if isinstance(value, float) and np.isfinite(value)]
     greatest = max(sizes, default=0.0)
     if not greatest:
@@ -167,7 +167,7 @@ def _unit_of(column: str, unit: str) -> str:
 
 
 def _targets(design: ListedDesign) -> list[Sequence[Any]]:
-    """Where the linkage stands at each target, under a heading."""
+    """The position of the linkage at each target, under a heading."""
     linkage = design.spec.linkage
     state = solve_position(linkage, design.theta2, design.assembly)
     places = [f"{name}_{axis}" for name in linkage.mechanism.moving for axis in "xy"]
@@ -268,7 +268,7 @@ def _openpyxl() -> ModuleType:
 
 
 def _without_times(file: bytes) -> bytes:
-    """The workbook with the time of its writing, which openpyxl puts in everywhere, taken out."""
+    """The workbook without the time of its writing, which openpyxl adds everywhere."""
     made = BytesIO()
     with zipfile.ZipFile(BytesIO(file)) as old, zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():
