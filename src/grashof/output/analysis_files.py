@@ -84,22 +84,14 @@ def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
 
 def _extremes_table(report: LinkageReport, digits: int) -> Table:
     table, frame = plain_table(), report.tables["extremes"]
-    many = "range" in frame
-    for name in (
-        *(["range"] if many else []),
-        f"extremes {report.sweep.over}",
-        "unit",
-        "least",
-        "at theta2",
-        "largest",
-        "at theta2",
-    ):
-        left = name.startswith("extremes") or name == "unit"
-        table.add_column(name, justify="left" if left else "right", no_wrap=True)
+    ranges = ["range"] if "range" in frame else []
+    texts = (f"extremes {report.sweep.over}", "unit")
+    for name in (*ranges, *texts, "least", "at theta2", "largest", "at theta2"):
+        table.add_column(name, justify="left" if name in texts else "right", no_wrap=True)
     columns = ("min", "theta2_min_deg", "max", "theta2_max_deg")
     for row in frame.to_dict("records"):
         values = (number_text(row[name], digits) for name in columns)
-        table.add_row(*([str(row["range"])] if many else []), str(row["what"]), str(row["unit"]), *values)
+        table.add_row(*(str(row[name]) for name in (*ranges, "what", "unit")), *values)
     return table
 
 
@@ -134,11 +126,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "linkage": spec.linkage.stated,
         "notes": list(report.notes),
         "facts": {
-            key: {
-                "value": _finite(fact.value),
-                "unit": fact.unit,
-                **({"section": section} if section else {}),
-            }
+            key: {"value": _finite(fact.value), "unit": fact.unit} | ({"section": section} if section else {})
             for key, (section, fact) in _facts_by_key(report).items()
         },
         "sections": [

@@ -120,17 +120,22 @@ def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = 
     other files are left alone. If anything fails, as a full disk does (OSError), the folder stays as
     it was, and is removed if it was made here. Links in it are replaced or removed, not their targets.
     """
-    with _named(folder), _made(folder):
-        before = own_files(folder, record)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
-            fresh = Path(name)
-            yield fresh
-            written = sorted(path.name for path in fresh.iterdir())
-            # The record goes last: until then the old one still knows every old file.
-            for file in sorted(written, key=lambda file: file == record):
-                (fresh / file).replace(folder / file)
-        for file in before - {*written, *keep}:
-            (folder / file).unlink(missing_ok=True)
+    try:
+        with _made(folder):
+            before = own_files(folder, record)
+            with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
+                fresh = Path(name)
+                yield fresh
+                written = sorted(path.name for path in fresh.iterdir())
+                # The record goes last: until then the old one still lists every old file.
+                for file in sorted(written, key=lambda file: file == record):
+                    (fresh / file).replace(folder / file)
+            for file in before - {*written, *keep}:
+                (folder / file).unlink(missing_ok=True)
+    except OSError as error:
+        if error.filename is not None or error.strerror is None:
+            raise
+        raise OSError(error.errno, error.strerror, str(folder)) from None  # a full disk names no file
 
 
 def is_own_name(name: str, record: str = RECORD) -> bool:
@@ -151,7 +156,7 @@ def own_files(folder: Path, record: str = RECORD) -> set[str]:
     if not (isinstance(names, list) and isinstance(versions, dict) and "grashof" in versions):
         return set()
     # Our names only: a record that was tampered with must not reach any other file.
-    ours = {name for name in names if isinstance(name, str) and _NAMES[record].fullmatch(name)}
+    ours = {name for name in names if isinstance(name, str) and is_own_name(name, record)}
     return {name for name in ours if (folder / name).is_file()}
 
 
@@ -167,17 +172,6 @@ def _taken(folder: Path, drawings: int, record: str) -> list[str]:
     return sorted(
         name for name, ours in found if ours and name not in own and int(ours["rank"] or 0) <= drawings
     )
-
-
-@contextmanager
-def _named(folder: Path) -> Iterator[None]:
-    """Errors that name no file, such as of a full disk, name the folder."""
-    try:
-        yield
-    except OSError as error:
-        if error.filename is not None or error.strerror is None:
-            raise
-        raise OSError(error.errno, error.strerror, str(folder)) from None
 
 
 @contextmanager

@@ -32,6 +32,7 @@ from grashof.wording.enclosure import enclosure_record
 if TYPE_CHECKING:
     import pandas as pd
 
+_GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")  # limits that ended solves
 _PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
 
@@ -105,8 +106,24 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = listed_files(folder, RECORD, others)
-    history = _history(result, missing_drawings(result, drawings, files), stop)
-    write_json(folder / RECORD, _record(result, settings, history, files))
+    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
+    content = {
+        "problem": result.problem.name,
+        **_about(settings),
+        "run": _history(result, missing_drawings(result, drawings, files), stop),
+        "complete": result.complete,
+        "ended": result.ended,
+        **{name: None if np.isnan(error) else error for name, error in errors.items()},
+        "designs": len(result),
+        "note": result.note,
+        "proof": None if result.proof is None else result.proof.stated,
+        "intervals": enclosure_record(result),
+        "counts": result.counts,
+        "guards_hit": {name: result.tally.statuses[name] for name in _GUARDS},
+        "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
+        "files": files,
+    }
+    write_json(folder / RECORD, content)
     return files
 
 
@@ -162,12 +179,10 @@ def _driven(candidate: Candidate) -> dict[str, Any]:
     if verdict.cylinder is None:
         return {}
     at = solve_position(linkage, verdict.theta2, verdict.assembly)
-    stated = {
-        **verdict.cylinder.stated,
-        "length": cylinder_state(verdict.cylinder, linkage, at).length.tolist(),
-    }
+    length = cylinder_state(verdict.cylinder, linkage, at).length.tolist()
     forces = cylinder_forces(linkage, candidate.problem, verdict)
-    return {"cylinder": stated if np.isnan(forces).all() else {**stated, "force": _given(forces)}}
+    force = {} if np.isnan(forces).all() else {"force": _given(forces)}
+    return {"cylinder": {**verdict.cylinder.stated, "length": length, **force}}
 
 
 def _written(rows: Sequence[Row]) -> dict[str, str]:
@@ -195,42 +210,10 @@ def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any]
         return None
     ending = _ENDINGS.get(stop.code, result.history.ending)
     why = ending if stop() else "the run ended before they were drawn"
-    history = replace(
-        result.history,
-        ended=now(),
-        ending=ending,
-        drawings_left_out=undrawn,
-        why_left_out=why if undrawn else "",
-    )
+    drawings = {"drawings_left_out": undrawn, "why_left_out": why if undrawn else ""}
+    history = replace(result.history, ended=now(), ending=ending, **drawings)
     times = {name: getattr(history, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
     return {**asdict(history), **times, "processors": os.cpu_count()}
-
-
-def _record(
-    result: Result, settings: dict[str, Any], history: dict[str, Any] | None, files: list[str]
-) -> dict[str, Any]:
-    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
-    guards = {name: result.tally.statuses[name] for name in _GUARDS}
-    return {
-        "problem": result.problem.name,
-        **_about(settings),
-        "run": history,
-        "complete": result.complete,
-        "ended": result.ended,
-        **{name: None if np.isnan(error) else error for name, error in errors.items()},
-        "designs": len(result),
-        "note": result.note,
-        "proof": None if result.proof is None else result.proof.stated,
-        "intervals": enclosure_record(result),
-        "counts": result.counts,
-        "guards_hit": guards,
-        "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
-        "files": files,
-    }
-
-
-# Limits that ended solves before they converged.
-_GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
 
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
@@ -265,5 +248,5 @@ def write_json(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_page(path: Path, page: str) -> None:
-    """HTML as it is, with the same line ends everywhere."""
+    """Write HTML with the same line ends everywhere."""
     path.write_text(page, encoding="utf-8", newline="\n")
