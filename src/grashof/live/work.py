@@ -102,6 +102,10 @@ def _line(kind: str, shown: Shown | None = None, **content: Any) -> Line:
     return Line(text, None if shown is None else shown.written())
 
 
+def _defects(design: Candidate) -> str:
+    return "; ".join(map(str, design.verdict.defects))
+
+
 def _problem(job: Job) -> Problem:
     return problem_from(job.document, job.name)
 
@@ -114,11 +118,7 @@ def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     kept = {key: design for key, design in kept.items() if is_of(design.linkage, problem.mechanism)}
     moved = dict(zip(kept, track(list(kept.values()), problem), strict=True))
     there = {key: design for key, design in moved.items() if design.verdict.ok}
-    lost = {
-        key: "; ".join(map(str, design.verdict.defects))
-        for key, design in moved.items()
-        if not design.verdict.ok
-    }
+    lost = {key: _defects(design) for key, design in moved.items() if key not in there}
     # A lost one stays as it last was, and may come back from there.
     send(_list_line("track", problem, there, shown.following({**kept, **there}), lost=lost))
 
@@ -158,31 +158,29 @@ def _list_line(
 ) -> Line:
     """A list as the page draws it; of closest misses where the search found none."""
     drawn = {key: one for key, one in designs.items() if moves(one)}
-    misses = {key: "; ".join(map(str, one.verdict.defects)) for key, one in drawn.items()}
-    listing = Result(problem, tuple(drawn.values())) if result is None else result
     columns = AT_ONCE if phase == "track" else LISTED
     rows = rows_of(problem, list(drawn.values()), columns)
     data = search_data(problem, list(drawn.values()), rows, found=result is None or bool(result.candidates))
-    for key, design in zip(drawn, data["designs"], strict=True):
-        design |= {"key": key, "misses": misses[key]}
+    for (key, one), design in zip(drawn.items(), data["designs"], strict=True):
+        design |= {"key": key, "misses": _defects(one)}
     return _line(
         "list",
         shown,
         phase=phase,
-        headline="" if result is None else headline(listing),
-        note="" if result is None else listing.note,
-        asked=_asked(problem),
+        headline="" if result is None else headline(result),
+        note="" if result is None else result.note,
+        asked=[line.strip() for line in summary(problem)][1:],
         lost=[{"key": key, "why": why} for key, why in (lost or {}).items()],
         **data,
     )
 
 
-def _asked(problem: Problem) -> list[str]:
-    return [line.strip() for line in summary(problem)][1:]
-
-
 def _file(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     """A file to save: the problem, or one that `grashof solve` or `grashof export` writes of the list."""
+    from grashof.output.run_files import write_run
+    from grashof.workshop.export import Making, export_files
+    from grashof.workshop.plates import PlateSizes
+
     problem, wanted = _problem(job), job.options["file"]
     text = problem_toml(problem)
     if wanted == "problem":
@@ -193,35 +191,17 @@ def _file(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     if not there:
         raise ProblemError("there is no design to save")
     result = shown.result or Result(problem, tuple(there.values()))
-    with TemporaryDirectory() as name:
-        made, kind = _FILES[wanted](Path(name), result, text, there.get(job.options.get("key", 0)))
-        content = made.read_text(encoding="utf-8")
-    send(_line("file", name=f"{job.name}-{made.name}", type=kind, text=content))
-
-
-def _run_file(name: str, kind: str) -> Callable[..., tuple[Path, str]]:
-    """One of the files of a run."""
-
-    def make(folder: Path, result: Result, text: str, _design: Candidate | None) -> tuple[Path, str]:
-        from grashof.output.run_files import write_run
-
-        write_run(folder, result, {"top": TOP, "made by": "grashof live"}, drawings=0, problem_text=text)
-        return folder / name, kind
-
-    return make
-
-
-def _dxf(folder: Path, result: Result, text: str, design: Candidate | None) -> tuple[Path, str]:
-    """The plates of a design."""
-    from grashof.workshop.export import Making, export_files
-    from grashof.workshop.plates import PlateSizes
-
-    if design is None:
-        raise ProblemError("choose a design first; DXF is of one of them")
-    listed, _ = _run_file("candidates.json", "")(folder, Result(result.problem, (design,)), text, design)
-    file = folder / f"{design.id}.dxf"
-    export_files(f"{listed}#1", Making(PlateSizes()), {"dxf": file})
-    return file, "image/vnd.dxf"
+    if wanted == "dxf":
+        if (design := there.get(job.options.get("key", 0))) is None:
+            raise ProblemError("choose a design first; DXF is of one of them")
+        result = Result(problem, (design,))
+    with TemporaryDirectory() as folder:
+        write_run(Path(folder), result, {"top": TOP, "made by": "grashof live"}, 0, problem_text=text)
+        name, kind = _SAVED.get(wanted, (f"{result.best.id}.dxf", "image/vnd.dxf"))
+        if wanted == "dxf":
+            export_files(f"{folder}/candidates.json#1", Making(PlateSizes()), {"dxf": Path(folder) / name})
+        content = (Path(folder) / name).read_text(encoding="utf-8")
+    send(_line("file", name=f"{job.name}-{name}", type=kind, text=content))
 
 
 def _outline(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
@@ -232,11 +212,11 @@ def _outline(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     send(_line("outline", polylines=[line.tolist() for line in lines]))
 
 
-_FILES = {
-    "list": _run_file("candidates.csv", "text/csv"),
-    "designs": _run_file("candidates.json", "application/json"),
-    "report": _run_file("report.html", "text/html"),
-    "dxf": _dxf,
+# Name and type of the files of a run, by "file" of a job.
+_SAVED = {
+    "list": ("candidates.csv", "text/csv"),
+    "designs": ("candidates.json", "application/json"),
+    "report": ("report.html", "text/html"),
 }
 _JOBS: dict[str, Callable[[Job, Callable[[], bool], Callable[[Line], object]], None]] = {
     "track": _track,

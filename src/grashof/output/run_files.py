@@ -210,8 +210,8 @@ def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any]
         return None
     ending = _ENDINGS.get(stop.code, result.history.ending)
     why = ending if stop() else "the run ended before they were drawn"
-    drawings = {"drawings_left_out": undrawn, "why_left_out": why if undrawn else ""}
-    history = replace(result.history, ended=now(), ending=ending, **drawings)
+    history = replace(result.history, ended=now(), ending=ending, drawings_left_out=undrawn)
+    history = replace(history, why_left_out=why if undrawn else "")
     times = {name: getattr(history, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
     return {**asdict(history), **times, "processors": os.cpu_count()}
 

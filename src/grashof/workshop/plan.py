@@ -16,6 +16,7 @@ from grashof.workshop.plates import Plate, PlateSizes, spacer
 from grashof.workshop.stacking import GROUND, Pin, Stack, pinned, placed, poses, ranges_of_use, stack, sweep
 
 _MOST_MET = 8  # pairs that notes name
+_RETURN_CRANK = "the driver is in two plates: both are fixed to pin {}, which turns with them"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,9 +80,8 @@ class Plan:
             )
             rows.append((part.plate.name, str(len(part.layers)), layers, thick, distances or "-"))
         for pin in self.pins:
-            name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"
             about = f"diameter {hole:g}, length {self.pin_length(pin):g}"
-            rows.append((name, "1", f"{pin.low} to {pin.high}", "-", about))
+            rows.append((pin.title, "1", f"{pin.low} to {pin.high}", "-", about))
         return rows
 
 
@@ -125,7 +125,9 @@ def plan_parts(
     [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
     """
     sizes = sizes or PlateSizes()
-    scaled = _in_millimetres(linkage, mm_per_unit)
+    if linkage.shape:
+        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
+    scaled = linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
     if not scaled.mechanism.slides:
         link_plates(scaled, sizes, ())  # refuse short links before open linkages
     ranges = ranges_of_use(scaled, within, theta2)
@@ -147,17 +149,10 @@ def plan_parts(
             "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
             *(_slot_note(scaled, slot) for slot in slots),
             *_two_bases(order, scaled),
-            *_return_crank(order),
+            *([_RETURN_CRANK.format(order.crank.pin)] if order.crank is not None else []),
             *without_hole,
         ),
     )
-
-
-def _in_millimetres(linkage: Linkage, mm_per_unit: float) -> Linkage:
-    """The linkage in mm, with O2 at the origin."""
-    if linkage.shape:
-        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
-    return linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
 
 
 def _parts(
@@ -218,9 +213,3 @@ def _two_bases(order: Stack, linkage: Linkage) -> list[str]:
         *(f"- {pair}" for pair in order.met[:_MOST_MET]),
         *([f"- and {more} more pairs"] if more > 0 else []),
     ]
-
-
-def _return_crank(order: Stack) -> list[str]:
-    if order.crank is None:
-        return []
-    return [f"the driver is in two plates: both are fixed to pin {order.crank.pin}, which turns with them"]

@@ -49,8 +49,7 @@ def assembly(plan: Plan) -> Any:
     for pin in plan.pins:
         cylinder = cad.Solid.make_cylinder(plan.sizes.hole / 2, plan.pin_length(pin))
         x, y = _place(plan, pin)
-        name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"
-        children.append(_named(cylinder.moved(cad.Location((x, y, pin.low * thick))), name))
+        children.append(_named(cylinder.moved(cad.Location((x, y, pin.low * thick))), pin.title))
     return cad.Compound(label="linkage", children=children)
 
 

@@ -56,6 +56,11 @@ class Pin:
     held: tuple[int, ...] = field(default=(), repr=False)
 
     @property
+    def title(self) -> str:
+        """Its name in the parts list: of a joint after "pin"."""
+        return self.name if self.name.startswith("post") else f"pin {self.name}"
+
+    @property
     def passed(self) -> tuple[int, ...]:
         """Layers between, where it runs in spacers."""
         return tuple(layer for layer in range(self.low + 1, self.high) if layer not in self.held)
