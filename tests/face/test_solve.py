@@ -64,9 +64,9 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert set(record["files"]) == expected
     assert record["designs"] == len(table)
     assert record["settings"]["seed"] == 0
-    told = record["run"]
-    assert (told["ending"], told["resumed"], told["drawings_left_out"]) == ("complete", 0, 0)
-    begun, ended = (datetime.fromisoformat(told[name]) for name in ("begun", "ended"))
+    run = record["run"]
+    assert (run["ending"], run["resumed"], run["drawings_left_out"]) == ("complete", 0, 0)
+    begun, ended = (datetime.fromisoformat(run[name]) for name in ("begun", "ended"))
     assert timedelta(0) <= ended - begun < timedelta(minutes=5)  # whole seconds
     assert ended.utcoffset() == timedelta(0)
     assert record["counts"]["verified and distinct"] >= len(table)

@@ -168,8 +168,8 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
     for _ in range(5):
         theta2 = state(page)["theta2"]
         speed = float(solve_kinematics(linkage, theta2, omega2=1.0).p.speed)
-        told = float(page.locator("#velocity output").inner_text().replace("−", "-"))
-        assert told == pytest.approx(speed, rel=1e-3)
+        shown_speed = float(page.locator("#velocity output").inner_text().replace("−", "-"))
+        assert shown_speed == pytest.approx(speed, rel=1e-3)
         page.locator("#player input[type=range]").focus()
         for _ in range(4):
             page.keyboard.press("PageUp")

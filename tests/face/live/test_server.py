@@ -185,8 +185,8 @@ def test_without_the_token_or_from_elsewhere_nothing_is_answered(local: Client) 
         ({"Grashof-Token": local.headers["Grashof-Token"]}, elsewhere),
     )
     for path in ("/ask", "/begin"):
-        for headers, told in wrong:
-            assert told in refused(local.http.post(path, json=body, headers=headers))
+        for headers, line in wrong:
+            assert line in refused(local.http.post(path, json=body, headers=headers))
         assert local.http.get(path).status_code == 405
 
 
@@ -208,7 +208,7 @@ def test_nothing_is_served_beyond_loopback(client: Client) -> None:
 
 
 @pytest.mark.parametrize(
-    ("body", "told"),
+    ("body", "line"),
     [
         (b"x" * 10_000_000, "the request has 10000000 bytes; at most 1000000 are allowed"),
         (b'{"what": "search", "document": {"a": NaN}}', "the request is not JSON with finite numbers"),
@@ -220,9 +220,9 @@ def test_nothing_is_served_beyond_loopback(client: Client) -> None:
         (b'{"page": "1", "what": "track", "document": {}, "keys": [1.5]}', "keys is 1.5; it must be the number of a design"),  # noqa: E501
     ],
 )  # fmt: skip
-def test_malformed_requests_are_refused_in_a_line(local: Client, body: bytes, told: str) -> None:
+def test_malformed_requests_are_refused_in_a_line(local: Client, body: bytes, line: str) -> None:
     answer = local.http.post("/ask", content=body, headers=local.headers)
-    assert refused(answer) == told
+    assert refused(answer) == line
 
 
 def test_a_body_without_a_length_is_cut_off(local: Client) -> None:
@@ -243,9 +243,9 @@ def test_work_has_limits(local: Client) -> None:
         "the document has tables in each other more than 12 deep": {**DOCUMENT, "scene": {"outlines": deep}},
         "search.effort is 20; the live page takes at most 4": {**DOCUMENT, "search": {"effort": 20}},
     }  # fmt: skip
-    for told, document in cases.items():
+    for line, document in cases.items():
         body = {"what": "search", "document": document, "page": "one", "name": "x"}
-        assert refused(local.http.post("/ask", json=body, headers=local.headers)) == told
+        assert refused(local.http.post("/ask", json=body, headers=local.headers)) == line
 
 
 def test_every_answer_has_the_headers(local: Client) -> None:

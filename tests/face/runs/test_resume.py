@@ -97,8 +97,8 @@ def test_a_signal_ends_the_search_and_writes_what_it_has(
     assert time.monotonic() - begun < 6  # of which 2 are the search's; machines are busy
     assert "--resume continues it" in said
     assert f"drawings are left out: {name} came before 1 of them were made" in said.splitlines()
-    told = json.loads((out / "run.json").read_text())["run"]
-    assert told["ending"] == told["why_left_out"] == ending
+    run = json.loads((out / "run.json").read_text())["run"]
+    assert run["ending"] == run["why_left_out"] == ending
     assert len(pd.read_csv(out / "candidates.csv")) > 0
     assert (out / "search" / "search.json").exists()
 

@@ -31,7 +31,7 @@ def grashof(*arguments: object) -> Any:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_the_output_of_a_sweep(write: Write, tmp_path: Path) -> None:
     done = grashof("sweep", write(), "--out", tmp_path / "out", "--top", 1)
     assert done.exit_code == 0

@@ -47,22 +47,22 @@ def interrupted(study: Path, out: Path, after: int, *, resume: bool) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("told")
-def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path, told: list[str]) -> None:
+@pytest.mark.usefixtures("texts")
+def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path, texts: list[str]) -> None:
     study, out = write(), tmp_path / "out"
     assert interrupted(study, out, 5, resume=False) == 5
     assert len(pd.read_csv(out / "sweep.csv")) == 5
     assert json.loads((out / "sweep.json").read_text())["complete"] is False
     assert interrupted(study, out, 3, resume=True) == 8
     assert sweep(study, out=out, resume=True).complete
-    assert len(told) == 12
-    assert len(set(told)) == 12
+    assert len(texts) == 12
+    assert len(set(texts)) == 12
     sweep(study, out=tmp_path / "whole")
     for name in ("sweep.csv", "sweep.png", "sweep.html"):
         assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
     assert len(list((out / "tasks").iterdir())) == 12
     assert sweep(study, out=out, resume=True).complete  # nothing is left to do
-    assert len(told) == 24
+    assert len(texts) == 24
 
 
 @pytest.mark.slow
@@ -83,7 +83,7 @@ def test_the_row_of_a_combination_is_its_best_design(write: Write) -> None:
         np.testing.assert_array_equal(rows[numbers].to_numpy(float), frame[numbers].to_numpy(float))
 
 
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_anybody_s_executor(write: Write) -> None:
     with ThreadPoolExecutor(3) as executor:
         there = sweep(write(), executor=executor)
@@ -109,7 +109,7 @@ def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write
 
 
 @pytest.mark.study
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study, out = write(), tmp_path / "out"
     interrupted(study, out, 4, resume=False)
@@ -135,7 +135,7 @@ def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.quick("[]-is not a finished task")
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -157,9 +157,9 @@ def test_a_spoilt_checkpoint_is_refused(write: Write, tmp_path: Path, text: str,
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_a_finished_sweep_is_done_again_and_other_files_stay(
-    write: Write, tmp_path: Path, told: list[str]
+    write: Write, tmp_path: Path, texts: list[str]
 ) -> None:
     study, out = write(), tmp_path / "out"
     sweep(study, out=out)
@@ -167,7 +167,7 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
     (out / "tasks" / ".writing-abc").write_text("half")
     (out / "tasks" / "mine.txt").write_text("mine")
     sweep(study, out=out)
-    assert len(told) == 24
+    assert len(texts) == 24
     assert sorted(path.name for path in out.iterdir()) == [
         "notes.txt", "sweep.csv", "sweep.html", "sweep.json", "sweep.png", "tasks",
     ]  # fmt: skip
@@ -179,7 +179,7 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
         sweep(study, out=out)
 
 
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> None:
     class Losing(ThreadPoolExecutor):
         left = 3
@@ -196,14 +196,14 @@ def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> 
     assert sweep(write(), out=tmp_path / "out", resume=True).complete
 
 
-@pytest.mark.usefixtures("told")
-def test_equal_combinations_are_solved_once(write: Write, told: list[str]) -> None:
+@pytest.mark.usefixtures("texts")
+def test_equal_combinations_are_solved_once(write: Write, texts: list[str]) -> None:
     done = sweep(write('problem = "base.toml"\n[vary]\n"path.points[1].y" = [1, 1.0, 2]\n'))
-    assert len(told) == 2
+    assert len(texts) == 2
     assert done.to_frame()["combination"].tolist() == [1, 2, 3]
 
 
-def test_parquet_is_the_same_table(write: Write, tmp_path: Path, told: list[str]) -> None:
+def test_parquet_is_the_same_table(write: Write, tmp_path: Path, texts: list[str]) -> None:
     pytest.importorskip("pyarrow")
     sweep(write(f"parquet = true\n{write().read_text()}"), out=tmp_path / "out")
     table = pd.read_parquet(tmp_path / "out" / "sweep.parquet")
