@@ -123,7 +123,7 @@ def test_linkages_of_the_catalogue(grashof: Grashof) -> None:
 
 
 @pytest.mark.parametrize("case", ["half a position", "equal poses", "repeated poses"])
-def test_check_refuses_what_solve_refuses(grashof: Grashof, tmp_path: Path, case: str) -> None:
+def test_check_and_solve_refuse_the_same(grashof: Grashof, tmp_path: Path, case: str) -> None:
     old, new, said = BAD[case]
     (tmp_path / "mine.toml").write_text(problem_text("luggage").replace(old, new), encoding="utf-8")
     done = grashof("check", "mine.toml")
@@ -167,7 +167,7 @@ def test_an_unexpected_error_ends_with_one_line(grashof: Grashof, monkeypatch: p
 
 
 @pytest.mark.study
-def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
+def test_no_backend_of_matplotlib_interferes(tmp_path: Path) -> None:
     environment = {**os.environ, "MPLBACKEND": "nonsense"}
     code = "import sys; from grashof.cli import main; sys.argv[0] = 'grashof'; main()"
     done = subprocess.run(

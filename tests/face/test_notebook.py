@@ -64,12 +64,12 @@ def test_a_result_shows_the_best_designs_as_the_terminal_does(few: Result) -> No
     assert len(list(page.iter(SVG))) == 1
 
 
-def test_a_result_without_designs_says_why(few: Result) -> None:
+def test_a_result_without_designs_states_the_reason(few: Result) -> None:
     page = parsed(replace(few, candidates=(), note=f"{EVIL} is in the way"))
     assert "".join(page.itertext()) == f"No design. {EVIL} is in the way"
 
 
-def test_a_design_shows_what_it_was_judged(few: Result) -> None:
+def test_a_design_shows_its_verdict(few: Result) -> None:
     facts = dict(row for row in cells(parsed(few.best)))  # type: ignore[misc]
     assert facts["design"] == few.best.id
     assert facts["defects"] == "none"

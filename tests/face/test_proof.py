@@ -141,7 +141,7 @@ def a_proof(**parts: Any) -> Proof:
         ),
     ],
 )
-def test_lines_say_what_is_and_is_not_proven(proof: Proof, line: str) -> None:
+def test_lines_of_proofs_and_failed_proofs(proof: Proof, line: str) -> None:
     assert bound_line(proof) == line
     assert not is_decided(proof)
 

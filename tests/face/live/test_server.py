@@ -27,7 +27,7 @@ DOCUMENT = document_of(problem_text("luggage"), "luggage.toml")
 
 
 class Client:
-    """What a page asks, with its own token and origin."""
+    """Requests of a page, with its token and origin."""
 
     def __init__(self, address: str) -> None:
         parts = urlsplit(address)
@@ -98,7 +98,7 @@ def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(cl
 
 
 @pytest.mark.slow
-def test_lost_designs_are_named_with_what_they_miss_and_come_back(client: Client) -> None:
+def test_lost_designs_are_named_with_their_defects_and_return(client: Client) -> None:
     client.ask("search", page="losing")
     strict = json.loads(json.dumps(DOCUMENT))
     strict["requirements"]["size"] = [0, 5]
@@ -130,7 +130,7 @@ def test_leaving_ends_the_work(client: Client) -> None:
 
 
 @pytest.mark.slow
-def test_without_a_design_the_closest_misses_are_listed_with_what_to_relax(client: Client) -> None:
+def test_without_a_design_the_closest_misses_are_listed_with_a_relaxation(client: Client) -> None:
     strict = json.loads(json.dumps(DOCUMENT))
     strict["requirements"]["transmission_min_deg"] = 60
     *_, last, _ = client.ask("search", strict, page="vain")

@@ -95,13 +95,13 @@ def test_a_job_that_ends_every_solver_is_reported_in_a_line(solvers: Solvers, ru
 def test_the_newest_job_of_a_page_wins(solvers: Solvers, run: Run) -> None:
     session = Sessions(solvers).of("one")
 
-    async def asked(job: Job) -> list[str]:
+    async def requested(job: Job) -> list[str]:
         return [json.loads(line)["kind"] async for line in session.lines(job)]
 
     async def both() -> tuple[list[str], list[str]]:
-        first = asyncio.ensure_future(asked(job_of("nine-points")))
+        first = asyncio.ensure_future(requested(job_of("nine-points")))
         await asyncio.sleep(0.5)
-        second = await asked(job_of("luggage"))
+        second = await requested(job_of("luggage"))
         return await asyncio.wait_for(first, 1), second
 
     first, second = run(both())

@@ -35,7 +35,7 @@ def apart(model: Model, made: mujoco.MjModel, data: mujoco.MjData) -> float:
     return float(np.abs(away).max() / model.linkage.lengths.max())
 
 
-def test_it_stands_assembled_where_its_motion_begins(model: Model) -> None:
+def test_it_is_assembled_at_the_beginning_of_its_motion(model: Model) -> None:
     made, data = opened(model)
     assert made.neq == len(model.linkage.mechanism.dyads)
     assert made.nv == len(model.linkage.mechanism.links) - 1
@@ -83,7 +83,7 @@ def test_it_has_the_energy_of_the_linkage(model: Model) -> None:
         data.qvel[number] = float(way) / (2 * step) * model.omega2
     mujoco.mj_energyVel(made, data)
     kinetic = float(np.sum(energies(state, model.masses).kinetic)) * model.metre**2
-    assert data.energy[1] == pytest.approx(kinetic, rel=2e-3)  # what is without mass has a little there
+    assert data.energy[1] == pytest.approx(kinetic, rel=2e-3)  # links without mass have a little there
 
 
 def names(made: mujoco.MjModel) -> list[str]:

@@ -119,7 +119,7 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
-def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
+def test_interrupt_writes_the_verified_designs(tmp_path: Path) -> None:
     text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
     (tmp_path / "long.toml").write_text(text, encoding="utf-8")
     given = ["solve", "long.toml", "--drawings", "0"]
@@ -137,20 +137,20 @@ def test_interrupt_writes_what_was_verified(tmp_path: Path) -> None:
     record = json.loads((tmp_path / "long-designs" / "run.json").read_text())
     assert record["complete"] is False
     assert record["run"]["ending"] == "interrupted"
-    assert "drawings are left out" not in said  # none were asked for
+    assert "drawings are left out" not in said  # none were requested
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="no terminals that hang up")
 def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> None:
-    with interruptible() as asked:
+    with interruptible() as request:
         os.kill(os.getpid(), signal.SIGHUP)
-        assert (asked(), asked.code, asked.by) == (True, ExitCode.TERMINATED, "SIGHUP")
+        assert (request(), request.code, request.by) == (True, ExitCode.TERMINATED, "SIGHUP")
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
     try:
-        with interruptible() as asked:
+        with interruptible() as request:
             os.kill(os.getpid(), signal.SIGHUP)
-            assert not asked()
+            assert not request()
     finally:
         signal.signal(signal.SIGHUP, before)
 
@@ -158,7 +158,7 @@ def test_a_terminal_that_hangs_up_asks_for_the_end_unless_that_is_ignored() -> N
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_ctrl_c_while_the_program_is_loaded_is_one_line() -> None:
-    # The import of the command line stands for any moment of loading: it sends the signal itself.
+    # The import of the command line represents any moment of loading: it sends the signal itself.
     program = (
         "import os, signal, sys\n"
         "class Loading:\n"

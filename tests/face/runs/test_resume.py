@@ -64,11 +64,11 @@ def killed_and_resumed(folder: Path, moments: list[float]) -> bytes:
 @pytest.mark.study
 @pytest.mark.parametrize("moments", [2, pytest.param(20, marks=pytest.mark.study)])
 def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments: int) -> None:
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    whole.mkdir()
+    once, killed = tmp_path / "once", tmp_path / "killed"
+    once.mkdir()
     killed.mkdir()
     begun = time.monotonic()
-    table = finished(whole)
+    table = finished(once)
     seconds = time.monotonic() - begun
     at = (np.random.default_rng(moments).uniform(0.3, 1.0, moments) * seconds).tolist()
     assert killed_and_resumed(killed, at) == table
@@ -83,7 +83,7 @@ SIGNALS = [(signal.SIGINT, 130, "Ctrl-C", "interrupted"), (signal.SIGTERM, 143, 
 @pytest.mark.slow
 @pytest.mark.quick("15-143-SIGTERM-terminated")
 @pytest.mark.parametrize(("number", "code", "name", "ending"), SIGNALS)
-def test_a_signal_ends_the_search_and_writes_what_it_has(
+def test_a_signal_ends_the_search_and_writes_its_designs(
     tmp_path: Path, number: int, code: int, name: str, ending: str
 ) -> None:
     process = running(tmp_path, "--drawings", "1")
@@ -130,7 +130,7 @@ def test_files_of_others_beside_a_record_are_never_deleted(
         (folder / name / "search.json").write_text("{}", encoding="utf-8")
     (folder / place / "2026.json").write_text("mine", encoding="utf-8")
     done = [grashof(*FOUR) for _ in range(2)]
-    # The record moves with what is beside it, and is not replaced there.
+    # The record moves with the files beside it, and is not replaced there.
     assert [each.exit_code for each in done] == ([0, 0] if place == "search" else [2, 2])
     if place == "search-old":
         (line,) = done[0].stderr.splitlines()

@@ -49,7 +49,7 @@ def test_one_that_is_no_problem_does_not_end_the_others(write: Write) -> None:
     assert other.wrong == ("requirements.transmission_min_deg is 95; it must be from 0 to 90",)
 
 
-def test_what_is_wrong_in_all_of_them_is_the_study_s_own(write: Write) -> None:
+def test_an_error_in_all_combinations_is_one_of_the_study(write: Write) -> None:
     study = (
         'problem = "luggage"\n[vary]\nrequirements.transmision_min_deg = [1, 2]\n"motion.poses[7].x" = [1]\n'
     )

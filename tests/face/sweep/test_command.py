@@ -134,8 +134,8 @@ def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path
     said = running.communicate(timeout=600)[1]
     assert running.returncode == 0
     assert said.count(" of 200: ") <= 200 - 80
-    whole = started(study, tmp_path / "whole")
-    whole.communicate(timeout=600)
-    assert whole.returncode == 0
+    once = started(study, tmp_path / "once")
+    once.communicate(timeout=600)
+    assert once.returncode == 0
     for name in ("sweep.csv", "sweep.png", "sweep.html"):
-        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+        assert (out / name).read_bytes() == (tmp_path / "once" / name).read_bytes()

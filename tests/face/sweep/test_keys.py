@@ -45,7 +45,7 @@ def test_keys_that_lead_nowhere(document: dict[str, Any], key: str, words: str) 
 
 
 @pytest.mark.parametrize("key", ["", ".", "a.", "a[", "a[x]", "a b", "[0]", "a[-1]"])
-def test_what_is_no_key(key: str) -> None:
+def test_text_that_is_not_a_key_is_refused(key: str) -> None:
     with pytest.raises(ProblemError, match="dotted key"):
         key_parts(key)
 

@@ -1,4 +1,4 @@
-"""Sweeps from a study to a table: interrupted, resumed, elsewhere; what is kept and what is refused."""
+"""Sweeps from a study to a table: interrupted, resumed, on an executor; files kept and refused."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Write = Callable[..., Path]
 
 
 class Stop:
-    """Asks to stop after so many steps."""
+    """Stops after a number of steps."""
 
     def __init__(self, after: int) -> None:
         self.left = after
@@ -57,9 +57,9 @@ def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path,
     assert sweep(study, out=out, resume=True).complete
     assert len(texts) == 12
     assert len(set(texts)) == 12
-    sweep(study, out=tmp_path / "whole")
+    sweep(study, out=tmp_path / "once")
     for name in ("sweep.csv", "sweep.png", "sweep.html"):
-        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+        assert (out / name).read_bytes() == (tmp_path / "once" / name).read_bytes()
     assert len(list((out / "tasks").iterdir())) == 12
     assert sweep(study, out=out, resume=True).complete  # nothing is left to do
     assert len(texts) == 24
@@ -97,7 +97,7 @@ def test_processes_find_the_same(write: Write) -> None:
 
 
 @pytest.mark.study
-def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write) -> None:
+def test_a_combination_without_designs_states_the_reason(write: Write) -> None:
     limits = '[vary]\n"requirements.transmission_min_deg" = [95, 15, 80]\n'
     done = sweep(write(f'problem = "luggage"\n{limits}[search]\nstarts = 2\n'))
     frame = done.to_frame()
@@ -110,7 +110,9 @@ def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write
 
 @pytest.mark.study
 @pytest.mark.usefixtures("texts")
-def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_studies_and_versions_are_not_resumed(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     study, out = write(), tmp_path / "out"
     interrupted(study, out, 4, resume=False)
     kept = sorted((out / "tasks").iterdir())
@@ -180,7 +182,7 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
 
 
 @pytest.mark.usefixtures("texts")
-def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> None:
+def test_a_lost_process_keeps_the_finished_tasks(write: Write, tmp_path: Path) -> None:
     class Losing(ThreadPoolExecutor):
         left = 3
 

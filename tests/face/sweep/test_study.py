@@ -1,4 +1,4 @@
-"""Study files: what is read, and what is refused."""
+"""Study files, read and refused."""
 
 from __future__ import annotations
 
@@ -83,16 +83,16 @@ def test_all_that_is_wrong_is_stated(write: Write, text: str, lines: list[str]) 
 def test_the_studies_of_the_documentation(write: Write) -> None:
     root = Path(__file__).parents[3]
     section = (root / "docs" / "howto" / "sweeps.md").read_text(encoding="utf-8")
-    first, whole = re.findall(r"^```toml\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
+    first, full = re.findall(r"^```toml\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
     assert (root / "docs" / "longer-links.toml").read_text(encoding="utf-8").endswith(first)
     assert len(combinations(load_study(write(first)))) == 25
     write(problem_text("luggage"), "mine.toml")
-    study = load_study(write(whole))
+    study = load_study(write(full))
     made = combinations(study)
     assert len(made) == 6
     assert not any(one.wrong for one in made)
     options = {"time_limit", *SearchOptions.model_fields, *StudyFile.model_fields} - {"title"}
-    assert [name for name in options if not re.search(rf"\b{name}\b", whole)] == []
+    assert [name for name in options if not re.search(rf"\b{name}\b", full)] == []
 
 
 def test_problems_of_a_folder_are_sorted(write: Write) -> None:

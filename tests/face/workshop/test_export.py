@@ -74,7 +74,7 @@ def test_models_need_no_plan(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("export", "short.toml", "--mujoco", "short.xml", "--step", "short.step").exit_code == 2
 
 
-def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_format_that_cannot_represent_a_linkage_is_refused(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("export", "crank-shaper", "--mujoco", "a.xml", "--linkage2", "a.linkage2")
     assert done.exit_code == 2
     why = "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
@@ -84,7 +84,7 @@ def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path:
     assert (alone.exit_code, alone.stderr) == (2, f"grashof: {why}\n")
 
 
-def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_path: Path) -> None:
+def test_a_design_is_drawn_at_its_first_target(grashof: Grashof, few: Result, tmp_path: Path) -> None:
     write_run(tmp_path / "d", few, {}, drawings=0)
     done = grashof("export", "d/candidates.json#1", "--dxf", "one.dxf", "--scale", "1:50")
     assert done.exit_code == 0, done.stderr
@@ -190,7 +190,7 @@ def test_driver_and_output_share_a_layer_only_where_they_never_meet() -> None:
     assert [near.pin_length(pin) for pin in near.pins] == [10, 10, 10, 20]
 
 
-def test_a_drag_link_gets_a_second_base_and_says_why() -> None:
+def test_a_drag_link_gets_a_second_base_with_the_reason() -> None:
     plan = plan_parts(DRAG)
     found = layers(plan)
     assert (found["base"], found["driver"], found["coupler"], found["output"]) == ((0, 4), (1,), (2,), (3,))

@@ -205,11 +205,11 @@ def test_holes_and_slots_have_material_round_them(made: Made) -> None:
     for plate in (part.plate for part in plan.parts):
         assert plate.name in names
         core = shapely.convex_hull(shapely.multipoints(plate.corners))
-        whole = shapely.buffer(core, plate.width / 2, quad_segs=64)
+        outline = shapely.buffer(core, plate.width / 2, quad_segs=64)
         cut = [shapely.points(hole) for hole in plate.holes]
         cut += [shapely.linestrings(ends) for _, ends in plate.slots]
         for shape in cut:
-            assert shapely.distance(shape, whole.exterior) >= 0.999 * plate.width / 2
+            assert shapely.distance(shape, outline.exterior) >= 0.999 * plate.width / 2
         for one, other in combinations(cut, 2):
             assert shapely.distance(one, other) >= SIZES.least_spacing - 1e-9
 

@@ -131,7 +131,7 @@ def test_the_same_bytes_every_time_and_none_of_the_clock(tmp_path: Path) -> None
     assert book.properties.created.year == 2000
 
 
-def test_what_json_and_excel_cannot_hold() -> None:
+def test_infinity_is_text_and_nan_an_empty_cell() -> None:
     frame = pd.DataFrame({"rank": [1], "id": ["d1"], "omega4_max": [np.inf], "torque_peak": [np.nan]})
     spec = LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 3), "one")
     page = openpyxl.load_workbook(BytesIO(workbook([spec], frame)))["candidates"]
