@@ -37,7 +37,8 @@ class _Commands(TyperGroup):
         try:
             code = super().main(given, *rest, **{**options, "standalone_mode": False})
         except _UsageError as error:
-            say(f"grashof: {_one_line(error)}", err=True)
+            message: str = getattr(error, "format_message", error.__str__)()
+            say(f"grashof: {' '.join(message.split()).rstrip('.')}; see grashof --help", err=True)
             code = ExitCode.BAD_INPUT
         except OSError as error:  # of the help or the version: commands report their own
             say(f"grashof: {f'standard output: {error.strerror}' if error.strerror else error}", err=True)
@@ -45,7 +46,9 @@ class _Commands(TyperGroup):
         except Exception as error:  # noqa: BLE001  (the outermost boundary: nothing else reports it)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)
-            say(f"grashof: {_unexpected(error)}", err=True)
+            words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
+            hint = f"{TRACEBACK}=1 shows where, please report it with that"
+            say(f"grashof: unexpected error: {words}; {hint}", err=True)
             code = ExitCode.SURROUNDINGS
         sys.exit(code or ExitCode.OK)
 
@@ -117,16 +120,6 @@ def main() -> None:
     gc.set_threshold(50_000)  # loaded modules stay: scanning them often takes time
     atexit.register(gc.freeze)  # a scan at the end takes 0.15 s
     app(prog_name="grashof")
-
-
-def _one_line(error: Exception) -> str:
-    message: str = getattr(error, "format_message", error.__str__)()
-    return f"{' '.join(message.split()).rstrip('.')}; see grashof --help"
-
-
-def _unexpected(error: Exception) -> str:
-    words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
-    return f"unexpected error: {words}; {TRACEBACK}=1 shows where, please report it with that"
 
 
 @contextmanager

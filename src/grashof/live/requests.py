@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn
@@ -51,11 +51,7 @@ class Line:
 
 
 def error_line(*lines: str) -> Line:
-    """A line that states an error.
-
-    >>> error_line("there is no design to save").text
-    '{"kind": "error", "lines": ["there is no design to save"]}'
-    """
+    """A line that states an error."""
     return Line(json.dumps({"kind": "error", "lines": list(lines)}))
 
 
@@ -154,20 +150,13 @@ def _count_numbers(value: object, depth: int = 0) -> int:
     if depth > _DEPTH:
         raise ProblemError(f"the document has tables in each other more than {_DEPTH} deep")
     if isinstance(value, dict | list):
-        return sum(_count_numbers(each, depth + 1) for each in _values(value))
+        entries = value.values() if isinstance(value, dict) else value
+        return sum(_count_numbers(each, depth + 1) for each in entries)
     return int(isinstance(value, int | float))
 
 
-def _values(value: dict[str, Any] | list[Any]) -> Iterable[Any]:
-    return value.values() if isinstance(value, dict) else value
-
-
 def document_from(text: str, name: str) -> dict[str, Any]:
-    """A problem file as JSON; ProblemError where it is invalid or names other files.
-
-    >>> document_from(problem_text("luggage"), "luggage")["motion"]["poses"][0]
-    [5, 4, 0]
-    """
+    """A problem file as JSON; ProblemError where it is invalid or names other files."""
     problem_of(text, f"{name}.toml", name)
     return document_of(text, f"{name}.toml")
 
@@ -191,11 +180,7 @@ def beginning(problem: Problem | str | None) -> dict[str, Any]:
 
 
 def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
-    """The "document" and "name" of the problem requested, and the names of the "catalogue".
-
-    The problem that the page begins with, one of the catalogue, or that of a file's text; ProblemError where
-    it is invalid.
-    """
+    """The "document" and "name" of the first problem, one of the catalogue, or a file's; the "catalogue"."""
     found = begin
     if "text" in request:
         text, name = request["text"], name_of(request.get("name", ""))

@@ -197,10 +197,7 @@ class Session:
     newest: Job | None = None
 
     async def lines(self, job: Job) -> AsyncGenerator[str]:
-        """Lines of a job, as JSON; they end early when the page requests a newer one.
-
-        A file is made beside the other jobs.
-        """
+        """Lines of a job, as JSON, until the page requests a newer one; a file is made beside other jobs."""
         aside = job.what == "file"
         if not aside:
             self.newest = job

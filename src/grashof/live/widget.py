@@ -17,13 +17,7 @@ from grashof.synth import Candidate
 
 
 class LiveWidget(anywidget.AnyWidget):
-    """A page in a cell; `problem` and `designs` are those on it.
-
-    Parameters
-    ----------
-    problem : Problem or str
-        At the beginning.
-    """
+    """A page in a cell, which begins with a problem; `problem` and `designs` are those on it."""
 
     _esm = widget_module()
 

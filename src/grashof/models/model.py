@@ -13,7 +13,7 @@ from grashof.analysis.forces.mass import Masses, uniform_bars
 from grashof.analysis.forces.stated import stated_masses
 from grashof.problems import Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN
-from grashof.problems.values.dynamics.dynamics_spec import METRES, DynamicsSpec
+from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.specs.linkage_spec import ListedDesign
 
 _BAR = 1.0  # kg/m, of the bars of a linkage whose file states no masses
@@ -104,14 +104,9 @@ class Model:
     def masses(self) -> Masses:
         """Masses of the links, lengths in the linkage's unit; bars of 1 kg/m where the file states none."""
         dynamics = self.spec.dynamics
-        if dynamics is None or not _has_masses(dynamics):
+        if dynamics is None or {dynamics.masses, dynamics.density, dynamics.mass_per_length} == {None}:
             return uniform_bars(self.linkage, _BAR * self.metre)
         return stated_masses(self.linkage, dynamics, self.metre)
-
-
-def _has_masses(dynamics: DynamicsSpec) -> bool:
-    stated = (dynamics.masses, dynamics.density, dynamics.mass_per_length)
-    return any(each is not None for each in stated)
 
 
 def add(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:

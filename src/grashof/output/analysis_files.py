@@ -15,7 +15,7 @@ from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_
 from grashof.output.process import say
 from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
 from grashof.output.terminal import fitting, folded, plain_table
-from grashof.survey import Fact, LinkageReport, Section
+from grashof.survey import Fact, LinkageReport
 from grashof.wording.linkage import dimensions_text
 from grashof.wording.numbers import number_text, value_text
 
@@ -41,7 +41,11 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
         for section in report.sections:
             for name, table in section.tables.items():
                 write_csv(fresh / f"table-{name}.csv", table)
-        write_csv(fresh / "summary.csv", _summary_frame(report))
+        rows = [
+            {"quantity": key, "value": fact.value, "unit": fact.unit, "what": fact.label, "section": section}
+            for key, (section, fact) in _facts_by_key(report).items()
+        ]
+        write_csv(fresh / "summary.csv", pd.DataFrame(rows))
         write_json(fresh / "summary.json", _summary(report))
         write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
         for name, figure in chain(plots(report), section_pictures(report) if pictures else ()):
@@ -60,16 +64,9 @@ def print_report(report: LinkageReport) -> None:
     for line in fitting(_extremes_table(report, digits) for digits in (6, 4)):
         say(line)
     for section in report.sections:
-        for line in _section_lines(section):
+        lines = fitting([_facts_table(section.title, section.facts)]) if section.facts else []
+        for line in [*filter(None, lines), *folded(section.notes), ""] if lines else []:
             say(line)
-
-
-def _section_lines(section: Section) -> list[str]:
-    """Its facts under its title, with its notes; none without facts."""
-    if not section.facts:
-        return []
-    lines = fitting([_facts_table(section.title, section.facts)])
-    return [*(line for line in lines if line), *folded(section.notes), ""]
 
 
 def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
@@ -93,14 +90,6 @@ def _extremes_table(report: LinkageReport, digits: int) -> Table:
         values = (number_text(row[name], digits) for name in columns)
         table.add_row(*(str(row[name]) for name in (*ranges, "what", "unit")), *values)
     return table
-
-
-def _summary_frame(report: LinkageReport) -> pd.DataFrame:
-    rows = [
-        {"quantity": key, "value": fact.value, "unit": fact.unit, "what": fact.label, "section": section}
-        for key, (section, fact) in _facts_by_key(report).items()
-    ]
-    return pd.DataFrame(rows)
 
 
 def _facts_by_key(report: LinkageReport) -> dict[str, tuple[str, Fact]]:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
+from itertools import chain
 from textwrap import TextWrapper
 
 import numpy as np
@@ -86,7 +87,9 @@ def print_table(result: Result, verified: int | None = None) -> None:
     """Print the best designs with their main quantities; `verified` is the number found in all."""
     for line in folded(heading(result, verified or len(result)).splitlines()):
         say(line)
-    for line in fitting(_tables(result)):
+    digits = 4 if console().width >= _WIDE else 3
+    left_out = [list(chain(*_DROPPED[:count])) for count in range(len(_DROPPED) + 1)]
+    for line in fitting(_table(result, digits, names) for names in left_out):
         say(line)
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
     undecided = not all(each.holds for each in enclosures(result))
@@ -120,13 +123,6 @@ def fitting(tables: Iterable[Table]) -> list[str]:
 def plain_table() -> Table:
     """A table without columns, ruled below its heading alone."""
     return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
-
-
-def _tables(result: Result) -> Iterator[Table]:
-    """The list, each time with fewer columns."""
-    digits = 4 if console().width >= _WIDE else 3
-    for dropped in range(len(_DROPPED) + 1):
-        yield _table(result, digits, [name for names in _DROPPED[:dropped] for name in names])
 
 
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:

@@ -49,10 +49,7 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
 
 
 def number_axes(done: Sweep) -> tuple[str, ...]:
-    """The one or two keys that the plot is over, all numbers; empty for other sweeps.
-
-    Of keys that vary in step it is the first that has numbers.
-    """
+    """The one or two varied numbers of the axes, of keys in step the first number; empty for other sweeps."""
     axes = [keys for keys in done.study.axes if len(done.study.vary[keys[0]]) > 1]
     numeric = [next((key for key in keys if _is_numeric(done.study.vary[key])), "") for keys in axes]
     return tuple(numeric) if all(numeric) and len(done.study.sources) == 1 and len(numeric) <= 2 else ()

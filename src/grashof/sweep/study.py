@@ -278,13 +278,9 @@ def _sources(document: Mapping[str, Any], folder: Path) -> tuple[Source, ...]:
     if not isinstance(table, str):
         return (base,)
     rows = target_rows(folder / table, base.document)
-    return tuple(
-        Source(base.name, cells, laid, _row_label(cells), folder=base.folder) for cells, laid in rows
-    )
-
-
-def _row_label(cells: Mapping[str, Any]) -> str:
-    return f"row {cells['row']}{f' ({cells[NAME]})' if cells.get(NAME) else ''}"
+    labels = (f"row {cells['row']}{f' ({cells[NAME]})' if cells.get(NAME) else ''}" for cells, _ in rows)
+    made = zip(rows, labels, strict=True)
+    return tuple(Source(base.name, cells, laid, label, folder=base.folder) for (cells, laid), label in made)
 
 
 def _base(named: str, folder: Path) -> Source:

@@ -106,12 +106,8 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Export
     refused = list(dict.fromkeys(refused))
     if not contents:
         raise ProblemError("\n".join(refused))
-    _write_whole({files[kind]: _bytes(content) for kind, content in contents.items()})
+    _write_whole({files[kind]: content for kind, content in contents.items()})
     return Exported(made, tuple(files[kind] for kind in contents), tuple(refused))
-
-
-def _bytes(content: str | bytes) -> bytes:
-    return content.encode("utf-8") if isinstance(content, str) else content
 
 
 def plan_lines(plan: Plan) -> list[str]:
@@ -210,12 +206,12 @@ def write_dxf(path: str | os.PathLike[str], plan: Plan, title: str = "") -> None
     OSError
         The file cannot be written; an older one stays.
     """
-    _write_whole({Path(path): dxf(sheet(plan, title)).encode("utf-8")})
+    _write_whole({Path(path): dxf(sheet(plan, title))})
 
 
 def write_svg(path: str | os.PathLike[str], plan: Plan, title: str = "") -> None:
     """Write the same drawing as SVG, in mm; parameters as for `write_dxf`."""
-    _write_whole({Path(path): svg(sheet(plan, title)).encode("utf-8")})
+    _write_whole({Path(path): svg(sheet(plan, title))})
 
 
 def write_xlsx(
@@ -235,7 +231,7 @@ def write_xlsx(
     _write_whole({Path(path): workbook(chosen, candidates)})
 
 
-def _write_whole(contents: Mapping[Path, bytes]) -> None:
+def _write_whole(contents: Mapping[Path, str | bytes]) -> None:
     """Write files beside their places, and move them there when all are complete.
 
     OSError names the file whose disk is full or folder is lost; every file is then as it was before.
@@ -246,7 +242,7 @@ def _write_whole(contents: Mapping[Path, bytes]) -> None:
             try:
                 beside = tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-")
                 fresh[path] = Path(folders.enter_context(beside)) / path.name
-                fresh[path].write_bytes(content)
+                fresh[path].write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
             except OSError as error:
                 raise OSError(error.errno, error.strerror, str(path)) from None
         for path, file in fresh.items():
