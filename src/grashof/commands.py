@@ -1,4 +1,4 @@
-"""The commands that do not search: what they print and write."""
+"""The commands that do not search: their output and files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands that search: `solve` with its shards, `merge` and `sweep`; what they write and print."""
+"""The commands that search: `solve` with its shards, `merge` and `sweep`; their output and files."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _deliver(
     drawing: Drawer | None = None,
     listed: Callable[[], None] | None = None,
 ) -> ExitCode:
-    """Write what a search found, and print the list; `listed` is called in between, see `write_run`."""
+    """Write the result of a search, and print the list; `listed` is called in between, see `write_run`."""
     from grashof.output.run_files import missing_drawings, write_run
     from grashof.output.terminal import print_table
     from grashof.wording.proof import proof_line
@@ -282,7 +282,7 @@ def sweep(
     if done.results:
         say(f"Open {folder / SWEEP_PAGE} in a browser to look at it; sweep.csv has the table.", err=True)
     if not done.complete:
-        say(f"interrupted: --resume continues it; what is finished is in {folder}", err=True)
+        say(f"interrupted: --resume continues it; finished combinations are in {folder}", err=True)
         return interrupted.code
     return ExitCode.OK if done.with_designs else ExitCode.NO_DESIGN
 

@@ -38,7 +38,9 @@ def widget_module() -> str:
     return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 
+# Content and type of each address.
 FRONT: dict[str, Callable[[], tuple[str, str]]] = {
+    "/": lambda: (live_page(), "text/html"),
     "/live.css": lambda: (live_style(), "text/css"),
     "/live.js": lambda: (live_script(), "text/javascript"),
     "/start.js": lambda: (text_of("live/start.js"), "text/javascript"),

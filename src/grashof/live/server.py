@@ -15,7 +15,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from grashof.live.front import FRONT, live_page
+from grashof.live.front import FRONT
 from grashof.live.requests import MOST_BYTES, error_line, job_of, opened, request_of
 from grashof.live.solvers import Sessions, Solvers
 from grashof.problems import ProblemError
@@ -61,9 +61,6 @@ def application(live: Live) -> Starlette:
     """The application: the page, its style and scripts, and the answers to its requests."""
     sessions = Sessions(live.solvers)
 
-    async def page(_request: Request) -> Response:
-        return Response(live_page(), media_type="text/html")
-
     async def front(request: Request) -> Response:
         content, kind = FRONT[request.url.path]()
         return Response(content, media_type=kind)
@@ -86,7 +83,6 @@ def application(live: Live) -> Starlette:
 
     return Starlette(
         routes=[
-            Route("/", page),
             *(Route(path, front) for path in FRONT),
             Route("/begin", _guarded(live, begin), methods=["POST"]),
             Route("/ask", _guarded(live, ask), methods=["POST"]),
@@ -130,9 +126,9 @@ def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Respon
 
 async def _body(request: Request) -> bytes:
     """The body; ProblemError where it is too large."""
-    stated = request.headers.get("content-length", "")
-    if stated.isdecimal() and int(stated) > MOST_BYTES:
-        raise ProblemError(f"the request has {stated} bytes; at most {MOST_BYTES} are allowed")
+    length = request.headers.get("content-length", "")
+    if length.isdecimal() and int(length) > MOST_BYTES:
+        raise ProblemError(f"the request has {length} bytes; at most {MOST_BYTES} are allowed")
     body = b""
     async for part in request.stream():
         body += part

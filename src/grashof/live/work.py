@@ -60,12 +60,12 @@ class Shown:
     def matched(self, found: Sequence[Candidate], result: Result | None = None) -> Shown:
         """A new list; known designs keep their keys, and the end of a search forgets the others."""
         known = {**self.designs, **self.absent}
-        stated = {key: _numbers(design) for key, design in known.items()}
+        numbers_of = {key: _numbers(design) for key, design in known.items()}
         designs: dict[int, Candidate] = {}
         key = self.next_key
         for design in found:
             numbers = _numbers(design)
-            same = (k for k, other in stated.items() if k not in designs and _alike(numbers, other))
+            same = (k for k, other in numbers_of.items() if k not in designs and _alike(numbers, other))
             kept = next(same, None)
             designs[key if kept is None else kept] = design
             key += kept is None
@@ -79,8 +79,8 @@ class Shown:
 
 
 def _numbers(design: Candidate) -> np.ndarray[Any, np.dtype[np.float64]]:
-    stated = [np.ravel(each) for each in design.linkage.parameters]
-    return np.concatenate([[len(design.linkage.mechanism.word)], *stated]).astype(float)
+    parameters = map(np.ravel, design.linkage.parameters)
+    return np.concatenate([[len(design.linkage.mechanism.word)], *parameters]).astype(float)
 
 
 def _alike(one: np.ndarray[Any, Any], other: np.ndarray[Any, Any]) -> bool:
@@ -113,9 +113,9 @@ def _problem(job: Job) -> Problem:
 def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
-    order = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
-    kept = {key: design for key, design in shown.designs.items() if key in order}
-    kept = {key: design for key, design in kept.items() if is_of(design.linkage, problem.mechanism)}
+    first = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
+    followed = {key: design for key, design in shown.designs.items() if key in first}
+    kept = {key: design for key, design in followed.items() if is_of(design.linkage, problem.mechanism)}
     moved = dict(zip(kept, track(list(kept.values()), problem), strict=True))
     there = {key: design for key, design in moved.items() if design.verdict.ok}
     lost = {key: _defects(design) for key, design in moved.items() if key not in there}

@@ -148,7 +148,7 @@ def _gain(model: Model, gravity: float) -> float:
 
 
 def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
-    """The bodies by the numbers of their links, and what closes each loop: in E, or of a rod in C.
+    """The bodies by the numbers of their links, and the closure of each loop: in E, or of a rod in C.
 
     The parent of the first link of a dyad is the host of C, that of the second the host of D, that of a rod
     its block.

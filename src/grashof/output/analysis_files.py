@@ -25,7 +25,7 @@ _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
     """Write tables, summary, page, plots, `pictures` too, and their record; the files' names, sorted.
 
-    OSError where the disk is full or the folder is lost; it then holds what it held before.
+    OSError where the disk is full or the folder is lost; it then holds its former files.
     """
     from grashof.figures.files import save
     from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import

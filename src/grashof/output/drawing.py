@@ -65,7 +65,7 @@ def drawer(most: int) -> Iterator[Drawer]:
 
 
 def _may_be_copied() -> bool:
-    """Whether a copy of this process can work beside it: a thread might hold what the copy waits for."""
+    """Whether a copy of this process can work beside it: a thread might hold a lock that it needs."""
     return sys.platform == "linux" and threading.active_count() == 1 and len(os.sched_getaffinity(0)) > 1
 
 
@@ -102,7 +102,7 @@ def _draw(pipe: Connection, other: Connection) -> None:
 
 
 def _get_ready() -> None:
-    """Import what draws, and have it load its fonts."""
+    """Import matplotlib, and load its fonts."""
     from matplotlib.figure import Figure
 
     from grashof.figures.files import drawn

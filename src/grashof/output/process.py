@@ -16,7 +16,7 @@ import typer
 
 from grashof.problems.values.checks import counted, readable
 
-_LAID_OUT = re.compile(r"[^\n\t]+")  # all but what lays out text
+_LAID_OUT = re.compile(r"[^\n\t]+")  # all but line ends and tabs
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 

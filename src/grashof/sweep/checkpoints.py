@@ -51,7 +51,8 @@ class Checkpoints:
                 raise ProblemError(f"{self.folder}: has tasks but no {SWEEP_RECORD}; name another folder")
             return {}
         self._refuse_other(record, study)
-        if (other := next((path for path in files if path.stem not in set(keys)), None)) is not None:
+        known = set(keys)
+        if (other := next((path for path in files if path.stem not in known), None)) is not None:
             raise ProblemError(f"{other}: is of another study or version; remove it, or name another folder")
         return {path.stem: _result(path) for path in files}
 

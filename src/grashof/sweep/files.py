@@ -19,7 +19,7 @@ _ENGINES = ("pyarrow", "fastparquet")  # of pandas, in the order in which it tri
 
 
 def check_folder(folder: Path | None, study: Study) -> None:
-    """Refuse (ProblemError), before any work, what could not be written in the end."""
+    """Refuse (ProblemError), before any work, a folder or format that cannot be written."""
     if study.parquet and not any(map(find_spec, _ENGINES)):
         raise ProblemError(
             "parquet needs pyarrow: pip install 'grashof[parquet]' (in a clone '.[parquet]'), or leave it out"

@@ -61,7 +61,7 @@ def sweep(
     Raises
     ------
     ProblemError
-        The study or another argument is invalid, or `out` holds what must not be replaced.
+        The study or another argument is invalid, or `out` holds files that must not be replaced.
     SolverError
         A worker process was lost; the finished tasks are in `out`.
     """

@@ -121,9 +121,8 @@ def _laid_over(
         with noted(wrong):
             targets.append(_target(kind, cells, number))
     refuse(wrong)
-    stated = base.get(kind)
-    table = {**(stated if isinstance(stated, dict) else {}), _TARGETS[kind]: [t for t in targets if t]}
-    document = {**base, kind: table}
+    table = base[kind] if isinstance(base.get(kind), dict) else {}
+    document = {**base, kind: {**table, _TARGETS[kind]: [target for target in targets if target]}}
     for name, value in cells.items():
         if "." in name and value is not None:  # a key of the problem file
             document = assigned(document, key_parts(name), value)

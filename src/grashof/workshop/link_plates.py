@@ -155,14 +155,10 @@ def _without_room(
 def _refuse_near(holes: Mapping[str, FloatArray], slots: Mapping[str, FloatArray], sizes: PlateSizes) -> None:
     """Refuse holes of a plate without material between them, and slots beside them."""
     pairs = [
-        (name, other, float(np.hypot(*(at - to))))
-        for (other, to), (name, at) in combinations(holes.items(), 2)
+        (name, other, np.hypot(*(at - to))) for (other, to), (name, at) in combinations(holes.items(), 2)
     ]
-    pairs += [
-        (name, f"the slot of {pin}", _distance(at, ends))
-        for pin, ends in slots.items()
-        for name, at in holes.items()
-    ]
+    for pin, ends in slots.items():
+        pairs += [(name, f"the slot of {pin}", _distance(at, ends)) for name, at in holes.items()]
     for name, other, near in pairs:
         if near < sizes.least_spacing:
             raise ProblemError(

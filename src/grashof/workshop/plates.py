@@ -166,7 +166,7 @@ def plate_of(
 
 
 def _hull(points: FloatArray) -> FloatArray:
-    """Corners of what surrounds points, counter-clockwise, shape (1, 2 or more, 2)."""
+    """Corners of the convex hull of points, counter-clockwise, shape (1, 2 or more, 2)."""
     hull = shapely.convex_hull(shapely.multipoints(points))
     corners: FloatArray = shapely.get_coordinates(shapely.orient_polygons(hull))
     return corners[:-1] if shapely.get_dimensions(hull) == 2 else corners

@@ -196,10 +196,10 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
 def return_cranks(plates: Mapping[str, Plate], sizes: PlateSizes) -> Iterator[ReturnCrank]:
     """The two ways to divide a driver that has two crank pins, A and C; none of others."""
     driver = plates[DRIVER]
+    if not {"A", "C"} <= {*driver.joints}:
+        return
     for pin, far in (("A", "C"), ("C", "A")):
         holes = dict(zip(driver.joints, driver.holes, strict=True))
-        if far not in holes or pin not in holes:
-            continue
         x, y = holes.pop(far) - holes[pin]
         crank = bar(RETURN_CRANK, (pin, far), (0.0, float(np.hypot(x, y))), sizes)
         divided = {DRIVER: plate_of(DRIVER, holes, sizes), RETURN_CRANK: crank}
@@ -207,7 +207,7 @@ def return_cranks(plates: Mapping[str, Plate], sizes: PlateSizes) -> Iterator[Re
 
 
 class _Bench:
-    """Parts whose orders are tried: plates, what each pin joins, and their motion."""
+    """Parts whose orders are tried: plates, the plates on each pin, and their motion."""
 
     def __init__(
         self,
@@ -220,7 +220,7 @@ class _Bench:
         self.cores, self.gap = cache(self._cores), cache(self._gap)
 
     def free(self, linkage: Linkage, met: dict[str, None]) -> Stack | None:
-        """The first order in which nothing meets, on one base or on two; adds to `met` what meets on one."""
+        """The first order in which nothing meets, on one base or two; `met` gets pairs that meet on one."""
         layings = _layings(tuple(self.plates), self.joints)
         for order in _orders(layings, self.joints, [()]):
             if (pair := self._meeting(order)) is None:
@@ -323,12 +323,8 @@ def _posts(
     """Positions along the base from O2 that no link reaches."""
     angle = base_angle(linkage)
     along = np.array([np.cos(angle), np.sin(angle)])
-    reached = np.concatenate(
-        [
-            ((placed(plate.corners, motion.places[name]) - linkage.o2) @ along).ravel()
-            for name, plate in plates.items()
-        ]
-    )
+    corners = (placed(plate.corners, motion.places[name]) for name, plate in plates.items())
+    reached = np.concatenate([((at - linkage.o2) @ along).ravel() for at in corners])
     apart = sizes.width + 2 * sizes.gap
     return float(reached.min() - apart), float(reached.max() + apart)
 
