@@ -54,7 +54,7 @@ def test_it_is_assembled_at_the_beginning_of_its_motion(model: Model) -> None:
             )
 
 
-@pytest.mark.quick("pumpjack", "press of a watt-2")
+@pytest.mark.quick("press of a watt-2")
 def test_it_moves_as_the_linkage(model: Model) -> None:
     """A turn of the driver, or as far as one that swings comes within a third of its range."""
     made, data = opened(model)

@@ -204,7 +204,7 @@ def moved(
     return shapely.polygons(np.stack([path.real, path.imag], axis=-1))
 
 
-@pytest.mark.quick("pumpjack-dxf", "P at A-dxf", "parallelogram-svg")
+@pytest.mark.quick("pumpjack-dxf", "parallelogram-svg")
 @pytest.mark.parametrize("kind", READERS)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_nothing_meets_in_motion(name: str, kind: str) -> None:

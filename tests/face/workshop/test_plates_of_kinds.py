@@ -5,6 +5,7 @@ The linkages are moved here by equations of the tests: a line and a circle, or t
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 from typing import NamedTuple
@@ -118,11 +119,18 @@ class Made(NamedTuple):
     frames: Frames
 
 
+@cache
+def planned(name: str) -> Plan:
+    if name in SLIDES:
+        return plan_parts(SLIDES[name], SIZES)
+    return plan_parts(TWO_LOOPS[name], SIZES, SCALE)
+
+
 @pytest.fixture(scope="module", params=[*SLIDES, *TWO_LOOPS])
 def made(request: pytest.FixtureRequest) -> Made:
     name = request.param
-    linkage, scale = (SLIDES[name], 1.0) if name in SLIDES else (TWO_LOOPS[name], SCALE)
-    plan = plan_parts(linkage, SIZES, scale)
+    linkage = SLIDES[name] if name in SLIDES else TWO_LOOPS[name]
+    plan = planned(name)
     return Made(name, linkage, plan, frames_of(linkage, plan))
 
 
@@ -232,7 +240,7 @@ def test_the_file_has_the_slot_that_the_list_states(tmp_path: Path) -> None:
 
 def test_a_driver_in_two_plates_is_pointed_out() -> None:
     """Otherwise the links of both crank pins would meet it."""
-    plan = plan_parts(SIX_BARS["watt-2 on the driver"], SIZES, SCALE)
+    plan = planned("watt-2 on the driver")
     (note,) = [note for note in plan.notes if "two plates" in note]
     assert note == "the driver is in two plates: both are fixed to pin A, which turns with them"
     plates = {part.plate.name: part.plate for part in plan.parts}
@@ -244,7 +252,7 @@ def test_a_driver_in_two_plates_is_pointed_out() -> None:
 def test_a_missing_hole_for_p_is_noted() -> None:
     plan = plan_parts(InvertedSliderCrank((0, 0), (200, 0), 50, 0, (145, 5)), SIZES)
     assert any("the coupler has no hole for P" in note for note in plan.notes)
-    plan = plan_parts(SIX_BARS["press of a watt-2"], SIZES, SCALE)
+    plan = planned("press of a watt-2")
     assert "the slider-2 is a pin and has no hole for P" in plan.notes
 
 
