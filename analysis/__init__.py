@@ -1,8 +1,7 @@
 """How a given linkage moves and how good it is: the independent judge of the synthesis, without CasADi."""
 
-from grashof.analysis.curves.curvature import curvature, cusps
+from grashof.analysis.curves.curvature import DoublePoints, all_double_points, curvature, cusps, double_points
 from grashof.analysis.curves.curve_distance import curve_distances
-from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
 from grashof.analysis.curves.dwell import Dwell, dwell
 from grashof.analysis.curves.fit import (
     NotAFunctionWarning,
@@ -13,9 +12,14 @@ from grashof.analysis.curves.fit import (
     regression,
 )
 from grashof.analysis.curves.fourier import FourierSeries, coupler_fourier, coupler_harmonics, fourier_series
-from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation, spline
 from grashof.analysis.curves.line_and_circle import BestCircle, BestLine, best_circle, best_line, circularity
-from grashof.analysis.curves.path_fits import FittedPath, PathFit
+from grashof.analysis.curves.path_fits import (
+    FittedPath,
+    NewtonPolynomial,
+    PathFit,
+    newton_interpolation,
+    spline,
+)
 from grashof.analysis.curves.straightness import straightest_half_turn, straightness
 from grashof.analysis.cylinder.lengths import CylinderState, cylinder_state
 from grashof.analysis.forces.balancing import (
@@ -31,14 +35,7 @@ from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, flywheel_speed, size_flywheel
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
 from grashof.analysis.forces.joints import Joint
-from grashof.analysis.forces.loads import (
-    AppliedForce,
-    AppliedMoment,
-    Friction,
-    Loads,
-    Spring,
-    TorsionSpring,
-)
+from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import (
     WEIGHTLESS,
     Body,
@@ -57,8 +54,14 @@ from grashof.analysis.forces.reciprocating import (
 from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
-from grashof.analysis.four_bar.coupler_circles import Centrodes, CouplerCircles, centrodes, coupler_circles
-from grashof.analysis.four_bar.instant_centres import InstantCentres, instant_centres
+from grashof.analysis.four_bar.instant_centres import (
+    Centrodes,
+    CouplerCircles,
+    InstantCentres,
+    centrodes,
+    coupler_circles,
+    instant_centres,
+)
 from grashof.analysis.four_bar.newton_raphson import NewtonPosition, newton_position
 from grashof.analysis.four_bar.pumping_unit import (
     ReducerTorque,
@@ -80,9 +83,14 @@ from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences
 from grashof.analysis.mechanism.driver_law import DriverLaw, DriverMotion, driver_motion
-from grashof.analysis.mechanism.driver_samples import driver_samples
-from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
-from grashof.analysis.mechanism.extremes import Extremes, extremes, extremes_of, transmission_extremes
+from grashof.analysis.mechanism.even_motion import EvenMotion, driver_samples, even_motion
+from grashof.analysis.mechanism.extremes import (
+    Extremes,
+    extremes,
+    extremes_of,
+    reach_box,
+    transmission_extremes,
+)
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion, SlideMotion, solve_kinematics
 from grashof.analysis.mechanism.mobility import (
@@ -96,7 +104,6 @@ from grashof.analysis.mechanism.mobility import (
     triple_rocker_kind,
 )
 from grashof.analysis.mechanism.position import Position, solve_position
-from grashof.analysis.mechanism.reach import reach_box
 from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.stroke import LinkStroke, OutputStroke, link_stroke, output_stroke
 from grashof.analysis.mechanism.transmission import (

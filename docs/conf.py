@@ -68,7 +68,7 @@ html_theme_options: dict[str, Any] = {
 
 
 def plain_figures(_gallery: dict[str, Any], _file: str) -> None:
-    """Figures of all examples look alike; searches that warn of what the text explains do so quietly."""
+    """Figures of all examples look alike; warnings that the text explains are silenced."""
     import matplotlib as mpl
 
     mpl.use("agg")

@@ -1,4 +1,4 @@
-"""What is asked: tasks, requirements, the linkage as a value, and the catalogue of problems."""
+"""Problems as values and files: tasks, requirements, linkages, and the catalogue."""
 
 from grashof.problems.files.linkage_file import (
     linkage_catalogue,
@@ -10,8 +10,7 @@ from grashof.problems.files.problem_file import catalogue, load, load_with_text,
 from grashof.problems.values.box import Box
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
-from grashof.problems.values.dynamics.section import CrossSection, SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec
+from grashof.problems.values.dynamics.strength import CrossSection, SectionSpec, StrengthSpec
 from grashof.problems.values.errors import (
     AssemblyError,
     DeadPositionWarning,
@@ -22,11 +21,9 @@ from grashof.problems.values.errors import (
     SolverError,
 )
 from grashof.problems.values.linkages.cylinder import Cylinder, CylinderSpec
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
-from grashof.problems.values.linkages.slider_crank import SliderCrank
 from grashof.problems.values.requirements.objective import Objective
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.specs.linkage_spec import LinkageSpec

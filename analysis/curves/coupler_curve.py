@@ -1,22 +1,28 @@
-"""The coupler curve: P with its derivatives, and its samples along the motion that a driver can make."""
+"""The coupler curve: P with its derivatives, its samples along the motions of a driver, and as a polygon."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of, place, point_rates
-from grashof.analysis.mechanism.driver_samples import closer_at_ends
-from grashof.analysis.mechanism.mobility import driver_ranges, range_index, whole_turn
+from grashof.analysis.mechanism.closing import STEADY, closed_at, coupler_point, move, point_rates
+from grashof.analysis.mechanism.even_motion import closer_at_ends
+from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, turned_from
 
-PIECES = 180  # of each range of the driver, when points are sought on the curve
-_FINE = 180  # samples of half a turn, or of a range, by which the nodes are placed
+PIECES = 180  # of each range of the driver, for the search of points on the curve
+_FINE = 180  # samples of half a turn, or of a range, from which the nodes are placed
+_CHORD = 0.01  # longest chord, as a share of the extent of the curve
+_BEND = np.radians(4)  # largest turn between chords
+_VISIBLE = 0.002  # share of the extent: turns between shorter chords do not count, as at a cusp
+_MOST = 2000
+_ROUNDS = 24
 
 
 class CouplerMotion(NamedTuple):
@@ -34,14 +40,13 @@ class CouplerMotion(NamedTuple):
 def coupler_motion(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> CouplerMotion:
-    """How P and its link move with the driver; arguments and what is not finite as for `coupler_curve`."""
-    kind, angle = linkage.mechanism, np.asarray(theta2, dtype=np.float64)
-    loops, frames = close(kind, operands_of(linkage, assembly), angle)
-    _, turns = move(loops, STEADY, dead_below=0.0, whole=True)
-    at = place(frames, kind.carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    """P and its link with derivatives by the driver angle; finite as in `coupler_curve`."""
+    loops, frames = closed_at(linkage, theta2, assembly)
+    _, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
+    at, carries = coupler_point(linkage, frames), linkage.mechanism.carries
     (vx, vy), (ax, ay), _ = point_rates(at, turns)
     p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
-    frame, (omega, alpha, _) = frames[kind.carries], turns[kind.carries].push
+    frame, (omega, alpha, _) = frames[carries], turns[carries].tangential
     theta = np.arctan2(frame.sine, frame.cosine)
     return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
 
@@ -55,11 +60,11 @@ def coupler_curve(
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A motion that the driver can make, in M pieces on which the curve is nearly straight.
+    """A motion of the driver in M pieces on which the curve is nearly straight.
 
     Driver angles (M,) in rad and P (S, M) at the ends of each, on the assemblies `signs`. Floor and ceiling
-    are the ends of the range that a piece lies in, infinite where the driver turns fully; if `cyclic`, the
-    first piece follows the last.
+    are the ends of the range of each piece, infinite where the driver turns fully; `cyclic` if the first
+    piece follows the last.
     """
 
     low: FloatArray
@@ -73,12 +78,11 @@ class Track:
 
 
 def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
-    """Every motion that the driver of a single linkage can make, in `pieces` a range; empty without any.
+    """All motions of the driver of a single linkage, in `pieces` per range.
 
-    On its own assembly without a dead position if `same_branch`; otherwise one motion over all ranges and
-    both assemblies.
+    Without dead positions on its own assembly if `same_branch`; otherwise one over all ranges and assemblies.
     """
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return [_turn(linkage, pieces, _signs(linkage, same_branch))]
     ends = [(low, high) for low, high in driver_ranges(linkage).tolist() if high > low]
     single = [between(linkage, *each, each, pieces, same_branch) for each in ends]
@@ -88,7 +92,7 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
 def between(
     linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
 ) -> Track:
-    """The part from `start` to `end` > `start` of the driver's range with these ends."""
+    """The part of a range with these `ends` from `start` to `end` > `start`."""
     signs = _signs(linkage, same_branch)
     nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
     return _track(linkage, nodes, signs, *ends, cyclic=False)
@@ -96,7 +100,7 @@ def between(
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
     """Ends of the range around an angle, counted from it, rad; NaN without one, infinite for a full turn."""
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return -np.inf, np.inf
     index, inside = range_index(linkage, theta2)
     if index < 0:
@@ -106,7 +110,7 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
 
 
 def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
-    # Closer about the ground line: there a linkage near a change point runs away from its driver.
+    # Denser about the ground line, where a linkage near a change point moves fast.
     half = closer_at_ends(0.0, np.pi, _FINE + 1)
     fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
     nodes = _nodes(linkage, fine, pieces, signs)
@@ -140,10 +144,48 @@ def _track(
 
 
 def _joined(parts: list[Track]) -> Track:
-    """Parts one after the other round the turn."""
+    """Parts in order round the turn."""
     parts = sorted(parts, key=lambda part: part.low[0])
     fields = [[getattr(part, name) for part in parts] for name in ("low", "high", "floor", "ceiling")]
     low, high, floor, ceiling = (np.concatenate(field) for field in fields)
     start = np.concatenate([part.start for part in parts], axis=1)
     end = np.concatenate([part.end for part in parts], axis=1)
     return Track(low, high, start, end, parts[0].signs, floor, ceiling, cyclic=True)
+
+
+def smooth_polygon(
+    curve: Callable[[FloatArray], FloatArray], places: npt.ArrayLike
+) -> tuple[FloatArray, FloatArray]:
+    """Places (M,) and points (M, 2) of a curve, dense enough to draw it as a polygon.
+
+    Intervals of the places, in order, are halved while a chord exceeds a hundredth of the extent or turns by
+    more than 4 deg, up to about 2000 places; points may be NaN.
+    """
+    places = np.asarray(places, dtype=np.float64)
+    points = curve(places)
+    for _ in range(_ROUNDS):
+        cut = np.flatnonzero(_coarse(points))[: max(_MOST - len(places), 0)]
+        if not cut.size:
+            break
+        between = (places[cut] + places[cut + 1]) / 2
+        places = np.insert(places, cut + 1, between)
+        points = np.insert(points, cut + 1, curve(between), axis=0)
+    return places, points
+
+
+def _coarse(points: FloatArray) -> npt.NDArray[np.bool_]:
+    """Chords to halve, shape (N - 1,); none beside a gap."""
+    known = points[np.isfinite(points).all(axis=1)]
+    if len(known) < 2:
+        return np.zeros(max(len(points) - 1, 0), dtype=bool)
+    extent = np.ptp(known, axis=0).max()
+    chords = np.diff(points, axis=0)
+    lengths = np.hypot(*chords.T)
+    coarse: npt.NDArray[np.bool_] = lengths > _CHORD * extent
+    ways = np.arctan2(chords[:, 1], chords[:, 0])
+    turns = np.abs(turned_from(ways[1:], ways[:-1]))
+    longer = np.maximum(lengths[1:], lengths[:-1])
+    bent = (turns > _BEND) & (longer > _VISIBLE * extent)
+    coarse[1:] |= bent & (lengths[1:] > longer / 2)
+    coarse[:-1] |= bent & (lengths[:-1] > longer / 2)
+    return coarse

@@ -1,4 +1,4 @@
-"""How far a closed coupler curve is from a closed target: Hausdorff and Frechet distance."""
+"""Hausdorff and Frechet distance of a closed coupler curve from a closed target."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CURVE = 720
 _EVERY = 4  # of the samples of the curve, for the Frechet distance
 _TARGET = 64
 _POLYGON = 256
-_NEAREST = 3  # of the samples of the curve, from which the nearest point is sought
+_NEAREST = 3  # samples of the curve from which the nearest point is sought
 _NEWTON = 6
 _FLAT = 1e-3
 _FURTHEST = 6
@@ -33,21 +33,20 @@ def curve_distances(linkage: Linkage, points: FloatArray, direction: int) -> tup
     points : ndarray, shape (N, 2), length
         Corners of the polygon; the last may repeat the first.
     direction : int
-        Sense of the driver in which the curve goes round as the points do.
+        Sense of the driver for which the curve runs as the points do.
 
     Returns
     -------
     hausdorff : float, length
-        Greatest distance of a point of either from the other, to 1e-9 of the size or better.
+        Greatest distance of a point of either from the other, to 1e-9 of the size.
     frechet : float, length
-        Least leash on which two walkers go round, one on each, neither going back. Between samples,
-        to about 1e-3 of the size; in most cases to 1e-6.
+        Shortest leash of two walkers, one on each curve, who never go back; to about 1e-3 of the size, in
+        most cases to 1e-6.
 
     Notes
     -----
-    For the Hausdorff distance points are sampled on both, each with its nearest ones on the other,
-    and ever closer ones about those that are furthest, be that at a corner or where two nearest points
-    tie. The Frechet distance is that of two polygons, which the samples are the corners of.
+    The Hausdorff distance comes from samples of both, refined about the furthest ones; the Frechet distance
+    is that of the polygons through the samples.
 
     Examples
     --------
@@ -103,7 +102,7 @@ def _from_target(linkage: Linkage, corners: ComplexArray) -> float:
 
 
 def _nearest(linkage: Linkage, points: ComplexArray, theta2: FloatArray, reach: FloatArray) -> FloatArray:
-    """Distance of points from the curve about some driver angles, by a few of Newton's steps."""
+    """Distance of points from the curve near given driver angles, by Newton steps."""
     best = np.full(theta2.shape, np.inf)
     for _ in range(_NEWTON):
         p, rate, bend = coupler_curve(linkage, theta2)
@@ -118,7 +117,7 @@ def _nearest(linkage: Linkage, points: ComplexArray, theta2: FloatArray, reach: 
 
 
 def _even(corners: ComplexArray, count: int) -> ComplexArray:
-    """The corners of a closed polygon and points between them, about `count` in all."""
+    """Corners of a closed polygon and points between them, about `count` in all."""
     edges = np.roll(corners, -1) - corners
     length = np.abs(edges)
     pieces = np.maximum(np.ceil(length / length.sum() * count), 1).astype(np.int64)
@@ -138,14 +137,14 @@ def _distances(points: ComplexArray, polygon: ComplexArray) -> FloatArray:
 
 
 def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
-    """Frechet distance of two closed polygons, over all pairs of points to begin with.
+    """Frechet distance of two closed polygons, over all starting pairs.
 
     `to_edge` (n, m) is from corner i of the first to edge j of the second, `from_edge` from corner j of the
-    second to edge i of the first. Alt & Godau (1995): where one walker passes a corner, the other is on an
-    edge, and there the leash is longest. That a walker may not go back inside an edge is left out: of the
-    order of their sagitta.
+    second to edge i of the first. The leash is longest where one walker passes a corner and the other is on
+    an edge (Alt & Godau 1995). Going back inside an edge is not excluded: an error of the order of the
+    sagitta.
     """
-    # All walks pass every corner of the first: begin at the one that is near the fewest edges.
+    # All walks pass every corner of the first: start at the one close to the fewest edges.
     limit = _leash(to_edge, from_edge, np.array([np.argmin(to_edge[0])]))
     corner = int(np.argmin((to_edge < limit).sum(axis=1)))
     to_edge, from_edge = np.roll(to_edge, -corner, axis=0), np.roll(from_edge, -corner, axis=0)
@@ -154,7 +153,7 @@ def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:
 
 
 def _leash(to_edge: FloatArray, from_edge: FloatArray, begin: IntArray) -> float:
-    """Least leash of walks from corner 0 and given edges: dynamic programming over pairs of edges."""
+    """Shortest leash of walks from corner 0 and given edges: dynamic programming over pairs of edges."""
     n, m = to_edge.shape
     row = np.arange(n + 1)
     column = (np.arange(n + 2 * m + 1)[:, None] - row) % m

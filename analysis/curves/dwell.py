@@ -1,4 +1,4 @@
-"""How long a quantity dwells while the driver turns on."""
+"""Dwells: the longest driver rotation over which a quantity stays within a band."""
 
 from __future__ import annotations
 
@@ -8,20 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import (
-    Curve,
-    Quantity,
-    counted_on,
-    dense_places,
-    motion_between,
-)
+from grashof.analysis.mechanism.extremes import Curve, Quantity, dense_samples, motion_between, unwrapped
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value
 
-_MOST = 4  # runs that are looked at more closely
+_MOST = 4  # runs to refine
 _ROUNDS = 8
 _STEPS = 60
 _LEVEL = 4e-16
@@ -29,14 +23,14 @@ _LEVEL = 4e-16
 
 @dataclass(frozen=True, slots=True)
 class Dwell:
-    """The longest part of the motion in which a quantity keeps within a band.
+    """The longest part of the motion in which a quantity stays within a band.
 
     Parameters
     ----------
     start, end : float, rad
         Driver angles.
     low, high : float
-        Band that the quantity keeps to.
+        Limits of the band.
     """
 
     start: float
@@ -58,12 +52,12 @@ def dwell(
     end: float | None = None,
     period: float | None = None,
 ) -> Dwell:
-    """The longest driver rotation in which a quantity varies by no more than a tolerance.
+    """The longest driver rotation over which a quantity varies by at most a tolerance.
 
     Parameters
     ----------
     linkage, quantity, start, end, period
-        As for `extremes`; the quantity must be a position, so that the speed does not matter.
+        As for `extremes`; the quantity must not depend on the speed.
     tolerance : float
         Width of the band, in the quantity's unit.
 
@@ -98,9 +92,9 @@ def dwell(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Samples:
-    """A quantity (N,), unwrapped, at driver angles between which it rises or falls all the way.
+    """A quantity (N,), unwrapped, at driver angles between which it is monotone.
 
-    They go twice round where the driver turns fully; `starts` of them are in the first turn.
+    Over two turns where the driver turns fully; `starts` of the samples are in the first.
     """
 
     curve: Curve
@@ -113,21 +107,21 @@ class _Samples:
     def of(
         cls, linkage: Linkage, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
     ) -> _Samples:
-        at = even_motion(linkage, *ends).theta2(dense_places(0.0, 1.0, closed))
-        values = counted_on(at, curve(at), period)
+        at = even_motion(linkage, *ends).theta2(dense_samples(0.0, 1.0, closed))
+        values = unwrapped(at, curve(at), period)
         once = cls(curve, period, at, values, len(at))
         turning = once._turning()
         at, kept = np.unique(np.concatenate([at, turning]), return_index=True)
         values = np.concatenate([values, once.counted(turning)])[kept]
         if not closed:
             return cls(curve, period, at, values, len(at))
-        # Twice around, as the dwell may lie across the ends.
+        # Two turns, as the dwell may extend across the ends.
         gain = 0.0 if period is None else period * np.round((values[-1] - values[0]) / period)
         twice = np.concatenate([at, at[1:] + (ends[1] - ends[0])])
         return cls(curve, period, twice, np.concatenate([values, values[1:] + gain]), len(at))
 
     def counted(self, places: FloatArray) -> FloatArray:
-        """The quantity at driver angles, counted on as the samples are."""
+        """The quantity at driver angles, unwrapped like the samples."""
         found = self.curve(places)
         if self.period is not None:
             near = np.interp(places, self.at, self.values)
@@ -135,7 +129,7 @@ class _Samples:
         return np.asarray(found)
 
     def _turning(self) -> FloatArray:
-        """Driver angles at which the quantity is greatest or least beside others."""
+        """Driver angles at local extremes of the quantity."""
         rises = np.diff(self.values) > 0
         turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
         if not turns.size:
@@ -151,7 +145,7 @@ class _Samples:
         return np.asarray(low[:, 0] + (high - low)[:, 0] * share)
 
     def longest(self, tolerance: float) -> tuple[float, float]:
-        """Both ends of the longest part in which the quantity varies by no more than the tolerance."""
+        """Ends of the longest part in which the quantity varies by at most the tolerance."""
         last, edge = _runs(self.values, tolerance)
         after = np.minimum(last + 1, len(last) - 1)
         step = self.values[after] - self.values[last]
@@ -172,7 +166,7 @@ class _Samples:
         return start, start + float(found[best])
 
     def _ends(self, starts: FloatArray, last: IntArray, tolerance: float) -> FloatArray:
-        """Where the quantity leaves a band of that width, for each start; `last` are samples before that."""
+        """Where the quantity leaves a band of this width, for each start; `last` are the samples before."""
         index = np.clip(np.searchsorted(self.at, starts, side="right") - 1, 0, len(self.at) - 2)
         values = self.counted(starts)
         before, edge = np.empty(len(starts), dtype=np.int64), np.empty(len(starts))
@@ -188,7 +182,7 @@ class _Samples:
         return self._crossing(edge, low, high)
 
     def _crossing(self, edge: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-        """Where the quantity is at an edge, between angles on either side of it; the Illinois method."""
+        """Where the quantity meets an edge, between angles on either side of it, by the Illinois method."""
         below, above = self.counted(low) - edge, self.counted(high) - edge
         again, rounding = np.zeros(len(edge)), _LEVEL * np.abs(self.values).max()
         for _ in range(_STEPS):
@@ -198,7 +192,7 @@ class _Samples:
             value = self.counted(middle) - edge
             if (np.abs(value) <= rounding).all():
                 break
-            lowers = (value > 0) == (above > 0)  # the upper end; twice running, the other counts half
+            lowers = (value > 0) == (above > 0)  # the same end twice in a row: the other counts half
             side = np.where(lowers, 1.0, -1.0)
             half = np.where(again == side, 0.5, 1.0)
             low, high = np.where(lowers, low, middle), np.where(lowers, middle, high)
@@ -208,7 +202,7 @@ class _Samples:
 
 
 def _runs(values: FloatArray, tolerance: float) -> tuple[IntArray, FloatArray]:
-    """For each sample the last of those from it on that keep within a band, and the edge crossed then."""
+    """For each sample the last one up to which the values stay within a band, and the edge crossed after."""
     least: deque[int] = deque()
     most: deque[int] = deque()
     last, edge = np.full(len(values), len(values) - 1), np.full(len(values), np.nan)

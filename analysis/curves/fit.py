@@ -1,31 +1,32 @@
-"""Polynomials through a path by least squares: y on x, or both against the driver angle."""
+"""Least-squares polynomials of a path: y over x, or both coordinates over the driver angle."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev, legendre
 
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.mobility import one_by_one
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.quadrature import gauss_legendre
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 _FEWEST, _MOST = 8, 512  # panels over a motion
 _SETTLED = 1e-13
-_EQUAL = 1e-14  # share of their size by which equal values may differ
+_EQUAL = 1e-14  # share of their size by which values differ by rounding
 
 
 class NotAFunctionWarning(UserWarning):
-    """y is asked for as a function of x on a path along which x turns back."""
+    """y is requested as a function of x on a path along which x turns back."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,12 +38,12 @@ class PolynomialFit(ReadOnly):
     low, high : float
         Range of the parameter at the samples.
     coefficients : ndarray, shape (degree + 1,) or (degree + 1, K)
-        Of the Chebyshev polynomials in the parameter brought to [-1, 1].
+        Of the Chebyshev polynomials in the parameter scaled to [-1, 1].
     r2 : float
-        1 - (sum of squared errors) / (sum of squared distances from the mean), all coordinates
-        together, so that turning the frame does not change it; NaN when all values are equal.
+        1 - (sum of squared errors) / (sum of squared distances from the mean), all coordinates together,
+        hence independent of the frame; NaN when all values are equal.
     r2_each : ndarray, shape () or (K,)
-        The same of each coordinate by itself.
+        The same for each coordinate.
     error_max : float
         Greatest distance from a sample.
     """
@@ -64,7 +65,7 @@ class PolynomialFit(ReadOnly):
         """Coefficients of 1, t, t^2 ... of the parameter itself, shape of `coefficients`."""
         span = self.high - self.low
         shift, scale, count = -(self.low + self.high) / span, 2 / span, self.degree + 1
-        # Rows: the Chebyshev polynomials of shift + scale t in powers of t, by their recurrence.
+        # Rows: Chebyshev polynomials of shift + scale t in powers of t, by recurrence.
         basis = np.zeros((count, count))
         basis[0, 0], basis[1, :2] = 1, (shift, scale)
         for k in range(1, self.degree):
@@ -85,7 +86,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
     Parameters
     ----------
     parameter : array_like, shape (N,)
-        Such as the driver angle, or the share of the motion done.
+        Such as the driver angle.
     values : array_like, shape (N,) or (N, K)
         One coordinate or several.
     degree : int
@@ -98,7 +99,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
     Raises
     ------
     ProblemError
-        Shapes that do not fit, numbers that are not finite, or too few samples for the degree.
+        Shapes that do not match, numbers that are not finite, or too few samples for the degree.
 
     Examples
     --------
@@ -145,8 +146,8 @@ def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
     Warns
     -----
     NotAFunctionWarning
-        When x turns back along the path: several y then belong to one x, and no degree mends it.
-        `fit_polynomial` against the driver angle is the right tool.
+        When x turns back along the path, so that several y belong to one x; use `fit_polynomial` against the
+        driver angle instead.
 
     Examples
     --------
@@ -154,8 +155,7 @@ def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
     [1.0, 2.0]
     """
     path = finite_rows(points, 2, "points", "a point [x, y]")
-    step = np.diff(path[:, 0])
-    if not (np.all(step > 0) or np.all(step < 0)):
+    if turns_back(path[:, 0]):
         warnings.warn(
             "x turns back along the path, so y is not a function of x; fit x and y against the driver angle",
             NotAFunctionWarning,
@@ -164,18 +164,24 @@ def regression(points: npt.ArrayLike, degree: int) -> PolynomialFit:
     return fit_polynomial(path[:, 0], path[:, 1], degree)
 
 
+def turns_back(x: FloatArray) -> bool:
+    """Whether x (N,) neither rises nor falls throughout a path, so that y is not a function of it."""
+    step = np.diff(x)
+    return not (np.all(step > 0) or np.all(step < 0))
+
+
 def greatest_error(
     curve: Callable[[FloatArray], FloatArray], parameter: npt.ArrayLike, values: npt.ArrayLike
 ) -> float:
-    """Greatest distance of a fitted or interpolating curve from the values it stands for.
+    """Greatest distance of a fitted or interpolating curve from given values.
 
     Parameters
     ----------
     curve : callable
-        A `PolynomialFit`, `NewtonPolynomial`, spline or any function of the parameter.
+        A `PolynomialFit`, `NewtonPolynomial`, spline or other function of the parameter.
     parameter : array_like, shape (N,)
     values : array_like, shape (N,) or (N, K)
-        What the curve should give there; more of them than it was made from.
+        Exact values.
 
     Returns
     -------
@@ -194,28 +200,27 @@ def greatest_error(
 def coupler_fit_r2(
     linkage: Linkage, theta2_start: npt.ArrayLike, theta2_end: npt.ArrayLike, degree: int = 4
 ) -> FloatArray:
-    """How well a polynomial in the driver angle stands for the path of P over a motion.
+    """R2 of the least-squares polynomial in the driver angle for the path of P over a motion.
 
     Parameters
     ----------
     linkage : Linkage
         One or a batch.
     theta2_start, theta2_end : array_like, shape (...), rad
-        Ends of the motion, in either sense; they broadcast against the linkages.
+        Ends of the motion, in either order; they broadcast against the linkages.
     degree : int
         From 1 to 30.
 
     Returns
     -------
     ndarray, shape (...)
-        1 - (mean squared distance from the fit) / (mean squared distance from the mean point); NaN
-        where P does not move or the linkage does not close all the way.
+        1 - (mean squared distance from the fit) / (mean squared distance from the mean point); NaN where P
+        does not move or the linkage does not close throughout.
 
     Notes
     -----
-    Least squares over the continuous motion, each driver angle counting the same. The means are
-    Gauss-Legendre sums over an `even_motion`, of ever more panels until the result stays as it is: the
-    limit of `fit_polynomial` over ever more equal steps of the driver.
+    The limit of `fit_polynomial` for ever smaller equal steps of the driver: Gauss-Legendre sums over an
+    `even_motion`, with the panels doubled until the result settles.
 
     Examples
     --------
@@ -227,14 +232,7 @@ def coupler_fit_r2(
     degree = whole_number(degree, 1, "degree")
     if degree > 30:
         raise ProblemError(f"degree is {degree}; it must be from 1 to 30")
-    start, end = np.asarray(theta2_start, dtype=np.float64), np.asarray(theta2_end, dtype=np.float64)
-    found = np.empty(np.broadcast_shapes(start.shape, end.shape, linkage.shape))
-    start, end = np.broadcast_to(start, found.shape), np.broadcast_to(end, found.shape)
-    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
-    member = np.broadcast_to(np.arange(len(members)).reshape(linkage.shape), found.shape)
-    for index in np.ndindex(found.shape):
-        found[index] = _settled_r2(members[member[index]], float(start[index]), float(end[index]), degree)
-    return found[()]
+    return one_by_one(partial(_settled_r2, degree), linkage, theta2_start, theta2_end)[()]
 
 
 def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -254,7 +252,7 @@ def samples(parameter: npt.ArrayLike, values: npt.ArrayLike) -> tuple[FloatArray
     return t, y
 
 
-def _settled_r2(linkage: Linkage, start: float, end: float, degree: int) -> float:
+def _settled_r2(degree: int, linkage: Linkage, start: float, end: float) -> float:
     if start == end:
         return np.nan
     motion, panels, before = even_motion(linkage, start, end), _FEWEST, np.inf

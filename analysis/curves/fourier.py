@@ -1,4 +1,4 @@
-"""Fourier series of a closed curve: what harmonics it is made of, and how few of them do."""
+"""Fourier series of a closed curve, and the errors of its first harmonics."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import greatest, own
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
 
 _ROUNDING = 4e-15  # share of the size
 _FEWEST, _MOST = 32, 1 << 15  # steps of a turn
@@ -23,7 +22,7 @@ _SAMPLES = 1441
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FourierSeries:
-    """A closed curve as x + i y = sum of c_k e^(i k angle); call it to evaluate it.
+    """A closed curve as x + i y = sum of c_k e^(i k angle), evaluated by a call.
 
     Parameters
     ----------
@@ -31,11 +30,10 @@ class FourierSeries:
         -M to M. A negative one turns against the angle; k and -k together draw an ellipse.
     coefficients : ndarray of complex, shape (2 M + 1,), length
     error_max, error_rms : ndarray, shape (M + 1,), length
-        Greatest and root mean square distance from the samples, or from the curve, when only the
-        harmonics up to 0, 1, 2 ... M are kept.
+        Greatest and root mean square distance from the samples, or from the curve, with the harmonics up to
+        0, 1, ... M.
     content : ndarray, shape (M,)
-        Share of harmonics 1 to M (both senses) in the mean squared distance from the centre; NaN for a
-        curve that is a point.
+        Share of harmonics 1 to M (both senses) in the mean squared distance from the centre; NaN for a point.
     """
 
     harmonics: IntArray
@@ -58,17 +56,17 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
     Parameters
     ----------
     points : array_like, shape (N, 2), length
-        At the angles 0, 2 pi / N, 4 pi / N ...; the first one is not repeated.
+        At the angles 0, 2 pi / N, 4 pi / N ...; the first is not repeated.
 
     Returns
     -------
     FourierSeries
-        With M = N // 2 harmonics: it passes through all samples.
+        With M = N // 2 harmonics; it passes through all samples.
 
     Notes
     -----
-    The discrete transform of x + i y; for even N the highest harmonic is shared between both senses.
-    The mean squared error of a truncated series is the sum of the |c_k|^2 left out (Parseval).
+    The discrete transform of x + i y; for even N the highest harmonic is shared between both senses. The mean
+    squared error of a truncated series is the sum of the omitted |c_k|^2 (Parseval).
 
     Examples
     --------
@@ -95,24 +93,24 @@ def fourier_series(points: npt.ArrayLike) -> FourierSeries:
         coefficients=coefficients,
         error_max=miss.max(axis=0),
         error_rms=np.sqrt((miss**2).mean(axis=0)),
-        content=_shares(power := _powers(coefficients), power.sum()),
+        content=_content(coefficients),
     )
 
 
 def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
-    """First harmonics of the coupler curve in the driver angle, and how far they alone are from it.
+    """First harmonics of the coupler curve in the driver angle, with their errors from the curve.
 
     Parameters
     ----------
     linkage : Linkage
         A single one whose driver turns fully.
     top : int
-        Harmonics up to this one, from 1.
+        Highest harmonic, from 1.
 
     Returns
     -------
     FourierSeries
-        In theta2, with its errors from the curve itself, not from samples.
+        In theta2; its errors are from the curve itself, not from samples.
 
     Raises
     ------
@@ -121,9 +119,8 @@ def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
 
     Notes
     -----
-    c_k is the mean of P e^(-i k theta2), by equal steps of an `even_motion`, over which the curve is
-    periodic and smooth; their number is doubled until the means stay as they are. Near a change point
-    equal steps of the driver would take tens of thousands.
+    c_k is the mean of P e^(-i k theta2) over equal steps of an `even_motion`, doubled until the means settle.
+    Near a change point equal steps of the driver would take tens of thousands.
 
     Examples
     --------
@@ -170,7 +167,7 @@ def coupler_harmonics(linkage: Linkage, top: int = 5) -> FourierSeries:
         coefficients=found,
         error_max=np.sqrt(np.where(largest <= rounding, 0.0, largest)),
         error_rms=np.sqrt(np.where(mean <= rounding, 0.0, mean)),
-        content=_shares(_powers(found), mean[0]),
+        content=_content(found, mean[0]),
     )
 
 
@@ -187,12 +184,12 @@ def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
     Returns
     -------
     FourierSeries
-        In theta2: evaluate it at driver angles.
+        In theta2.
 
     Raises
     ------
     ProblemError
-        A driver that does not turn fully: its coupler curve is not a periodic function of theta2.
+        A driver that does not turn fully.
 
     Examples
     --------
@@ -207,16 +204,13 @@ def coupler_fourier(linkage: Linkage, samples: int = 256) -> FourierSeries:
     return fourier_series(solve_position(linkage, np.arange(count) * TURN / count).p)
 
 
-def _powers(coefficients: ComplexArray) -> FloatArray:
-    """Squared size of each harmonic from 1, both senses together."""
+def _content(coefficients: ComplexArray, total: float | None = None) -> FloatArray:
+    """Squared amplitudes of the harmonics from 1, both senses together, as shares of `total` or their sum."""
     power = np.abs(coefficients) ** 2
     middle = len(power) // 2
-    return np.asarray(power[middle + 1 :] + power[:middle][::-1])
-
-
-def _shares(power: FloatArray, whole: float) -> FloatArray:
+    both = power[middle + 1 :] + power[:middle][::-1]
     with np.errstate(invalid="ignore"):
-        return np.asarray(power / whole)
+        return np.asarray(both / (both.sum() if total is None else total))
 
 
 def _refuse_swings(linkage: Linkage) -> None:

@@ -1,4 +1,4 @@
-"""How straight or how circular a part of a curve is: best line, best circle."""
+"""The best line and the best circle of points or of a part of a curve."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ import numpy.typing as npt
 import scipy
 
 from grashof.analysis.mechanism.position import solve_position
-from grashof.problems import Linkage
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_rows, whole_number
-from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 _STRAIGHT = 1e-11  # deviations below this share of the length are rounding
 
@@ -27,13 +26,13 @@ class BestLine(ReadOnly):
     point : ndarray, shape (2,), length
         The centre of the points, which lies on the line.
     angle : float, rad
-        Direction of the line, the way the path goes along it, in [-pi, pi].
+        Direction of the line in the sense of the path, in [-pi, pi].
     length : float
-        From the first to the last of the points' feet on the line.
+        Extent of the points along the line.
     deviation_max, deviation_rms : float, length
         Greatest and root mean square distance from the line.
     width : float, length
-        Of the strip along the line that holds all points, from side to side.
+        Of the strip along the line that holds all points.
     """
 
     point: FloatArray
@@ -51,7 +50,7 @@ class BestLine(ReadOnly):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BestCircle(ReadOnly):
-    """The circle with the least sum of squared distances from the points.
+    """The circle with the least sum of squared distances from points.
 
     Parameters
     ----------
@@ -73,7 +72,7 @@ class BestCircle(ReadOnly):
 
 
 def best_line(points: npt.ArrayLike) -> BestLine:
-    """Best line by total least squares.
+    """Best line by total least squares (Pearson 1901).
 
     Parameters
     ----------
@@ -83,11 +82,6 @@ def best_line(points: npt.ArrayLike) -> BestLine:
     Returns
     -------
     BestLine
-
-    Notes
-    -----
-    Distances are taken square to the line, so the frame does not matter: the direction is the first
-    singular vector of the centred points (Pearson 1901).
 
     Examples
     --------
@@ -128,13 +122,12 @@ def best_circle(points: npt.ArrayLike) -> BestCircle:
     Raises
     ------
     ProblemError
-        Points on one line (within rounding): no circle is best, the larger the better.
+        Points on one line, within rounding.
 
     Notes
     -----
-    Start: Taubin's algebraic circle (1991), which unlike the plain one is not too small on short
-    arcs. From it the squared distances themselves are reduced (Levenberg-Marquardt), in a frame
-    centred on the points and of their size.
+    Levenberg-Marquardt from Taubin's algebraic circle (1991), in a frame centred on the points and of their
+    size.
 
     Examples
     --------
@@ -172,7 +165,7 @@ def best_circle(points: npt.ArrayLike) -> BestCircle:
 
 
 def circularity(linkage: Linkage, theta2_start: float, theta2_end: float, samples: int = 361) -> BestCircle:
-    """How circular the path of P is between two driver angles.
+    """Best circle of the path of P between two driver angles.
 
     Parameters
     ----------
@@ -180,7 +173,7 @@ def circularity(linkage: Linkage, theta2_start: float, theta2_end: float, sample
         A single linkage.
     theta2_start, theta2_end : float, rad
     samples : int
-        Equally spaced along the path, so that the driver's speed does not weigh.
+        Equally spaced along the path.
 
     Returns
     -------
@@ -189,7 +182,7 @@ def circularity(linkage: Linkage, theta2_start: float, theta2_end: float, sample
     Raises
     ------
     ProblemError
-        The linkage cannot be assembled all the way, P does not move, or its path is straight.
+        The linkage cannot be assembled throughout, P does not move, or its path is straight.
 
     Examples
     --------

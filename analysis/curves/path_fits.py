@@ -1,4 +1,4 @@
-"""Paths fitted with polynomials: y over x, as is often tried, and x and y over the driver angle."""
+"""Curves through the samples of a path, and fits of paths: y over x, and x and y over the driver angle."""
 
 from __future__ import annotations
 
@@ -6,20 +6,138 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
+import scipy
 
-from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial
-from grashof.analysis.curves.interpolation import NewtonPolynomial, newton_interpolation
-from grashof.problems.values.arrays import FloatArray
+from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial, samples, turns_back
+from grashof.problems import ProblemError
+from grashof.problems.values.arrays import FloatArray, frozen_array
+from grashof.problems.values.checks import finite_number
+from grashof.problems.values.value_bases import ReadOnly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NewtonPolynomial(ReadOnly):
+    """The polynomial through given values, in Newton's form, evaluated by a call.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (N,)
+    coefficients : ndarray, shape (N,) or (N, K)
+        Divided differences f[t0], f[t0, t1], ...: factors of 1, t - t0, (t - t0)(t - t1), ...
+    """
+
+    nodes: FloatArray
+    coefficients: FloatArray
+
+    def __call__(self, parameter: npt.ArrayLike) -> FloatArray:
+        """Value at any parameter, shape (...) or (..., K)."""
+        t = np.asarray(parameter, dtype=np.float64)
+        several = self.coefficients.ndim > 1
+        value = np.broadcast_to(self.coefficients[-1], (*t.shape, *self.coefficients.shape[1:]))
+        for node, coefficient in zip(self.nodes[-2::-1], self.coefficients[-2::-1], strict=True):
+            factor = (t - node)[..., None] if several else t - node
+            value = value * factor + coefficient
+        return np.array(value)
+
+
+def newton_interpolation(nodes: npt.ArrayLike, values: npt.ArrayLike) -> NewtonPolynomial:
+    """Polynomial of degree N - 1 through N values, by divided differences.
+
+    Parameters
+    ----------
+    nodes : array_like, shape (N,)
+        All different, in any order.
+    values : array_like, shape (N,) or (N, K)
+
+    Returns
+    -------
+    NewtonPolynomial
+
+    Raises
+    ------
+    ProblemError
+        Two equal nodes, shapes that do not match, or numbers that are not finite.
+
+    Notes
+    -----
+    f[ti..tj] = (f[ti+1..tj] - f[ti..tj-1]) / (tj - ti). Between the nodes the polynomial may deviate far from
+    the path: see `greatest_error`.
+
+    Examples
+    --------
+    >>> cubic = newton_interpolation([0, 1, 2, 4], [1, 2, 9, 65])
+    >>> cubic.coefficients.tolist(), float(cubic(3))
+    ([1.0, 1.0, 3.0, 1.0], 28.0)
+    """
+    t, y = samples(nodes, values)
+    if np.unique(t).size < t.size:
+        raise ProblemError("two nodes are equal; an interpolating polynomial needs different ones")
+    differences = np.array(y)
+    for order in range(1, len(t)):
+        reach = (t[order:] - t[:-order]).reshape(-1, *([1] * (y.ndim - 1)))
+        differences[order:] = (differences[order:] - differences[order - 1 : -1]) / reach
+    return NewtonPolynomial(frozen_array(t), frozen_array(differences))
+
+
+def spline(
+    parameter: npt.ArrayLike, values: npt.ArrayLike, period: float | None = None
+) -> scipy.interpolate.CubicSpline:
+    """Interpolating cubic spline, twice continuously differentiable.
+
+    Parameters
+    ----------
+    parameter : array_like, shape (N,)
+        Increasing, such as the driver angle.
+    values : array_like, shape (N,) or (N, K)
+    period : float, optional
+        Of a closed curve, such as a turn of the driver, with the first sample not repeated; by default the
+        curve is open, with not-a-knot ends.
+
+    Returns
+    -------
+    scipy.interpolate.CubicSpline
+        Evaluated by a call, whose second argument is the order of the derivative.
+
+    Raises
+    ------
+    ProblemError
+        A parameter that does not increase or exceeds the period; fewer than two samples.
+
+    Examples
+    --------
+    >>> theta2 = np.arange(24) * np.pi / 12
+    >>> circle = spline(theta2, np.stack([np.cos(theta2), np.sin(theta2)], axis=-1), period=2 * np.pi)
+    >>> circle(2 * np.pi + 0.1).round(4).tolist()
+    [0.995, 0.0998]
+    """
+    t, y = samples(parameter, values)
+    if len(t) < 2 or not np.all(np.diff(t) > 0):
+        raise ProblemError(
+            "the parameter does not increase from sample to sample; a spline needs two or more"
+        )
+    if period is None:
+        return scipy.interpolate.CubicSpline(t, y, bc_type="not-a-knot")
+    period = finite_number(period, "period")
+    if len(t) < 3 or not t[-1] - t[0] < period:
+        raise ProblemError(
+            f"the {len(t)} samples span {t[-1] - t[0]:.6g}; a closed curve of period {period:.6g} needs "
+            "three or more within one period, the first not repeated"
+        )
+    return scipy.interpolate.CubicSpline(
+        np.append(t, t[0] + period), np.append(y, y[:1], axis=0), bc_type="periodic"
+    )
+
 
 DEGREES, NEWTON_DEGREES = (1, 2, 3, 4), (2, 3, 4)
-_BETWEEN = 20  # places on the path from point to point, at which errors are looked for
-_EQUAL = 1e-9  # of the size of a path: places so close are one
+_BETWEEN = 20  # steps of the path from point to point, for errors
+_EQUAL = 1e-9  # share of the size of a path within which places coincide
 Y_OF_X, OF_THETA2 = "y over x", "x and y over theta2"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedPath:
-    """A path with the points on it that are fitted.
+    """A path and the points on it to fit.
 
     Parameters
     ----------
@@ -28,7 +146,7 @@ class FittedPath:
         Driver angles of the points, in equal steps.
     points : ndarray, shape (N, 2)
     fine, path : ndarray, shape (M,) and (M, 2)
-        Driver angles and the path itself, `_BETWEEN` places from point to point.
+        Driver angles and points of the path, 20 steps from point to point.
     """
 
     key: str
@@ -40,18 +158,17 @@ class FittedPath:
 
     @staticmethod
     def angles(start: float, end: float, count: int) -> tuple[FloatArray, FloatArray]:
-        """Driver angles of so many points, and of the places between them."""
+        """Driver angles of `count` points, and the fine ones of the path."""
         return np.linspace(start, end, count), np.linspace(start, end, _BETWEEN * (count - 1) + 1)
 
     @property
     def turns_back(self) -> bool:
-        """Whether x turns back along the path, so that y is no function of x."""
-        step = np.diff(self.path[:, 0])
-        return not (np.all(step > 0) or np.all(step < 0))
+        """Whether x turns back along the path, so that y is not a function of x."""
+        return turns_back(self.path[:, 0])
 
     @property
     def fits(self) -> list[PathFit]:
-        """All fits of this path: of either kind, by least squares and through neighbouring points."""
+        """All fits of this path, by least squares and through neighbouring points."""
         every = (_regression(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in DEGREES)
         through = (
             _interpolation(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in NEWTON_DEGREES
@@ -59,7 +176,7 @@ class FittedPath:
         return [*every, *through]
 
     def parts(self, of: str) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Parameter and values at the points, and both on the path."""
+        """Parameter and values at the points and on the path."""
         if of == Y_OF_X:
             return self.points[:, 0], self.points[:, 1], self.path[:, 0], self.path[:, 1]
         return self.theta2, self.points, self.fine, self.path
@@ -74,19 +191,17 @@ class PathFit:
     of : str
         `Y_OF_X` or `OF_THETA2`.
     newton : bool
-        Interpolating through each point and the next ones, or else by least squares through all.
+        Whether it interpolates through neighbouring points, or fits all by least squares.
     degree : int
     pieces : tuple
-        The one polynomial of least squares; or those of Newton, each through `degree` + 1 points, which
-        stand for the path from their first point to the next (the last of them up to its end). None where
-        two points have one x.
+        The polynomial of least squares; or Newton's, each through `degree` + 1 points and used from its first
+        point to the next, the last up to the end of the path. None where two points have the same x.
     r2 : float
-        NaN of those through the points.
+        NaN for interpolation.
     error_points, error_path : float, length
-        Greatest distance from the points, and from the path between them, too, at equal parameters; NaN
-        without polynomials.
+        Greatest distance from the points, and from the path, at equal parameters; NaN without polynomials.
     line : ndarray, shape (M, 2)
-        As it is drawn.
+        The fit as drawn.
     """
 
     of: str
@@ -135,7 +250,7 @@ def _interpolation(path: FittedPath, of: str, degree: int) -> PathFit:
 
 
 def _different(path: FittedPath, of: str, places: FloatArray) -> int:
-    """How many of the places differ by more than rounding."""
+    """Number of places that differ by more than rounding."""
     size = np.ptp(path.path, axis=0).max() if of == Y_OF_X else np.ptp(path.fine)
     return 1 + int((np.diff(np.sort(places)) > _EQUAL * size).sum())
 

@@ -1,4 +1,4 @@
-"""How straight a part of the coupler curve is, and where half a turn of the driver draws it straightest."""
+"""Straightness of a part of the coupler curve, and the half turn of the driver that draws it straightest."""
 
 from __future__ import annotations
 
@@ -9,20 +9,19 @@ import numpy as np
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.curves.line_and_circle import BestLine
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
+from grashof.analysis.mechanism.kinematics import virtual_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import greatest, own
 from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, integrate
-from grashof.problems import AssemblyError, Linkage
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, frozen_array
-from grashof.problems.values.errors import ProblemError
 
 _PANELS = 16
-_SAMPLES = 121  # of each part, when what is furthest from its line is sought
+_SAMPLES = 121  # of each part, for the points furthest from its line
 _STARTS = 144  # of half turns
-_EVEN = 1e-9  # share by which the straightness of half turns may differ where all are equally straight
+_EVEN = 1e-9  # share of the straightness within which all half turns are equally straight
 _STILL = 1e-13  # share of r2: P does not move
 _AT_END = 1e-12
 _EVENLY = 1e-5
@@ -31,12 +30,12 @@ _NO_PANELS = Panels(np.zeros(1), np.zeros((6, 0)), np.zeros(6))
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 _MOST_ROUNDS = 60
 _LADDER = np.array([0.0, 1e-8, 1e-5, 1e-3, 0.03])
-_BESIDE = np.concatenate([-_LADDER[:0:-1], _LADDER])  # shares of a gap, about where its bottom is expected
+_BESIDE = np.concatenate([-_LADDER[:0:-1], _LADDER])  # shares of a gap, about its expected minimum
 _COMPLEX = np.array([1, 1j])
 
 
 def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> BestLine:
-    """How straight the path of P is between two driver angles.
+    """Best line of the path of P between two driver angles.
 
     Parameters
     ----------
@@ -47,17 +46,16 @@ def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> Be
     Returns
     -------
     BestLine
-        Every piece of the path counts by its length, so that the driver's speed does not weigh.
+        Every piece of the path counts by its length, whatever the speed of the driver.
 
     Raises
     ------
     ProblemError
-        The linkage cannot be assembled all the way, or P does not move.
+        The linkage cannot be assembled throughout, or P does not move.
 
     Notes
     -----
-    The line of least squared distances (Pearson 1901), from integrals over the arc length that are
-    refined until they stay as they are, and the points furthest from it.
+    The line of least squared distances (Pearson 1901), from integrals over the arc length.
 
     Examples
     --------
@@ -72,7 +70,7 @@ def straightness(linkage: Linkage, theta2_start: float, theta2_end: float) -> Be
 
 
 def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
-    """Half a turn of the driver over which P moves along a line most nearly.
+    """Half a turn of the driver over which the path of P is straightest.
 
     Parameters
     ----------
@@ -82,10 +80,9 @@ def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
     Returns
     -------
     start : float, rad
-        Driver angle at which it begins, from 0 to 2 pi; 0 where all are equally straight.
+        Driver angle at its start, from 0 to 2 pi; 0 where all are equally straight.
     line : BestLine
-        Of `straightness`. The half turn is that with the least width of the strip that holds the
-        path, from side to side, as a share of its length.
+        As of `straightness`, with the least width as a share of the length.
 
     Raises
     ------
@@ -111,9 +108,9 @@ def straightest_half_turn(linkage: Linkage) -> tuple[float, BestLine]:
 class _Fits:
     """Lines fitted to K parts of a path, each from one share of the motion to another.
 
-    `centre` and `along` are a point of each line and its direction, `spread` (3, K) the mean of x^2, x y and
-    y^2 about it. `reach` (4, K) is how far the path goes along the line, back, to its left and to its right,
-    `where` at which share of the part.
+    `centre` and `along` are a point of each line and its direction, `spread` (3, K) the means of x^2, x y and
+    y^2 about it; `reach` (4, K) the extent of the path ahead, back, left and right, at the shares `where` of
+    the part.
     """
 
     first: FloatArray
@@ -127,13 +124,13 @@ class _Fits:
 
     @property
     def ratio(self) -> FloatArray:
-        """Width of the strip that holds each part, as a share of its length along the line."""
+        """Width of the strip that holds each part, as a share of its length."""
         return np.asarray((self.reach[2] + self.reach[3]) / (self.reach[0] + self.reach[1]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Path:
-    """The path of P over a motion, counted from a point on it, with integrals over its length."""
+    """The path of P over a motion, from a point on it, with integrals over its length."""
 
     linkage: Linkage
     motion: EvenMotion
@@ -173,7 +170,7 @@ class _Path:
         return where % TURN
 
     def _bottom(self, low: float, high: float) -> tuple[float, float]:
-        """Where the ratio of half turns stops falling with their start, smoothly or at a kink; its value."""
+        """Start of the half turn with a least ratio, smooth or at a kink, and the ratio."""
         places = np.array([2 * low - high, low, high, 2 * high - low])  # a kink may lie just outside
         fits = self.half_turns(places)
         places, ratio, slope = _lowest_bracket(places, fits.ratio, self.slope(fits))
@@ -208,7 +205,7 @@ class _Path:
         centre, along = x + 1j * y, np.exp(1j * angle)
 
         def sides(place: FloatArray) -> FloatArray:
-            """How far P is along each line, back, to its left and to its right."""
+            """Distance of P ahead, back, left and right on each line."""
             part = place.reshape(-1, 1 if len(place) == 1 else len(first), place.shape[1])
             z = self._p(first[:, None] + (last - first)[:, None] * part)
             turned = (z - centre[:, None]) * along.conj()[:, None]
@@ -219,9 +216,10 @@ class _Path:
         return _Fits(first, last, length, centre, along, spread, reach.reshape(4, -1), where.reshape(4, -1))
 
     def slope(self, fits: _Fits) -> FloatArray:
-        """Derivative of the ratio of half turns by the driver angle at which they begin, shape (K,).
+        """Derivative of the ratio of half turns by the driver angle at their start, shape (K,).
 
-        Furthest points change what they measure with the line alone; at an end of the part with the end, too.
+        The distances of the furthest points change with the line alone; at an end of the part with the end,
+        too.
         """
         ends = self.motion.theta2(np.stack([fits.first, fits.last]))
         p, rate, _ = coupler_curve(self.linkage, ends)
@@ -277,7 +275,7 @@ class _Path:
         return self.panels.until(self.moments, share - turns) + self.panels.total[:, None] * turns
 
     def moments(self, share: FloatArray) -> FloatArray:
-        """Length, x, y, x^2, x y and y^2 of the path for each share of the motion, shape (6, N)."""
+        """Rates by the share of the integrals of 1, x, y, x^2, x y, y^2 over the length, shape (6, N)."""
         theta2 = self.motion.theta2(share)
         if np.isnan(self.pace):
             p, rate, _ = coupler_curve(self.linkage, theta2)
@@ -289,7 +287,7 @@ class _Path:
 
 
 def _pace(linkage: Linkage, motion: EvenMotion) -> float:
-    """D theta2 over sin mu dt, which is constant; NaN at a change point, where the motion leaves it out."""
+    """D theta2 over sin mu dt, a constant; NaN at a change point, where the motion omits it."""
     share = np.array([0.2, 0.45, 0.7])
     each = motion.rate(share) / np.sin(transmission_angle(linkage, motion.theta2(share)))
     return float(each[1]) if np.ptp(each) <= _EVENLY * np.abs(each).min() else np.nan
@@ -298,7 +296,7 @@ def _pace(linkage: Linkage, motion: EvenMotion) -> float:
 def _lowest_bracket(
     places: FloatArray, ratio: FloatArray, slope: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The two neighbours, falling and rising, that hold the lowest place; of those given in order."""
+    """The two neighbours in order, falling and rising, that enclose the least ratio."""
     turns = (slope[:-1] < 0) & (slope[1:] >= 0)
     lower = np.where(turns, np.minimum(ratio[:-1], ratio[1:]), np.inf)
     first = int(np.argmin(lower))

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.cylinder.travel import Travel
-from grashof.analysis.mechanism.kinematics import Kinematics
+from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.analysis.mechanism.position import Position
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.driver_samples import driver_samples
+from grashof.analysis.mechanism.even_motion import driver_samples
 from grashof.analysis.mechanism.mobility import (
     circuit_index,
     dead_ends,

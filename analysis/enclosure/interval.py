@@ -21,7 +21,7 @@ TRIGONOMETRY = 8 * EPS  # absolute error of a computed sine or cosine, and a mar
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """Numbers from `lo` to `hi`, arrays of the same shape; what is undefined is the whole line."""
+    """Numbers from `lo` to `hi`, arrays of the same shape; the entire line where undefined."""
 
     lo: FloatArray
     hi: FloatArray
@@ -33,7 +33,7 @@ class Interval:
 
     @classmethod
     def about(cls, middle: FloatArray, radius: FloatArray | float) -> Interval:
-        """Numbers as near to the middle as the radius."""
+        """Numbers within a radius of the middle."""
         return _outward(middle - radius, middle + radius)
 
     def __neg__(self) -> Interval:
@@ -61,12 +61,12 @@ class Interval:
         )
 
     def root(self) -> Interval:
-        """Square root of what is not negative of it."""
+        """Square root of the part that is not negative."""
         found = _outward(np.sqrt(np.maximum(self.lo, 0)), np.sqrt(np.maximum(self.hi, 0)))
         return Interval(np.maximum(found.lo, 0), found.hi)
 
     def within(self, other: Interval) -> Interval:
-        """The numbers that are in both, as both hold the same one."""
+        """Intersection of two enclosures of one number."""
         return Interval(np.maximum(self.lo, other.lo), np.minimum(self.hi, other.hi))
 
     def row(self, k: int) -> Interval:
@@ -97,10 +97,9 @@ Number: TypeAlias = "Centred | Interval | FloatArray | float"
 
 @dataclass(frozen=True, slots=True)
 class Centred:
-    """A function over driver angles as far as `half` (rad) from a middle: mean-value form, of second order.
+    """A function over driver angles within `half` (rad) of a middle: mean-value form, of second order.
 
-    `over` are all its values (those in mid + slope [-half, half], too) and `slope` all those of its
-    derivative.
+    `mid` encloses its value at the middle, `over` all its values and `slope` those of its derivative.
     """
 
     mid: Interval
@@ -110,11 +109,11 @@ class Centred:
 
     @classmethod
     def of(cls, mid: Interval, over: Interval, slope: Interval, half: FloatArray) -> Centred:
-        """With what the mean-value theorem says of its values."""
+        """With `over` narrowed by the mean-value theorem."""
         return cls(mid, over.within(mid + slope * Interval(-half, half)), slope, half)
 
     def constant(self, other: Number) -> Centred:
-        """A number, or a function as it is, over the same driver angles."""
+        """A number as a function over the same driver angles; a function unchanged."""
         if isinstance(other, Centred):
             return other
         number = other if isinstance(other, Interval) else Interval.of(np.asarray(other, dtype=np.float64))
@@ -142,14 +141,14 @@ class Centred:
         return Centred.of(self.mid / other.mid, over, slope, self.half)
 
     def root(self) -> Centred:
-        """Square root, of what is not negative."""
+        """Square root of a function that is not negative."""
         over = self.over.root()
         return Centred.of(self.mid.root(), over, self.slope / (over + over), self.half)
 
 
 @dataclass(frozen=True, slots=True)
 class Vector:
-    """A point or a direction of the plane over driver angles: x + iy, and products like those."""
+    """A point or a direction of the plane over driver angles, with the products of x + iy."""
 
     x: Centred
     y: Centred
@@ -163,7 +162,7 @@ class Vector:
 
 
 def crank(middle: FloatArray, half: FloatArray) -> Vector:
-    """Direction of the driver, at driver angles as far as `half` from a middle, both of shape (n,), rad.
+    """Direction of the driver at driver angles within `half` of a middle, both of shape (n,), rad.
 
     cos(m + d) = cos m cos d - sin m sin d with cos d from 1 - half^2 / 2 to 1 and sin d within +-half.
     """

@@ -12,11 +12,11 @@ from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
 from grashof.analysis.forces.mass import Body, Masses
 from grashof.analysis.mechanism.closing import dyad_of
+from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.analysis.mechanism.dyad import Block, Pins
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.extremes import extremes_of
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.mechanism.means import mean_over
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import Curve

@@ -64,7 +64,7 @@ def longest_travel(linkage: Linkage) -> FloatArray:
     A comes as far as r1 + r2 from O4 whether the driver turns or swings; 0 where the linkage never closes.
     """
     farthest = linkage.r1 + linkage.r2
-    return np.nan_to_num(np.abs(dyad_of(linkage).place(farthest, np.zeros_like(farthest)).reach))
+    return np.nan_to_num(np.abs(dyad_of(linkage).close(farthest, np.zeros_like(farthest)).reach))
 
 
 def _from_origin(length: FloatArray) -> Bar:

@@ -13,7 +13,7 @@ from grashof.analysis.forces.free_response import generalised_inertia
 from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power, virtual_power
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
+from grashof.analysis.mechanism.kinematics import virtual_motion
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 

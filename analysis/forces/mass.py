@@ -14,7 +14,7 @@ from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)

@@ -10,8 +10,7 @@ import numpy.typing as npt
 from grashof.analysis.forces.joints import joint_motion, joints_of, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
+from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.linkage import Linkage
 

@@ -1,4 +1,4 @@
-"""Positions by Newton-Raphson on the loop equation: a second way, that shares no formula with the first."""
+"""Positions by Newton-Raphson on the loop equation: an independent second method."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _LONGEST_STEP = 0.5  # rad
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NewtonPosition:
-    """Where Newton-Raphson steps ended.
+    """Results of Newton-Raphson steps.
 
     Parameters
     ----------
     theta3, theta4 : ndarray, shape (...), rad
         In [-pi, pi]; NaN where the steps did not converge.
     gap : ndarray, shape (...), length
-        How far the loop is from closed.
+        Remaining gap of the loop.
     steps : ndarray of int, shape (...)
-        Newton steps until it closed.
+        Newton steps taken.
     converged : ndarray of bool, shape (...)
     """
 
@@ -49,19 +49,18 @@ def newton_position(
         One, or a batch whose axes broadcast against `theta2`.
     theta2 : array_like, shape (...), rad
     guess : pair of array_like, shape (...), rad, optional
-        theta3 and theta4 to start from; by default both links stand off the line A-O4 on the side
-        of the linkage's assembly.
+        Initial theta3 and theta4; by default both links are off the line A-O4 on the side of the assembly.
     max_steps : int
 
     Returns
     -------
     NewtonPosition
-        Which assembly it is on is decided by the guess, not checked.
+        The guess decides the assembly, which is not checked.
 
     Notes
     -----
-    Two equations, the components of r2 + r3 = r1 + r4, in two unknowns (Norton, *Design of
-    Machinery*, sec. 4.14); steps are held to half a radian.
+    The two components of r2 + r3 = r1 + r4 in two unknowns (Norton, *Design of Machinery*, sec. 4.14), with
+    steps limited to half a radian.
 
     Examples
     --------

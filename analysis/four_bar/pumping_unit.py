@@ -17,19 +17,19 @@ from grashof.problems import FourBar, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 from grashof.problems.values.dynamics.pumping_unit import CRANK, PumpingUnitSpec
 
-_ROCKS = 1e-9  # rad: a beam that rocks by less stands still
+_ROCKS = 1e-9  # rad: least swing of a rocking beam
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RodMotion:
-    """How the polished rod moves with the crank; each of shape (...).
+    """Motion of the polished rod with the crank; each of shape (...).
 
     Parameters
     ----------
     position : ndarray
         Share of the stroke from its lower end.
     torque_factor : ndarray, length
-        Rise of the rod for each radian that the crank turns on: positive on the up stroke.
+        Rise of the rod per radian of the crank: positive on the up stroke.
     """
 
     position: FloatArray
@@ -45,12 +45,12 @@ class ReducerTorque:
     net_load : ndarray, N
         On the polished rod, less the structural unbalance.
     counterbalance : ndarray, N m
-        What the counterbalance gives.
+        Torque of the counterbalance.
     torque : ndarray, N m
-        What the reducer has to give.
+        Torque of the reducer.
     permissible_load : ndarray, N
-        On the polished rod at which it gives its rating: the most on the up stroke, the least on the
-        down stroke. NaN without a rating.
+        On the polished rod at the reducer's rating: the most on the up stroke, the least on the down stroke.
+        NaN without a rating.
     """
 
     net_load: FloatArray
@@ -64,8 +64,7 @@ def crank_angle(theta2: npt.ArrayLike, unit: PumpingUnitSpec) -> FloatArray:
 
     Notes
     -----
-    Clockwise from 12 o'clock, seen with the well to the right: of a unit drawn with its well to the
-    left, from behind.
+    Clockwise from 12 o'clock, seen with the well to the right (from behind if it is drawn on the left).
 
     Examples
     --------
@@ -114,7 +113,7 @@ def rod_motion(
         From O4 to the horsehead: the wireline leaves its arc tangentially.
     unit : PumpingUnitSpec
     limits : ndarray, shape (2,), rad, optional
-        Its `beam_limits`, where they are known already.
+        Known `beam_limits`.
 
     Returns
     -------
@@ -127,12 +126,11 @@ def rod_motion(
 
     Notes
     -----
-    API Specification 11E. The torque factor is the rise of the rod by the crank angle, here
-    arm * omega4 / omega2; the API's own A R sin(alpha) / (C sin(beta)) is the same.
+    The torque factor arm * omega4 / omega2 equals A R sin(alpha) / (C sin(beta)) of API Specification 11E.
 
     Examples
     --------
-    The Lufkin C-912D-427-144, whose maker has 68.82 in at 90 deg:
+    The Lufkin C-912D-427-144, whose maker states 68.82 in at 90 deg:
 
     >>> unit = FourBar(o2=(0, 0), o4=(120, 151), r2=47, r3=148.5, r4=120.03)
     >>> rod_motion(unit, np.radians(90), 180.0, PumpingUnitSpec()).torque_factor.round(3)
@@ -150,7 +148,7 @@ def rod_motion(
 
 
 def rod_load(unit: PumpingUnitSpec) -> Callable[[FloatArray, RodMotion], FloatArray] | None:
-    """The load on the polished rod, N, as the unit states it: a function of crank angle and rod motion."""
+    """The load on the polished rod, N, as a function of crank angle and rod motion; None if not stated."""
     if unit.rod_load is not None:
         constant = unit.rod_load
         return lambda crank, motion: np.full(np.shape(crank), constant)  # noqa: ARG005
@@ -187,9 +185,9 @@ def reducer_torque(
 
     Notes
     -----
-    API Specification 11E: T = TF (W - B) - M sin(theta + tau), with the torque factor TF, the load W,
-    the structural unbalance B, and the greatest moment M of the counterbalance at the crank angle
-    theta, which lies beyond the crank by tau. Inertia is left out.
+    API Specification 11E: T = TF (W - B) - M sin(theta + tau), with the torque factor TF, the load W, the
+    structural unbalance B, the greatest moment M of the counterbalance, its phase tau and the crank angle
+    theta. Inertia is neglected.
 
     Examples
     --------
@@ -199,15 +197,9 @@ def reducer_torque(
     (8500.0, 20857.142857)
     """
     factor, net = np.asarray(torque_factor), np.asarray(load) - unit.structural_unbalance
-    counterbalance = unit.sense * balance_moment(unit, crank)
+    phase = np.asarray(crank) + np.radians(unit.counterbalance_phase_deg)
+    counterbalance = unit.sense * unit.counterbalance * np.sin(phase)
     rating = np.nan if unit.rating is None else unit.rating
     with np.errstate(divide="ignore", invalid="ignore"):
         permissible = (rating + counterbalance) / factor + unit.structural_unbalance
     return ReducerTorque(net, counterbalance, factor * net - counterbalance, permissible)
-
-
-def balance_moment(unit: PumpingUnitSpec, crank: npt.ArrayLike) -> FloatArray:
-    """Clockwise moment of the counterbalance at crank angles of the API, shape (...), N m."""
-    phase = np.asarray(crank) + np.radians(unit.counterbalance_phase_deg)
-    moment: FloatArray = unit.counterbalance * np.sin(phase)
-    return moment

@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.analysis.enclosure.closure import Places, places
+from grashof.analysis.enclosure.closure import Least, Places, least_transmission, places
 from grashof.analysis.enclosure.interval import EPS, Interval, crank, unit
-from grashof.analysis.enclosure.turns import Least, least_transmission
 from grashof.analysis.judge.limits import SLACK
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY

@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
-from grashof.analysis.mechanism.driver_samples import closer_at_ends
+from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.position import places, solve_position
 from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.areas import solid

@@ -10,7 +10,7 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import Limits, turned_beyond
-from grashof.problems.values.requirements.quantities import Limit, Needs, Over, Quantity
+from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
 from grashof.problems.values.units import Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -33,11 +33,11 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             continue
         if not values.problem.states(limit.quantity.needs):
             raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
-        if limit.quantity.over is Over.TASK and not joined:
+        if limit.quantity.over is Scope.TASK and not joined:
             continue
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
-        quantity, ranges = wanted.meant(limit.quantity), wanted.ranges(name)
+        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place
                 continue
@@ -53,7 +53,7 @@ def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> floa
     """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
     low, high = allowed
     if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
-        return 0.0 if limit.quantity.over is Over.TARGETS else np.inf
+        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
     if limit.kind.is_angle:
         return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
     miss = max(low - value, value - high)

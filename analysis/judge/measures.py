@@ -211,7 +211,9 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: attrgetter(f"verdict.{name}") for name in ("error_max", "error_rms", "error_sse")},
     "angle_error_max": partial(_angle_error, np.nanmax),
     "angle_error_rms": partial(_angle_error, lambda errors: np.sqrt(np.nanmean(errors**2))),
-    "transmission": lambda values: values[values.problem.requirements.meant(QUANTITIES["transmission"]).key],
+    "transmission": lambda values: values[
+        values.problem.requirements.as_required(QUANTITIES["transmission"]).key
+    ],
     **{(key := f"transmission_min_{over}"): attrgetter(f"verdict.{key}") for over in ("task", "cycle")},
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},

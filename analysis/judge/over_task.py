@@ -11,8 +11,7 @@ from grashof.analysis.curves.fit import coupler_fit_r2
 from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
 from grashof.analysis.judge.task_peaks import load_curves, task_peaks
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.mechanism.driver_law import DriverLaw
-from grashof.analysis.mechanism.means import mean_in_time
+from grashof.analysis.mechanism.driver_law import DriverLaw, mean_in_time
 from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres

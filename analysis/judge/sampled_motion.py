@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.driver_law import DriverLaw
-from grashof.analysis.mechanism.driver_samples import close_samples
+from grashof.analysis.mechanism.even_motion import close_samples
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage, Problem, Task
 from grashof.problems.values.arrays import TURN, FloatArray

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.mechanism.driver_samples import ground_line
+from grashof.analysis.mechanism.even_motion import ground_line
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.sensitivity import sensitivity
 from grashof.analysis.mechanism.transmission import transmission_angle

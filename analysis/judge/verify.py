@@ -16,6 +16,7 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
 from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
     branch_index,
     circuit_index,
@@ -25,7 +26,6 @@ from grashof.analysis.mechanism.mobility import (
     rotatability,
 )
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.reach import diagonal, reach_box
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import (

@@ -1,4 +1,4 @@
-"""A linkage closed, dyad after dyad: where the frames of its links are, and how they move."""
+"""A linkage closed, dyad after dyad: positions and rates of the frames of its links."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from grashof.problems.values.linkages.mechanism import Dyad, DyadKind, LoopNames
 
 _ZERO = np.zeros(())
 STEADY = np.ones(()), _ZERO, _ZERO  # a driver at 1 rad/s
-Way: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
-# Below this sine of the transmission angle its digits are rounding: one unit in the last place of the driver
-# angle or of a length changes the velocities by more than a tenth.
+Arms: TypeAlias = tuple[tuple[int, Vector], ...]  # links and their arms, in global axes
+# Below this sine of the transmission angle a unit in the last place of the driver angle or of a length
+# changes the velocities by more than a tenth.
 DEAD = 1e-7
 
 
@@ -31,7 +31,7 @@ class HostedDyad(NamedTuple):
 
 
 def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list[FloatArray]:
-    """What closes a linkage, its first loop on `assembly`, for `close`: C, D and sizes of each dyad."""
+    """Operands of `close`: C, D and the sizes of each dyad, the first loop on `assembly`."""
     kind, o2 = linkage.mechanism, linkage.o2
     pinned = "o4" in kind.ground
     rounding = np.abs(o2).sum(axis=-1) + np.abs(linkage.o4).sum(axis=-1) if pinned else _ZERO
@@ -54,7 +54,7 @@ def operands_of(linkage: Linkage, assembly: npt.ArrayLike | None = None) -> list
 
 
 def _far_end(linkage: Linkage, loop: LoopNames) -> Vector:
-    """D in the frame of its link, on the ground from O2, where the line of a slide begins."""
+    """D in the frame of its link; on the ground, and for a slide, from O2."""
     if not loop.pinned:
         return _ZERO, _ZERO
     x, y = _pair(linkage, loop.d)
@@ -84,30 +84,30 @@ class Frame(NamedTuple):
     cosine: FloatArray
     sine: FloatArray
     origin: Vector
-    way: Way
+    arms: Arms
 
     def arm(self, at: Vector) -> Vector:
-        """A point of the link from its origin, in global axes."""
+        """Vector from the origin to a point of the link, in global axes."""
         u, v = at
-        if v is _ZERO:  # most joints lie on the u-axis
+        if v is _ZERO:  # as for most joints
             return u * self.cosine, u * self.sine
         return u * self.cosine - v * self.sine, u * self.sine + v * self.cosine
 
 
-class Place(NamedTuple):
-    """A point of a link from O2, and the arms of links that lead to it."""
+class LinkPoint(NamedTuple):
+    """A point of a link, from O2, and the arms of links that lead to it."""
 
     x: FloatArray
     y: FloatArray
-    way: Way
+    arms: Arms
 
 
 class Loop(NamedTuple):
-    """A closed loop: the dyad, C and D, and what it is closed to."""
+    """A closed loop: the dyad, C and D, and the directions of its links."""
 
     dyad: HostedDyad
-    c: Place
-    d: Place
+    c: LinkPoint
+    d: LinkPoint
     closed: Closed
 
     @property
@@ -124,12 +124,12 @@ class Loop(NamedTuple):
 
     @property
     def width(self) -> FloatArray:
-        """Of the gap between C and D."""
+        """Width of the gap between C and D."""
         return self.dyad.sizes.width(self.d.x - self.c.x, self.d.y - self.c.y)
 
     @property
     def travel(self) -> FloatArray:
-        """How far its slide has gone; NaN without a slide."""
+        """Travel of its slide; NaN without a slide."""
         return self.dyad.sizes.travel(self.closed, self.d.x - self.c.x, self.d.y - self.c.y)
 
 
@@ -139,47 +139,60 @@ def dyads_of(linkage: Linkage) -> list[HostedDyad]:
 
 
 def dyad_of(linkage: Linkage, loop: int = 1) -> DyadSizes:
-    """The dyad of the first loop or of another one."""
+    """The dyad of a loop, 1 or 2."""
     return dyads_of(linkage)[loop - 1].sizes
 
 
 def close(
     kind: Mechanism, operands: Sequence[FloatArray], theta2: FloatArray
 ) -> tuple[list[Loop], dict[int, Frame]]:
-    """All loops at driver angles, and the frames of the links that carry something."""
+    """All loops at driver angles, and the frames of the links that carry joints or the coupler point."""
     frames = {2: Frame(np.cos(theta2), np.sin(theta2), (_ZERO, _ZERO), ())}
     loops = []
     for first, dyad in zip((3, 5), _hosted_dyads(kind, operands), strict=False):
-        c, d = (place(frames, host, at) for host, at in zip(dyad.row.hosts, dyad.at, strict=True))
-        closed = dyad.sizes.place(d.x - c.x, d.y - c.y)
+        c, d = (link_point(frames, host, at) for host, at in zip(dyad.row.hosts, dyad.at, strict=True))
+        closed = dyad.sizes.close(d.x - c.x, d.y - c.y)
         loop = Loop(dyad, c, d, closed)
         loops.append(loop)
-        frames[first] = Frame(closed.cos3, closed.sin3, (c.x, c.y), c.way)
+        frames[first] = Frame(closed.cos3, closed.sin3, (c.x, c.y), c.arms)
         if dyad.row.kind is not DyadKind.RRP:
-            frames[first + 1] = Frame(closed.cos4, closed.sin4, (d.x, d.y), d.way)
+            frames[first + 1] = Frame(closed.cos4, closed.sin4, (d.x, d.y), d.arms)
         elif first + 1 == kind.carries:
-            frames[first + 1] = Frame(closed.sin4, -closed.cos4, loop.e, (*c.way, (first, loop.arm)))
+            frames[first + 1] = Frame(closed.sin4, -closed.cos4, loop.e, (*c.arms, (first, loop.arm)))
     return loops, frames
 
 
-def place(frames: dict[int, Frame], link: int, at: Vector) -> Place:
-    """A point of a link; on the ground its place from O2."""
+def closed_at(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> tuple[list[Loop], dict[int, Frame]]:
+    """`close` for a linkage, on its own assembly by default."""
+    angle = np.asarray(theta2, dtype=np.float64)
+    return close(linkage.mechanism, operands_of(linkage, assembly), angle)
+
+
+def coupler_point(linkage: Linkage, frames: dict[int, Frame]) -> LinkPoint:
+    """P of a linkage with these frames."""
+    return link_point(frames, linkage.mechanism.carries, _pair(linkage, "coupler_point"))
+
+
+def link_point(frames: dict[int, Frame], link: int, at: Vector) -> LinkPoint:
+    """A point of a link; on the ground `at` is from O2."""
     if link == 1:
-        return Place(*at, ())
+        return LinkPoint(*at, ())
     frame = frames[link]
     (ox, oy), (x, y) = frame.origin, frame.arm(at)
-    way = (*frame.way, (link, (x, y)))
-    return Place(x, y, way) if ox is _ZERO else Place(ox + x, oy + y, way)
+    arms = (*frame.arms, (link, (x, y)))
+    return LinkPoint(x, y, arms) if ox is _ZERO else LinkPoint(ox + x, oy + y, arms)
 
 
-class Turns(NamedTuple):
-    """What the k-th derivatives of a link's angle do to a vector fixed in it: times i push - pull."""
+class Rotation(NamedTuple):
+    """Factors of the first three derivatives of a vector fixed in a link: i tangential - normal."""
 
-    push: tuple[FloatArray, FloatArray, FloatArray]
-    pull: tuple[FloatArray, FloatArray, FloatArray]
+    tangential: tuple[FloatArray, FloatArray, FloatArray]
+    normal: tuple[FloatArray, FloatArray, FloatArray]
 
     @classmethod
-    def of(cls, omega: FloatArray, alpha: FloatArray, jerk: FloatArray) -> Turns:
+    def of(cls, omega: FloatArray, alpha: FloatArray, jerk: FloatArray) -> Rotation:
         """Of angular velocity, acceleration and jerk (Norton, *Design of Machinery*, secs. 6.7 and 7.3)."""
         square = omega * omega
         return cls((omega, alpha, jerk - square * omega), (_ZERO, square, 3 * omega * alpha))
@@ -188,13 +201,13 @@ class Turns(NamedTuple):
         """Three derivatives of an arm."""
         x, y = arm
         return [
-            (-push * y - pull * x, push * x - pull * y)
-            for push, pull in zip(self.push, self.pull, strict=True)
+            (-tangential * y - normal * x, tangential * x - normal * y)
+            for tangential, normal in zip(self.tangential, self.normal, strict=True)
         ]
 
 
 class Moving(NamedTuple):
-    """How the links of a loop move: three derivatives by time of turns and travel, and where it is dead."""
+    """Three derivatives by time of the turns and travel of a loop, and where it is dead."""
 
     orders: tuple[Solved, ...]
     dead: BoolArray
@@ -206,14 +219,14 @@ def move(
     driver: tuple[FloatArray, FloatArray, FloatArray],
     dead_below: float = DEAD,
     *,
-    whole: bool = False,
-) -> tuple[list[Moving], dict[int, Turns]]:
-    """Rates of all loops to the jerk, and turns by link, with `whole` of those of the last loop, too.
+    last_too: bool = False,
+) -> tuple[list[Moving], dict[int, Rotation]]:
+    """Rates of all loops to the jerk, and rotations by link, those of the last loop only with `last_too`.
 
-    Infinite in dead positions, with the sign of the term that grows fastest; NaN of a loop that hangs on such
-    a one.
+    Infinite in dead positions, signed as the term that grows fastest; NaN in a loop that depends on such a
+    one.
     """
-    turns, found = {2: Turns.of(*driver)}, []
+    turns, found = {2: Rotation.of(*driver)}, []
     for first, loop in zip((3, 5), loops, strict=False):
         sizes, closed = loop.dyad.sizes, loop.closed
         dead = np.abs(closed.margin) <= dead_below
@@ -221,12 +234,12 @@ def move(
         inverse = 1 / (np.where(dead, np.copysign(0.0, sizes.sign), closed.margin) if some else closed.margin)
         orders: tuple[Solved, ...] = sizes.rates(closed, inverse, *_projected(loop, turns, 3))
         if some:
-            ends = sizes.leading(closed, orders[0])
+            ends = sizes.growth(closed, orders[0])
             orders = (orders[0], *map(partial(_where, dead), ends, orders[1:]))
         found.append(Moving(orders, dead))
-        if whole or loop is not loops[-1]:
+        if last_too or loop is not loops[-1]:
             three, four, _ = zip(*orders, strict=True)
-            turns |= {first: Turns.of(*three), first + 1: Turns.of(*four)}
+            turns |= {first: Rotation.of(*three), first + 1: Rotation.of(*four)}
     return found, turns
 
 
@@ -235,15 +248,15 @@ def _where(dead: BoolArray, one: Solved, other: Solved) -> Solved:
 
 
 def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
-    """Velocities, with a limit in dead positions, of the driver and of each loop.
+    """Velocities of the driver and of each loop, with a limit in dead positions.
 
-    The driver turns counter-clockwise by the product of all margins without their signs: each loop has adj J
-    in place of J^-1, and scales all that moves before it by its margin.
+    The driver's is the product of the absolute margins: each loop has adj J in place of J^-1, and scales all
+    that moves before it by its margin.
     """
     omegas = {2: np.ones(np.shape(loops[-1].closed.margin))}
     found: list[Solved] = []
     for first, loop in zip((3, 5), loops, strict=False):
-        turns = {link: Turns((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
+        turns = {link: Rotation((omega, _ZERO, _ZERO), (_ZERO,) * 3) for link, omega in omegas.items()}
         (gap,) = _projected(loop, turns, 1)
         scale = np.abs(loop.closed.margin)
         with np.errstate(invalid="ignore"):
@@ -255,36 +268,27 @@ def virtual_rates(loops: Sequence[Loop]) -> tuple[FloatArray, list[Solved]]:
     return omegas[2], found
 
 
-def point_rates(at: Place, turns: dict[int, Turns]) -> list[Vector]:
+def point_rates(at: LinkPoint, turns: dict[int, Rotation]) -> list[Vector]:
     """Three derivatives of a point."""
     x = y = [_ZERO] * 3
-    for link, arm in at.way:
+    for link, arm in at.arms:
         moved = turns[link].moved(arm)
         x = [one + dx for one, (dx, _) in zip(x, moved, strict=True)]
         y = [one + dy for one, (_, dy) in zip(y, moved, strict=True)]
     return list(zip(x, y, strict=True))
 
 
-def _projected(loop: Loop, turns: dict[int, Turns], orders: int) -> list[Vector]:
+def _projected(loop: Loop, turns: dict[int, Rotation], orders: int) -> list[Vector]:
     """Derivatives of the gap along the two directions that its dyad faces."""
     found = []
     for ex, ey in loop.dyad.sizes.facing(loop.closed):
         total: list[FloatArray] = []
-        for link, (x, y) in loop.c.way:
-            push, pull = turns[link]
-            along, across = x * ex + y * ey, y * ex - x * ey
-            total = _sums(
-                total, push[0] * across, *(push[k] * across + pull[k] * along for k in range(1, orders))
-            )
-        for link, (x, y) in loop.d.way:
-            push, pull = turns[link]
-            along, across = x * ex + y * ey, x * ey - y * ex
-            total = _sums(
-                total, push[0] * across, *(push[k] * across - pull[k] * along for k in range(1, orders))
-            )
+        for sign, arms in ((1, loop.c.arms), (-1, loop.d.arms)):
+            for link, (x, y) in arms:
+                tangential, normal = turns[link]
+                along, across = sign * (x * ex + y * ey), sign * (y * ex - x * ey)
+                rates = [tangential[0] * across]
+                rates += [tangential[k] * across + normal[k] * along for k in range(1, orders)]
+                total = [one + other for one, other in zip(total, rates, strict=True)] if total else rates
         found.append(total)
     return list(zip(*found, strict=True))
-
-
-def _sums(known: list[FloatArray], *more: FloatArray) -> list[FloatArray]:
-    return [one + other for one, other in zip(known, more, strict=True)] if known else list(more)

@@ -1,4 +1,4 @@
-"""Central differences, and where they part from the analytic values."""
+"""Central differences, compared with analytic values."""
 
 from __future__ import annotations
 
@@ -28,8 +28,7 @@ def central_differences(
     Parameters
     ----------
     at : array_like, shape (N,)
-        Where the values were sampled, in equal steps. The step is taken from here, so it is the
-        true one.
+        Sample places, in equal steps.
     values : array_like, shape (N, ...)
         Angles must not jump (``np.unwrap``).
     derivative : int
@@ -40,7 +39,7 @@ def central_differences(
     Returns
     -------
     ndarray, shape (N, ...)
-        NaN at the ends, where there are no neighbours on both sides.
+        NaN at the ends, which lack neighbours on one side.
 
     Raises
     ------
@@ -67,7 +66,7 @@ def central_differences(
         )
     step = (at[-1] - at[0]) / (count - 1)
     if step == 0 or np.abs(np.diff(at) - step).max() > 1e-6 * abs(step):
-        raise ProblemError("the places of the samples are not equally spaced; central differences need that")
+        raise ProblemError("the samples are not equally spaced, as central differences require")
     reach = len(weights) // 2
     slope = np.full(values.shape, np.nan)
     slope[reach : count - reach] = sum(
@@ -79,12 +78,12 @@ def central_differences(
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """How far central differences of one quantity lie from its analytic values.
+    """Deviation of central differences of one quantity from its analytic values.
 
     Parameters
     ----------
     quantity : str
-        What was differentiated from positions: "omega3", "alpha4", "velocity of B", ...
+        "omega3", "alpha4", "velocity of B", ...
     accuracy : int
         Order of the formula, 2 or 4.
     largest : float
@@ -92,7 +91,7 @@ class Deviation:
     share : float
         The same as a share of the largest analytic value.
     theta2 : float, rad
-        Where that is.
+        Driver angle there.
     """
 
     quantity: str

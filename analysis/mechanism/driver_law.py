@@ -1,4 +1,4 @@
-"""The driver's motion from one angle to another: at steady speed, or from rest to rest."""
+"""The driver's motion from one angle to another, steady or from rest to rest, and means over it."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
+from grashof.analysis.numerics.peaks import last_where
+from grashof.analysis.numerics.quadrature import Curve, integrate
 from grashof.analysis.numerics.taylor import derivatives
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.dynamics.motor import MotorSpec
 
-_HALVINGS = 60
 _BESIDE = 1e-12  # share of the time
 
 
@@ -36,7 +38,7 @@ class DriverMotion(NamedTuple):
 
 
 def driver_motion(theta2: Callable[[Any], Any], time: npt.ArrayLike) -> DriverMotion:
-    """A driver that follows a function of time, which is differentiated exactly.
+    """Motion of a driver that follows a function of time, differentiated exactly.
 
     Parameters
     ----------
@@ -64,7 +66,7 @@ def driver_motion(theta2: Callable[[Any], Any], time: npt.ArrayLike) -> DriverMo
 
 
 class _Shape(NamedTuple):
-    """Share of the way at a share of the time, with three derivatives, and the other way round."""
+    """Share of the way at a share of the time, with three derivatives, and the inverse."""
 
     way: Callable[[FloatArray], tuple[FloatArray, FloatArray, FloatArray, FloatArray]]
     time: Callable[[FloatArray], FloatArray]
@@ -72,7 +74,7 @@ class _Shape(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DriverLaw:
-    """How the driver goes from one angle to another.
+    """Motion of the driver from one angle to another.
 
     Parameters
     ----------
@@ -80,7 +82,7 @@ class DriverLaw:
     rotation : float, rad
         Signed; other than zero.
     omega2 : float, rad/s
-        Mean speed; its sign is that of the rotation. A motor's measured times take its place.
+        Mean speed, with the sign of the rotation; a motor's measured times override it.
     motor : MotorSpec
         Its profile.
 
@@ -98,13 +100,13 @@ class DriverLaw:
 
     @property
     def duration(self) -> float:
-        """Of the motion, s; infinite at no speed."""
+        """Duration of the motion, s; infinite at zero speed."""
         if self.motor.values is not None:
             return self.motor.values[-1][0] - self.motor.values[0][0]
         return self.rotation / self.omega2 if self.omega2 else np.inf
 
     def at_time(self, time: npt.ArrayLike) -> DriverMotion:
-        """The driver at times from the start, shape (...), s; a steady one goes on, others stop."""
+        """The driver at times from the start, shape (...), s; a steady one continues, others stop."""
         now = np.asarray(time, dtype=np.float64)
         if self.motor.steady:
             still = np.zeros(now.shape)
@@ -112,7 +114,7 @@ class DriverLaw:
         return self._moved(np.clip(now / self.duration, 0.0, 1.0))
 
     def time_at(self, theta2: npt.ArrayLike) -> FloatArray:
-        """The time at driver angles of the motion, shape (...), s; NaN at no speed."""
+        """The time at driver angles of the motion, shape (...), s; NaN at zero speed."""
         if self.motor.steady:
             way = np.asarray(theta2, dtype=np.float64) - self.start
             return np.asarray(way / self.omega2 if self.omega2 else np.full(way.shape, np.nan))
@@ -137,7 +139,7 @@ class DriverLaw:
 
     @property
     def corners(self) -> FloatArray:
-        """Shares of the time between which the motion is smooth, both ends among them."""
+        """Shares of the time between which the motion is smooth, ends included."""
         if self.motor.values is not None:
             time = np.array(self.motor.values)[:, 0]
             return np.asarray((time - time[0]) / (time[-1] - time[0]))
@@ -145,11 +147,10 @@ class DriverLaw:
         return np.array([0.0, ramp, 1 - ramp, 1.0] if self.motor.profile == "trapezoid" else [0.0, 1.0])
 
     def stretches(self, theta2: FloatArray) -> list[FloatArray]:
-        """Places of the motion at ascending driver angles, in parts between which its acceleration jumps.
+        """Places of the motion at ascending driver angles, in parts between which the acceleration jumps.
 
-        A place is the driver angle of a steady motion, and else the share of its time, over which it is
-        as smooth as the profile; see `at_place`. Parts then end just beside the jumps, and beside rest,
-        so that each sees its own side.
+        A place is the driver angle of a steady motion, else the share of the time; see `at_place`. Parts end
+        just beside the jumps and beside rest.
         """
         if self.motor.steady:
             return [theta2]
@@ -168,7 +169,7 @@ class DriverLaw:
         return self.at_angle(place) if self.motor.steady else self._moved(place)
 
     def _way(self, theta2: npt.ArrayLike) -> FloatArray:
-        """Share of the way at driver angles; one turn after the other is the same."""
+        """Share of the way at driver angles; each turn repeats the first."""
         share = (np.asarray(theta2, dtype=np.float64) - self.start) / self.rotation
         if abs(self.rotation) < TURN:
             return np.asarray(np.clip(share, 0.0, 1.0))
@@ -191,10 +192,7 @@ class DriverLaw:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyDrivers:
-    """Drivers of a batch (...), each steady: `start` in rad, `omega2` in rad/s.
-
-    Their places are driver angles.
-    """
+    """Steady drivers of a batch (...): `start` in rad, `omega2` in rad/s; places are driver angles."""
 
     start: FloatArray
     omega2: FloatArray
@@ -211,7 +209,7 @@ class SteadyDrivers:
 
 
 def _trapezoid(ramp: float) -> _Shape:
-    """Speed rising evenly, even, falling evenly."""
+    """Speed that rises linearly, stays constant and falls linearly."""
     most = 1 / (1 - ramp)
 
     def way(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -255,13 +253,34 @@ def _measured(rows: FloatArray) -> _Shape:
 
 
 def _inverse(rising: Callable[[FloatArray], FloatArray], value: FloatArray) -> FloatArray:
-    """Where a function that rises from 0 to 1 has a value, by halving."""
-    low, high = np.zeros(np.shape(value)), np.ones(np.shape(value))
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        below = rising(middle) < value
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return np.asarray((low + high) / 2)
+    """Inverse of a function that rises from 0 to 1, by halving."""
+    return last_where(lambda u: rising(u) < value, np.zeros(np.shape(value)), np.ones(np.shape(value)))
 
 
 _CYCLOID = _Shape(_cycloid, lambda s: _inverse(lambda u: _cycloid(u)[0], s))
+
+
+def mean_over(
+    linkage: Linkage, curve: Curve, start: float, end: float, panels: int = 36
+) -> tuple[FloatArray, FloatArray]:
+    """Mean of a curve, (N,) in rad to (..., N), over the driver angle, and a bound of its error.
+
+    The error is large where the mean does not converge; features below a fiftieth of a panel may be missed.
+    """
+    if start == end:
+        at = np.asarray(curve(np.array([start])), dtype=np.float64)[..., 0]
+        return at, np.zeros(at.shape)
+    motion = even_motion(linkage, start, end)
+    found = integrate(lambda t: curve(motion.theta2(t)) * motion.rate(t), motion.edges(panels))
+    return found.total / (end - start), found.error / abs(end - start)
+
+
+def mean_in_time(
+    linkage: Linkage, law: DriverLaw, curve: Curve, panels: int = 36
+) -> tuple[FloatArray, FloatArray]:
+    """Mean and error, as in `mean_over`, over the time of a motion, of a curve over `DriverLaw.at_place`."""
+    if law.motor.steady:
+        return mean_over(linkage, curve, law.start, law.start + law.rotation, panels)
+    parts = [np.linspace(*ends, panels + 1)[:-1] for ends in pairwise(law.corners.tolist())]
+    found = integrate(curve, np.append(np.concatenate(parts), 1.0))
+    return found.total, found.error

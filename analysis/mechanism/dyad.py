@@ -1,20 +1,20 @@
-"""Dyads: how two links close the gap between two others, and how they move. One body of each formula.
+"""Dyads: how two links close the gap between two others, and how they move.
 
-A dyad closes the gap w from C to D. It has two unknowns q and two equations gap(q) = w, whose matrix J is the
-derivative of the gap: J dq = dw, and so on. The determinant of J over its size is the margin, the sine of the
-transmission angle with the sign of the assembly. The links are called 3 and 4 here, as in the first loop; of
-a second dyad they are links 5 and 6. Each kind has the same methods:
+A dyad closes the gap w from C to D. It has two unknowns q and two equations gap(q) = w, with the matrix J of
+the derivatives of the gap: J dq = dw, and so on. The determinant of J over its size is the margin, the sine
+of the transmission angle with the sign of the assembly. The links are called 3 and 4 here; those of a second
+dyad are 5 and 6. Each kind has the same methods:
 
-- `place`: the dyad where its gap is (x, y); `travel`: how far its slide has gone then.
-- `facing`: two directions; a vector comes as its components along these.
+- `close`: the dyad for a gap (x, y); `travel`: that of its slide.
+- `facing`: two directions, along which vectors are resolved.
 - `solve`: J^-1 of a vector times `scale`, with `inverse` = `scale` over the margin. A scale of 1 gives rates,
-  one of the margin what stays finite in dead positions.
+  the margin as scale keeps them finite in dead positions.
 - `rates`: three derivatives of q from those of the gap.
-- `leading`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
+- `growth`: infinite accelerations and jerks of a dead position, signed as the term that grows fastest.
 - `force`: J^T f = demands. The force on link 3 by link 4 in E, and the moment of a slide on link 4 about E.
-- `sizes`: what the gap loses with each of its lengths, the right side of their slopes.
-- `width`: of the gap, as far as the dyad minds it; `limits`: the least and the greatest at which it closes
-  with a transmission angle whose cosine is in size at most this one.
+- `sizes`: derivatives of the gap by its lengths, with the sign reversed.
+- `width`: the measure of the gap that decides closure; `limits`: its least and greatest values for a
+  transmission angle whose cosine does not exceed a given size.
 - `transmission_at`: the transmission angle in [0, pi] at a width; NaN where the dyad is open.
 """
 
@@ -34,10 +34,10 @@ _NONE = np.zeros(())
 
 
 class Closed(NamedTuple):
-    """A closed dyad, each of shape (...); NaN where the gap is too wide or too narrow, but for the reach.
+    """A closed dyad, each of shape (...); NaN, except the reach, where the dyad is open.
 
-    Directions of link 3 and of link 4 (of a slider across its slide, to its left); the margin, which keeps
-    its digits near a dead position; the length from C along link 3 to E.
+    Directions of links 3 and 4 (of a slider across its slide, to its left); the margin, which keeps its
+    digits near a dead position; the length from C along link 3 to E.
     """
 
     cos3: FloatArray
@@ -54,7 +54,7 @@ class Closed(NamedTuple):
 
 
 class Solved(NamedTuple):
-    """What J makes of a vector: turns of links 3 and 4, and the travel of a slide, each of shape (...)."""
+    """Solution of J q = vector: turns of links 3 and 4, and the travel of a slide, each of shape (...)."""
 
     turn3: FloatArray
     turn4: FloatArray
@@ -62,14 +62,14 @@ class Solved(NamedTuple):
 
 
 class Demands(NamedTuple):
-    """Moments of link 3 about C, that of joint C taken off, and of link 4 about D, of a slider about E.
+    """Moments on link 3 about C, less that of joint C, and on link 4 about D (a slider: E); force on link 4.
 
-    The force on link 4; what joints E and D exert on it: the moment of a pin, the friction along a slide.
+    Last the actions of joints E and D on link 4: the moment of a pin, the friction along a slide.
     """
 
     turn3: FloatArray
     turn4: FloatArray
-    push: Vector
+    force4: Vector
     in_e: FloatArray
     in_d: FloatArray
 
@@ -82,7 +82,7 @@ class Pins(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRR
         """E is an intersection of the circles about C and D (Norton, *Design of Machinery*, sec. 4.5).
 
         Heron's product gives its distance from C-D: m^2 - x^2 loses digits near dead positions.
@@ -102,11 +102,11 @@ class Pins(NamedTuple):
             return Closed(x3 / m, y3 / m, (x3 - x) / n, (y3 - y) / n, root / (2 * m * n), m)
 
     def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:  # noqa: ARG002
-        """None."""
+        """NaN: pins have no slide."""
         return np.full(np.shape(closed.margin), np.nan)
 
     def facing(self, closed: Closed) -> tuple[Vector, Vector]:
-        """E4, along which link 3 alone counts, and e3, along which link 4 does."""
+        """Directions e4, along which only link 3 counts, and e3, along which only link 4 does."""
         return (closed.cos4, closed.sin4), (closed.cos3, closed.sin3)
 
     def solve(self, closed: Closed, at: Vector, inverse: FloatArray, scale: FloatArray | float) -> Solved:  # noqa: ARG002
@@ -114,10 +114,9 @@ class Pins(NamedTuple):
         return Solved(at[0] * inverse / self.m, at[1] * inverse / self.n, _NONE)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
-        """The second derivative of the gap has -v3^2 m e3 + v4^2 n e4 besides J times that of q.
+        """The second derivative of the gap is J q" - v3^2 m e3 + v4^2 n e4 (Norton, sec. 7.3).
 
-        With third derivatives less the cubes of the angular velocities the third one has 3 v a for v^2
-        (Norton, sec. 7.3).
+        In the third one 3 v a takes the place of v^2, with third derivatives of angles less the cubes of v.
         """
         over3, over4 = inverse / self.m, inverse / self.n
         cosine = closed.cos4 * closed.cos3 + closed.sin4 * closed.sin3
@@ -132,10 +131,10 @@ class Pins(NamedTuple):
         jerk4 = (to4_3 + pull3 - pull4 * cosine) * over4 + omega4 * omega4 * omega4
         return Solved(omega3, omega4, _NONE), Solved(alpha3, alpha4, _NONE), Solved(jerk3, jerk4, _NONE)
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
-        """With s the margin and `same` = cos(theta4 - theta3) = +-1 omega goes like 1/s, alpha like 1/s^3.
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+        """With margin s, omega grows like 1/s, alpha like 1/s^3, the jerk like -3 s'/s^4.
 
-        The jerk, the rate of alpha, goes like -3 s'/s^4.
+        `same` is cos(theta4 - theta3) = +-1.
         """
         m, n, sign, _ = self
         same = np.sign(closed.cos4 * closed.cos3 + closed.sin4 * closed.sin3)
@@ -155,7 +154,7 @@ class Pins(NamedTuple):
         return (x, y), np.full(np.shape(x), np.nan)
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
-        """-e3 and e4."""
+        """Derivatives by m and n, reversed: -e3 and e4."""
         return {"m": (-closed.cos3, -closed.sin3), "n": (closed.cos4, closed.sin4)}
 
     def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -189,7 +188,7 @@ class Slider(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRP
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RRP
         """With h from C to the slide, to its left, m sin(theta3 - slide) = h (Norton, sec. 4.6).
 
         The cosine comes from the product (m - h)(m + h), which keeps its digits near the dead positions.
@@ -208,7 +207,7 @@ class Slider(NamedTuple):
             return Closed(cos3, sin3, np.where(open_, np.nan, -ey), np.where(open_, np.nan, ex), margin, m)
 
     def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Of E from the foot of D on the line."""
+        """Distance of E along the slide from the foot of D."""
         return np.asarray(self.m * closed.margin - (x * self.ex + y * self.ey))
 
     def facing(self, closed: Closed) -> tuple[Vector, Vector]:  # noqa: ARG002
@@ -221,7 +220,7 @@ class Slider(NamedTuple):
         return Solved(turn, self._still(closed), -at[1] * scale - self.m * self._sine(closed) * turn)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
-        """The second derivative of the gap has -v^2 m e3 besides J times that of q, the third -3 v a m e3."""
+        """The second derivative of the gap is J q" - v^2 m e3, the third has -3 v a m e3."""
         m, over, cosine, still = self.m, inverse / self.m, closed.margin, self._still(closed)
         rise = m * self._sine(closed)
         (across, along), (across_2, along_2), (across_3, along_3) = gap
@@ -236,10 +235,10 @@ class Slider(NamedTuple):
             Solved(turn + square * omega, still, -along_3 - rise * turn - m * cosine * mixed),
         )
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
-        """With c the margin, S = sin(theta3 - slide) = +-1: omega is like 1/c, alpha S/c^3, the jerk 3/c^5.
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:
+        """With margin c and S = sin(theta3 - slide) = +-1: omega is like 1/c, alpha S/c^3, the jerk 3/c^5.
 
-        Those of the slider go like -S/c, -1/c^3 and -3 S/c^5.
+        Those of the slider grow like -S/c, -1/c^3 and -3 S/c^5.
         """
         size, side = np.abs(first.turn3), np.sign(self._sine(closed))
         second = Solved(self.sign * side * size, first.turn4, -self.sign * size)
@@ -253,11 +252,11 @@ class Slider(NamedTuple):
         return (pull * self.ex - across * self.ey, pull * self.ey + across * self.ex), turn4 - in_e
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
-        """-e3 and i e."""
+        """Derivatives by m and the offset, reversed: -e3 and i e."""
         return {"m": (-closed.cos3, -closed.sin3), "offset": (-self.ey, self.ex)}
 
     def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """From C to the slide, positive to its left."""
+        """Distance from C to the slide, positive to its left."""
         return np.asarray(self.offset + (y * self.ex - x * self.ey))
 
     def limits(self, cosine: float = 1.0) -> Vector:
@@ -272,11 +271,11 @@ class Slider(NamedTuple):
             return 2 * np.arctan2(np.sqrt(near), np.sqrt(far))
 
     def _still(self, closed: Closed) -> FloatArray:
-        """The turn of a slider: none, NaN where the dyad is open."""
+        """The turn of a slider: 0, NaN where the dyad is open."""
         return np.where(np.isnan(closed.margin), np.nan, 0.0)
 
     def _sine(self, closed: Closed) -> FloatArray:
-        """Of theta3 - slide."""
+        """Sine of theta3 - slide."""
         return np.asarray(closed.sin3 * self.ex - closed.cos3 * self.ey)
 
 
@@ -290,7 +289,7 @@ class Block(NamedTuple):
     sign: FloatArray
     rounding: FloatArray
 
-    def place(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
+    def close(self, x: FloatArray, y: FloatArray) -> Closed:  # closure: RPR
         """The length l from C along the rod to E (Norton, sec. 4.7).
 
         With s = |D - C| it comes from (s - |offset|)(s + |offset|), which keeps its digits near dead
@@ -309,7 +308,7 @@ class Block(NamedTuple):
             return Closed(cos3, sin3, -sin3, cos3, cosine, reach)
 
     def travel(self, closed: Closed, x: FloatArray, y: FloatArray) -> FloatArray:  # noqa: ARG002
-        """Of the rod through the block: E from C."""
+        """Distance of E from C: travel of the rod through the block."""
         return closed.reach
 
     def facing(self, closed: Closed) -> tuple[Vector, Vector]:
@@ -322,9 +321,9 @@ class Block(NamedTuple):
         return Solved(turn, turn, at[1] * scale - self.offset * turn)
 
     def rates(self, closed: Closed, inverse: FloatArray, *gap: Vector) -> tuple[Solved, Solved, Solved]:
-        """With z = (l - i offset) e3 the second derivative has 2 i l' v e3 - v^2 z besides J times that of q.
+        """With z = (l - i offset) e3 the second derivative of the gap is J q" + 2 i l' v e3 - v^2 z.
 
-        The third one has (3 i l" v + 3 l' (i a - v^2)) e3 - 3 v a z, for third derivatives less the cube.
+        The third has (3 i l" v + 3 l' (i a - v^2)) e3 - 3 v a z, with third derivatives less the cube of v.
         """
         reach, offset = closed.reach, self.offset
         over = inverse / np.hypot(reach, offset)
@@ -341,10 +340,10 @@ class Block(NamedTuple):
             Solved(third, third, jerk),
         )
 
-    def leading(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
-        """Omega goes like 1/l, alpha like offset / l^3, the jerk like 3 offset^2 / l^5.
+    def growth(self, closed: Closed, first: Solved) -> tuple[Solved, Solved]:  # noqa: ARG002
+        """Omega grows like 1/l, alpha like offset / l^3, the jerk like 3 offset^2 / l^5.
 
-        Of the rod like -offset / l, -offset^2 / l^3 and -3 offset^3 / l^5.
+        Those of the rod grow like -offset / l, -offset^2 / l^3 and -3 offset^3 / l^5.
         """
         turn, size, side = first.turn3, np.abs(first.turn3), np.sign(self.offset)
         bend = self.sign * side * size
@@ -358,7 +357,7 @@ class Block(NamedTuple):
         return (-in_e * closed.cos3 - across * closed.sin3, across * closed.cos3 - in_e * closed.sin3), moment
 
     def sizes(self, closed: Closed) -> dict[str, Vector]:
-        """I e3."""
+        """Derivative by the offset, reversed: i e3."""
         return {"offset": (-closed.sin3, closed.cos3)}
 
     def width(self, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -387,5 +386,5 @@ DYADS: dict[DyadKind, type[Pins] | type[Slider] | type[Block]] = {
 
 
 def _from_zero(gap: FloatArray, rounding: FloatArray) -> FloatArray:
-    """The gap, 0 where only rounding makes it less: there the position is dead."""
+    """The gap; 0, a dead position, where only rounding makes it negative."""
     return np.where((gap < 0) & (gap >= -rounding), 0.0, gap)

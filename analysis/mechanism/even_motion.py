@@ -1,4 +1,4 @@
-"""A variable over which a linkage moves evenly, wherever it runs away from its driver."""
+"""A variable over which a linkage moves evenly, and driver angles to sample a motion at."""
 
 from __future__ import annotations
 
@@ -7,35 +7,41 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
-from grashof.analysis.mechanism.second_loop import cut, lifted
+from grashof.analysis.mechanism.first_motion import (
+    SHORT,
+    SLACK,
+    FirstMotion,
+    first_motion,
+    panel_edges,
+    turns_into,
+)
+from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 
-_SLACK = 1e-9  # rad: so far past the end of a range rounding may lie
-_SHORT = 1e-6  # rad: a range below it has no room for more than its ends
+_SAMPLES = 481
+_NEAR = np.logspace(-8, -2, 31)  # rad, about positions close to a dead one
 
 
 @dataclass(frozen=True, slots=True)
 class EvenMotion:
-    """Driver angle as a function of a share t, 0 to 1, of a motion with which all links move evenly.
+    """Driver angle as a function of a share t, 0 to 1, of a motion, over which all links move evenly.
 
-    Near a dead position, and about the ground line near a change point, the links move far while the
-    driver hardly does. Over t nothing is narrow: few equal steps are dense samples, and quadrature
-    converges fast. (A second loop may still come close to a dead position between the ends; `edges` has
-    these places.) Made by `even_motion`.
+    Near a dead position or a change point the links move far while the driver hardly does. Over t they do
+    not, so that a few equal steps are dense samples and quadrature converges fast. (A second loop may still
+    come close to a dead position between the ends, at one of the `edges`.) Made by `even_motion`.
 
     Parameters
     ----------
     start, end : float, rad
-        Driver angles of the motion, in either order.
+        Driver angles, in either order.
     first : FirstMotion
-        Of the first loop, from start to end; where the second loop has dead positions over its whole range.
+        That of the first loop: from start to end, or over the range of a second loop that ends in a dead
+        position.
     dead : pair of bool
         Whether the second loop is dead at the ends of `first`.
     begin, finish : float
-        Where between these ends the motion begins and finishes, as a share over which the second loop
-        moves evenly.
+        Start and end as shares of that range, over which the second loop moves evenly.
     corners : tuple of float
         Shares of the motion at which the width of the second loop has an extreme.
     """
@@ -49,10 +55,7 @@ class EvenMotion:
     corners: tuple[float, ...] = ()
 
     def theta2(self, share: npt.ArrayLike) -> FloatArray:
-        """Driver angle at a share of the motion, shape (...), rad.
-
-        Where the driver turns fully the share may lie beyond 0 and 1.
-        """
+        """Driver angle at a share, which may exceed [0, 1] where the driver turns fully; shape (...), rad."""
         t = np.asarray(share, dtype=np.float64)
         if not any(self.dead):
             return self.first.theta2(t)
@@ -78,18 +81,17 @@ class EvenMotion:
         return np.asarray((_unbent(share, self.dead) - self.begin) / (self.finish - self.begin))
 
     def edges(self, panels: int) -> FloatArray:
-        """Shares that part the motion into panels, about as many, none of which goes across the ground line.
+        """Shares at the ends of about this many panels, with the ground line and the corners among them.
 
-        There a linkage with a change point may turn sharply. Nor does one go across an extreme of the second
-        loop's width.
+        There a linkage near a change point or a dead position of its second loop may turn sharply.
         """
         low, high = sorted((self.start, self.end))
         along = self.first.ground_line()
         inside = along[(along >= low) & (along <= high)] if any(self.dead) else along
-        return panelled(panels, np.concatenate([self.share(inside), self.corners]))
+        return panel_edges(panels, np.concatenate([self.share(inside), self.corners]))
 
     def _bent(self, v: FloatArray) -> FloatArray:
-        """Share of the first loop's motion; its rate vanishes where the second loop is dead."""
+        """Share of `first`; its rate vanishes where the second loop is dead."""
         at_low, at_high = self.dead
         if at_low and at_high:
             return np.asarray(np.sin(np.pi / 2 * v) ** 2)
@@ -118,12 +120,12 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     Returns
     -------
     EvenMotion
-        Where the linkage does not close all the way, one that is closer towards both ends.
+        Where the linkage does not close throughout, a variable that is closer towards both ends.
 
     Notes
     -----
-    Of the first loop in closed form, see `first_motion`. Where a range ends in a dead position of the
-    second loop, of the root of the distance from there.
+    For the first loop t is the integral of d theta2 / sin mu, an elliptic integral (Darboux 1879). Near a
+    dead position of the second loop it is the root of the distance from there.
 
     Examples
     --------
@@ -138,13 +140,63 @@ def even_motion(linkage: Linkage, start: float, end: float) -> EvenMotion:
     found, (low, high) = cut(linkage), sorted((start, end))
     motion = EvenMotion(start, end, FirstMotion(start, end))
     for (least, most), dead in zip(found.ranges.tolist(), found.dead[..., 1].tolist(), strict=True):
-        turned = TURN * np.round((low + high - least - most) / (2 * TURN))
-        inside = least + turned - _SLACK <= low <= high <= most + turned + _SLACK
-        if most - least > TURN - _SLACK or (inside and not any(dead)):
+        turned = turns_into(least, most, low, high)
+        if most - least > TURN - SLACK or (turned is not None and not any(dead)):
             motion = replace(motion, first=first_motion(linkage, start, end))
-        elif inside and most - least > _SHORT:
+        elif turned is not None and most - least > SHORT:
             first = first_motion(linkage, least + turned, most + turned)
             begin, finish = _unbent(first.share([start, end]), tuple(dead)).tolist()
             motion = EvenMotion(start, end, first, tuple(dead), begin, finish)
-    corners = motion.share(lifted(found.extremes, low, high))
+    corners = motion.share(recurring(found.extremes, low, high))
     return replace(motion, corners=tuple(corners.tolist()))
+
+
+def driver_samples(linkage: Linkage, start: float, end: float) -> FloatArray:
+    """Driver angles between two ends, denser where a dead position may be near.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    start, end : float, rad
+        In either order; both are among the samples.
+
+    Returns
+    -------
+    ndarray, shape (N,), rad
+        Ascending; denser at both ends, where O2A lies along the ground line, and where the width of a second
+        loop's gap has an extreme.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> samples = driver_samples(FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3), 0.5, 6.0)
+    >>> float(samples[0]), float(samples[-1]), bool((samples == np.pi).any())
+    (0.5, 6.0, True)
+    """
+    return close_samples(linkage, start, end, _SAMPLES, second=True)
+
+
+def close_samples(linkage: Linkage, start: float, end: float, count: int, *, second: bool) -> FloatArray:
+    """`driver_samples` from `count` angles; those for the second loop only with `second`."""
+    low, high = min(start, end), max(start, end)
+    spread = closer_at_ends(low, high, count)
+    spread[[0, -1]] = low, high
+    aligned = ground_line(linkage, low, high)
+    if second and len(linkage.mechanism.dyads) > 1:
+        aligned = np.concatenate([aligned, recurring(cut(linkage).extremes, low, high)])
+    near = (aligned[:, None] + np.concatenate([-_NEAR, [0.0], _NEAR])).ravel()
+    return np.unique(np.concatenate([spread, near[(near > low) & (near < high)]]))
+
+
+def ground_line(linkage: Linkage, low: float, high: float) -> FloatArray:
+    """Driver angles between two ends at which O2A lies along the ground line, shape (N,), rad."""
+    theta1 = float(linkage.theta1)
+    halves = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
+    return np.asarray(theta1 + np.pi * halves)
+
+
+def closer_at_ends(low: float, high: float, count: int) -> FloatArray:
+    """Values from end to end, shape (count,), closer together towards both."""
+    share: FloatArray = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+    return low + (high - low) * share

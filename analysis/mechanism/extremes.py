@@ -1,4 +1,4 @@
-"""Where a quantity is largest and smallest over the motion, to rounding."""
+"""Extremes of a quantity over a motion, to rounding, and the box that a linkage needs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from numpy.polynomial import chebyshev
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation
+from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import quality, transmission_at_extremes
+from grashof.analysis.numerics.peaks import greatest, own
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
@@ -21,6 +23,8 @@ Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
 Curve: TypeAlias = Callable[[FloatArray], FloatArray]
 
 _SAMPLES = 2881
+_BOX_SAMPLES = 361
+_BOX_ROUNDS = 2  # further ones change nothing
 _DEGREE = 16
 _CANDIDATES = 6
 _DEAD = 1e-7  # rad
@@ -64,12 +68,12 @@ def extremes(
     linkage : Linkage
         A single linkage.
     quantity : callable
-        From a `Kinematics` to values, such as ``lambda state: state.b.speed``.
+        Function of a `Kinematics`, such as ``lambda state: state.b.speed``.
     omega2 : float, rad/s
     start, end : float, rad, optional
-        Driver angles; by default the whole turn, or the first of `driver_ranges`.
+        Driver angles; by default a full turn, or the first of `driver_ranges`.
     period : float, optional
-        By which the quantity may jump: 2 pi for an angle, which is then unwrapped.
+        By which the quantity is unwrapped: 2 pi for an angle.
 
     Returns
     -------
@@ -82,8 +86,8 @@ def extremes(
 
     Notes
     -----
-    Dense sampling, then the stationary points of Chebyshev polynomials through the quantity about
-    the outermost samples: where the quantity is smooth, value and angle are right to rounding.
+    Dense samples, then stationary points of Chebyshev polynomials about the outermost ones: right to rounding
+    where the quantity is smooth.
 
     Examples
     --------
@@ -100,8 +104,8 @@ def extremes(
     def curve(share: FloatArray) -> FloatArray:
         return np.asarray(quantity(solve_kinematics(linkage, motion.theta2(share), omega2)), dtype=np.float64)
 
-    at = dense_places(0.0, 1.0, closed)
-    values = counted_on(motion.theta2(at), curve(at), period)
+    at = dense_samples(0.0, 1.0, closed)
+    values = unwrapped(motion.theta2(at), curve(at), period)
     found = refined(curve, at, values, closed, period)
     at_low, at_high = motion.theta2([found.at_low, found.at_high]).tolist()
     return Extremes(found.low, found.high, at_low, at_high)
@@ -113,20 +117,16 @@ def transmission_extremes(linkage: Linkage, start: float, end: float, loop: int 
     Parameters
     ----------
     linkage : Linkage
-        A single linkage that closes all the way.
+        A single linkage that closes throughout.
     start, end : float, rad
         In either order.
     loop : int, optional
-        1 or 2; of a six-bar both by default, the least and the largest of all.
+        1 or 2; by default both loops of a six-bar together.
 
     Returns
     -------
     Extremes
-        In rad: 0 and pi themselves where an end is a dead position, folded or stretched.
-
-    Notes
-    -----
-    See `worst_transmission`.
+        In rad; exactly 0 or pi where an end is a dead position, folded or stretched.
 
     Examples
     --------
@@ -139,7 +139,7 @@ def transmission_extremes(linkage: Linkage, start: float, end: float, loop: int 
     loops = range(1, len(linkage.mechanism.dyads) + 1) if loop is None else [loop]
     parts = [transmission_at_extremes(linkage, start, end, number) for number in loops]
     at, mu = map(np.concatenate, zip(*parts, strict=True))
-    if not full_rotation(linkage):  # what rounding of an end leaves of a dead position
+    if not full_rotation(linkage):  # an end that is dead but for rounding
         mu = np.where(quality(mu) <= _DEAD, np.where(mu < 1, 0.0, np.pi), mu)
     least, most = int(np.argmin(mu)), int(np.argmax(mu))
     return Extremes(float(mu[least]), float(mu[most]), float(at[least]), float(at[most]))
@@ -156,15 +156,17 @@ def extremes_of(
         Takes and returns arrays of shape (N,).
     start, end : float
     closed : bool
-        The curve goes on beyond its ends as it began.
+        The curve is periodic, with the ends one period apart.
     period : float, optional
-        By which its values may jump; they are then unwrapped.
+        By which its values are unwrapped.
 
     Returns
     -------
     Extremes
     """
-    return refined(curve, *sampled(curve, start, end, closed, period), closed, period)
+    at = dense_samples(start, end, closed)
+    values = unwrapped(at, np.asarray(curve(at), dtype=np.float64), period)
+    return refined(curve, at, values, closed, period)
 
 
 def refined(
@@ -177,7 +179,7 @@ def refined(
 
 
 def motion_between(linkage: Linkage, start: float | None, end: float | None) -> tuple[float, float, bool]:
-    """Ends of the motion, and whether it is a whole turn."""
+    """Ends of the motion, and whether it is a full turn."""
     turns = bool(full_rotation(linkage))
     if start is None or end is None:
         if start is not end:
@@ -191,16 +193,8 @@ def motion_between(linkage: Linkage, start: float | None, end: float | None) -> 
     return start, end, turns and abs(end - start - TURN) < 1e-12
 
 
-def sampled(
-    curve: Curve, start: float, end: float, closed: bool, period: float | None
-) -> tuple[FloatArray, FloatArray]:
-    """Where a curve is sampled, and its values there, unwrapped by `period`; shapes (N,)."""
-    at = dense_places(start, end, closed)
-    return at, counted_on(at, np.asarray(curve(at), dtype=np.float64), period)
-
-
-def dense_places(start: float, end: float, closed: bool) -> FloatArray:
-    """Where a curve is sampled when its extremes are sought, shape (N,)."""
+def dense_samples(start: float, end: float, closed: bool) -> FloatArray:
+    """Samples of a curve whose extremes are sought, shape (N,)."""
     share = np.linspace(0, 1, _SAMPLES)
     if not closed:  # closer towards ends that may be dead positions
         share = (1 - np.cos(np.pi * share)) / 2
@@ -209,7 +203,7 @@ def dense_places(start: float, end: float, closed: bool) -> FloatArray:
     return at
 
 
-def counted_on(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
+def unwrapped(theta2: FloatArray, values: FloatArray, period: float | None) -> FloatArray:
     """Values at driver angles, unwrapped by `period`, shape (N,); AssemblyError where one is NaN."""
     if values.shape != theta2.shape:
         raise ProblemError(f"the quantity has shape {values.shape}; it must have one value for each angle")
@@ -258,7 +252,7 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
             low, high = max(low, at[0]), min(high, at[-1])
         values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
         if not np.isfinite(values).all():
-            if closed:  # it is not known beyond its ends
+            if closed:  # undefined beyond its ends
                 return _stationary(curve, at, peak, closed=False)
             continue
         terms = chebyshev.chebfit(_NODES, values, _DEGREE)
@@ -275,3 +269,48 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
         options={"xatol": 1e-12},
     )  # fmt: skip
     return [float(found.x)]
+
+
+def reach_box(linkage: Linkage, start: float, end: float) -> FloatArray:
+    """Box around the ground pivots and the paths of all moving points between two driver angles.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        A single linkage.
+    start, end : float, rad
+
+    Returns
+    -------
+    ndarray, shape (2, 2), length
+        Lower left and upper right corner.
+
+    Examples
+    --------
+    >>> from grashof.problems import FourBar
+    >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
+    >>> reach_box(crank_rocker, 0.0, 2 * np.pi).round(6).tolist()
+    [[-1.0, -1.0], [4.0, 3.0]]
+    """
+    motion = even_motion(linkage, start, end)
+
+    def tracks(share: FloatArray) -> FloatArray:
+        """Coordinates of the moving points, and their negatives."""
+        state = solve_position(linkage, motion.theta2(share))
+        rows = np.concatenate(
+            [np.moveaxis(getattr(state, point), -1, 0) for point in linkage.mechanism.moving]
+        )
+        both = own(np.concatenate([rows, -rows]))
+        closed = own(np.broadcast_to(np.isfinite(rows.sum(axis=0)), (len(both), *state.theta2.shape)))
+        return np.where(closed, both, -np.inf)
+
+    shares = np.linspace(0, 1, _BOX_SAMPLES)
+    furthest = greatest(tracks, shares, most=2, rounds=_BOX_ROUNDS)[0].reshape(2, -1, 2)
+    corners = np.stack([getattr(linkage, pivot) for pivot in linkage.mechanism.ground])
+    most, least = np.where(np.isfinite(furthest), furthest, -np.inf)
+    return np.stack([np.min([*corners, *-least], axis=0), np.max([*corners, *most], axis=0)])
+
+
+def diagonal(box: FloatArray) -> float:
+    """Diagonal of a box of two corners, shape (2, 2)."""
+    return float(np.hypot(*(box[1] - box[0])))

@@ -1,4 +1,4 @@
-"""What is known of a first loop in closed form, by its dyad: driver ranges, classes, limit positions."""
+"""First loops in closed form, by their dyads: driver ranges, classes, limit positions."""
 
 from __future__ import annotations
 
@@ -8,13 +8,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SixBar, SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
-from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import DyadKind
-from grashof.problems.values.linkages.six_bar import SixBar
-from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 CHANGE = 1e-12  # share of the lengths within which a linkage has a change point
 
@@ -23,7 +19,7 @@ P_contra = TypeVar("P_contra", bound=FourBar | SixBar | InvertedSliderCrank, con
 
 
 class GrashofClass(StrEnum):
-    """Kinds of linkages by which links turn fully (link 2 is the driver)."""
+    """Classes of linkages by the links that turn fully (link 2 is the driver)."""
 
     CRANK_ROCKER = "crank-rocker"
     DOUBLE_CRANK = "double-crank"
@@ -39,10 +35,10 @@ class GrashofClass(StrEnum):
 
 
 class Span(NamedTuple):
-    """Where a loop closes, each of shape (...): sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0.
+    """Where a loop closes: sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0 with phi = theta2 - theta1.
 
-    phi is theta2 - theta1. Times a positive number that keeps all digits: a, 1 + a, b, 1 + b. `closes`
-    tells that it does at some driver angle.
+    a, 1 + a, b, 1 + b times a positive number, to keep all digits; whether it closes at all. Each of shape
+    (...).
     """
 
     a: FloatArray
@@ -53,27 +49,27 @@ class Span(NamedTuple):
 
 
 class FirstLoop(ABC, Generic[L_contra]):
-    """A driver and a dyad on the ground, in closed form. Without state; one of each is in a table."""
+    """A driver and a dyad on the ground, in closed form; stateless."""
 
     @abstractmethod
     def span(self, linkage: L_contra, cosine: float = 1.0) -> Span:
-        """Where its loop closes with a transmission angle whose cosine is in size at most this one."""
+        """Where the loop closes with the cosine of the transmission angle at most `cosine` in size."""
 
     @abstractmethod
     def shares(self, linkage: L_contra) -> FloatArray:
-        """The two differences whose signs decide how the driver turns, shape (..., 2); see `rotatability`."""
+        """`rotatability`, shape (..., 2)."""
 
     @abstractmethod
     def even(self, linkage: L_contra) -> tuple[float, float]:
-        """A and b of a single linkage, 1 for one that is 0 (a change point); NaN where they mean nothing."""
+        """The a and b of `first_motion`, 1 for one that is 0 (a change point); NaN where undefined."""
 
     @abstractmethod
     def class_of(self, linkage: L_contra, tolerance: float) -> GrashofClass:
-        """The class of a single linkage."""
+        """Class of a single linkage."""
 
     @abstractmethod
     def apart(self, linkage: L_contra, phi: FloatArray) -> FloatArray:
-        """The length that the transmission angle hangs on at theta2 - theta1 = phi."""
+        """The length that the transmission angle depends on, at theta2 - theta1 = phi."""
 
     @abstractmethod
     def apart_on_line(self, linkage: L_contra) -> tuple[FloatArray, FloatArray]:
@@ -138,7 +134,7 @@ class FourBarLoop(_DiagonalLoop[FourBar | SixBar]):
         return a, b
 
     def class_of(self, linkage: FourBar | SixBar, tolerance: float) -> GrashofClass:
-        """Shortest and longest against the others (Grashof 1883; Norton, sec. 2.13)."""
+        """Shortest and longest compared with the others (Grashof 1883; Norton, sec. 2.13)."""
         lengths = linkage.lengths[:4]
         shortest, p, q, longest = np.sort(lengths)
         excess = p + q - shortest - longest
@@ -265,7 +261,7 @@ _LOOPS: dict[DyadKind, FirstLoop[Any]] = {
 
 
 def first_loop(linkage: Linkage) -> FirstLoop[Any]:
-    """What is known of the first loop of a linkage in closed form."""
+    """Closed forms of the first loop of a linkage."""
     return _LOOPS[linkage.mechanism.dyads[0].kind]
 
 

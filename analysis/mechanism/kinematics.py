@@ -1,9 +1,9 @@
-"""Velocities, accelerations and jerks of every link and of any point carried by one, in closed form."""
+"""Velocities, accelerations and jerks of all links and of any point on them, in closed form."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Turns, close, move, operands_of
+from grashof.analysis.mechanism.closing import Rotation, close, closed_at, move, operands_of, virtual_rates
+from grashof.analysis.mechanism.dyad import Solved
 from grashof.analysis.mechanism.mobility import driver_ranges
 from grashof.analysis.numerics.blockwise import in_blocks
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
@@ -52,8 +53,7 @@ class SlideMotion:
     Parameters
     ----------
     travel : ndarray, shape (...), length
-        Of the slider along its slide, from where O2 is nearest to it; or of the rod through its block: B
-        from A, along the rod.
+        Of the slider along its slide, from the foot of O2; or of the rod through its block, from A to B.
     velocity, acceleration, jerk : ndarray, shape (...), length over s to s^3
     """
 
@@ -72,8 +72,8 @@ class Turning(NamedTuple):
     jerk: FloatArray
 
 
-class _Of:
-    """One of the angles of a link as an attribute: theta2, omega3, ..."""
+class _AngleOf:
+    """An angle of a link, or one of its rates, as an attribute: theta2, omega3, ..."""
 
     def __init__(self, link: int, order: int) -> None:
         self.link, self.order = link, order
@@ -86,22 +86,22 @@ class _Of:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
-    """How every link turns, for each driver angle; NaN where the linkage cannot close.
+    """Angles and rates of all links at driver angles; NaN where the linkage cannot close.
 
-    At a dead position the rates of the links of its loop are infinite; NaN where even their sign is open,
-    as with a driver at rest, or of a second loop that hangs on the first.
+    At a dead position the rates of its loop are infinite; NaN where their sign is undetermined, as with a
+    driver at rest, or in a second loop that depends on the first.
 
     Parameters
     ----------
     linkage : Linkage
     turning : tuple of Turning
-        Of links 2, 3, ...: directions, velocities, accelerations and jerks. They have names, too: theta2 to
+        Of links 2, 3, ...: directions, velocities, accelerations and jerks, also as attributes: theta2 to
         theta6 (directions of O2->A, A->B, O4->B, C->E, D->E; all but theta2 in [-pi, pi]), omega2, alpha2,
-        jerk2 and so on. Of a slider theta is the direction across its slide, to its left.
+        jerk2 and so on. Theta of a slider is the direction across its slide, to its left.
     slides : tuple of SlideMotion or None
         One for each loop.
     margins : tuple of ndarray, shape (...)
-        Of each loop the sine of its transmission angle with the sign of the assembly; 0 in dead positions.
+        Sine of the transmission angle of each loop, with the sign of the assembly; 0 in dead positions.
     """
 
     linkage: Linkage
@@ -109,20 +109,20 @@ class Kinematics:
     slides: tuple[SlideMotion | None, ...]
     margins: tuple[FloatArray, ...]
 
-    theta2, omega2, alpha2, jerk2 = _Of(2, 0), _Of(2, 1), _Of(2, 2), _Of(2, 3)
-    theta3, omega3, alpha3, jerk3 = _Of(3, 0), _Of(3, 1), _Of(3, 2), _Of(3, 3)
-    theta4, omega4, alpha4, jerk4 = _Of(4, 0), _Of(4, 1), _Of(4, 2), _Of(4, 3)
-    theta5, omega5, alpha5, jerk5 = _Of(5, 0), _Of(5, 1), _Of(5, 2), _Of(5, 3)
-    theta6, omega6, alpha6, jerk6 = _Of(6, 0), _Of(6, 1), _Of(6, 2), _Of(6, 3)
+    theta2, omega2, alpha2, jerk2 = _AngleOf(2, 0), _AngleOf(2, 1), _AngleOf(2, 2), _AngleOf(2, 3)
+    theta3, omega3, alpha3, jerk3 = _AngleOf(3, 0), _AngleOf(3, 1), _AngleOf(3, 2), _AngleOf(3, 3)
+    theta4, omega4, alpha4, jerk4 = _AngleOf(4, 0), _AngleOf(4, 1), _AngleOf(4, 2), _AngleOf(4, 3)
+    theta5, omega5, alpha5, jerk5 = _AngleOf(5, 0), _AngleOf(5, 1), _AngleOf(5, 2), _AngleOf(5, 3)
+    theta6, omega6, alpha6, jerk6 = _AngleOf(6, 0), _AngleOf(6, 1), _AngleOf(6, 2), _AngleOf(6, 3)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Axes of the linkages and driver angles together."""
+        """Shape of the linkages broadcast with the driver angles."""
         return np.shape(self.theta3)
 
     @property
     def slide(self) -> SlideMotion | None:
-        """Of the first loop that has one; None of a linkage without a slide."""
+        """Motion of the first slide; None without one."""
         return next((slide for slide in self.slides if slide is not None), None)
 
     @property
@@ -156,14 +156,14 @@ class Kinematics:
         return self.point(self.linkage.mechanism.carries, self.linkage.coupler_point)
 
     def angular(self, link: int) -> Turning:
-        """Angle of a moving link, its velocity, acceleration and jerk."""
+        """Angle, velocity, acceleration and jerk of a moving link."""
         if not 2 <= link < 2 + len(self.turning):
             names = [f"{each.number} ({each.name})" for each in self.linkage.mechanism.links[1:]]
             raise wrong_value("link", link, f"{', '.join(names[:-1])} or {names[-1]}")
         return self.turning[link - 2]
 
     def frame_angle(self, link: int) -> FloatArray:
-        """Direction of the u-axis of a link's frame, shape (...), rad: of a slider along its slide."""
+        """Direction of the u-axis of a link's frame, shape (...), rad; for a slider along its slide."""
         theta = self.angular(link).theta
         return theta - np.pi / 2 if is_slider(self.linkage, link) else theta
 
@@ -173,20 +173,14 @@ class Kinematics:
         Parameters
         ----------
         link : int
-            1 (the ground, whose frame is the global one) to 4, of a six-bar to 6.
+            1 (the ground, with the global frame) to 4, of a six-bar to 6.
         at : array_like, shape (..., 2), length
-            (u, v) in the link's frame: origin O2, A, O4, C or D, u towards A, B, B, E or E, v to its
-            left. The frame of a slider begins in B or E, u along its slide; that of a block in O4, u along
-            theta4.
+            (u, v) in the link's frame: origin O2, A, O4, C or D, u towards A, B, B, E or E, v to the left.
+            A slider's frame has its origin in B or E, u along the slide; a block's in O4, u along theta4.
 
         Returns
         -------
         PointMotion
-
-        Notes
-        -----
-        r'' = alpha x r - omega^2 r, and so on, from the point that the frame starts in (Norton,
-        *Design of Machinery*, secs. 6.7 and 7.3).
 
         Examples
         --------
@@ -214,7 +208,7 @@ class Kinematics:
         return carried + self._carried(host, origin)
 
     def _begins(self, link: int) -> tuple[int, FloatArray]:
-        """The link that carries the origin of a link's frame, and where on it that is."""
+        """The link that carries the origin of a link's frame, and its coordinates there."""
         linkage = self.linkage
         if link == 2:
             return 1, linkage.o2
@@ -228,7 +222,7 @@ class Kinematics:
         return loop.dyad.hosts[1], getattr(linkage, loop.d)
 
     def origin(self, link: int) -> PointMotion:
-        """How the origin of a link's frame moves; of the ground O2."""
+        """Motion of the origin of a link's frame; of O2 for the ground."""
         return self.point(1, self.linkage.o2) if link == 1 else self.point(*self._begins(link))
 
     def _end(self, link: int) -> PointMotion:
@@ -251,14 +245,12 @@ def solve_kinematics(
     Parameters
     ----------
     linkage : Linkage
-        One, or a batch whose axes broadcast against the driver's (``batch[:, None]`` for all
-        linkages at all angles).
+        One, or a batch that broadcasts against the driver (``batch[:, None]``: all linkages at all angles).
     theta2, omega2, alpha2, jerk2 : array_like, shape (...), rad over s^0 to s^3
-        The driver; by default it turns steadily at 1 rad/s. `driver_motion` finds all four from a
-        function of time.
+        The driver; by default it turns steadily at 1 rad/s. See also `driver_motion`.
     assembly : array_like, shape (...), optional
-        +1 or -1; the linkage's own by default. Of a six-bar that of the first loop; the other one of the
-        second is that of ``linkage.changed(assembly_2=...)``.
+        +1 or -1, of the first loop; the linkage's own by default. For the second loop of a six-bar use
+        ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------
@@ -267,17 +259,17 @@ def solve_kinematics(
     Raises
     ------
     AssemblyError
-        A single linkage cannot close at the single angle asked for. (In arrays it is NaN there.)
+        A single linkage cannot close at the single angle given. (Arrays have NaN there.)
 
     Warns
     -----
     DeadPositionWarning
-        The transmission angle is 0 or 180 deg at an angle named, so that rates are infinite.
+        The transmission angle is 0 or 180 deg, so that rates are infinite.
 
     Notes
     -----
-    The equations of a loop, differentiated, are two linear ones for each derivative; their formulas are
-    in `grashof.analysis.mechanism.dyad` (Norton, *Design of Machinery*, secs. 6.7, 7.3).
+    The differentiated loop equations are two linear ones for each derivative; points on links follow from
+    r'' = alpha x r - omega^2 r, and so on (Norton, *Design of Machinery*, secs. 6.7, 7.3).
 
     Examples
     --------
@@ -290,43 +282,41 @@ def solve_kinematics(
     driver = [np.asarray(value, dtype=np.float64) for value in (theta2, omega2, alpha2, jerk2)]
     kind, operands = linkage.mechanism, operands_of(linkage, assembly)
     slides = [dyad.slides for dyad in kind.dyads]
-    solved = in_blocks(
-        _solution(kind, len(operands)), [*operands, *driver], 10 * len(slides) + 4 * sum(slides)
-    )
+    rows = 10 * len(slides) + 4 * sum(slides)
+    solved = in_blocks(_solution(kind, len(operands)), [*operands, *driver], rows)
     shape = solved.shape[1:]
     theta2, omega2, alpha2, jerk2 = (
         (value if value.shape == shape else np.broadcast_to(value, shape))[()] for value in driver
     )
-    turning, motions, margins, rows = [Turning(theta2, omega2, alpha2, jerk2)], [], [], iter(solved)
+    turning, motions, margins, row = [Turning(theta2, omega2, alpha2, jerk2)], [], [], iter(solved)
     for has_slide, dyad in zip(slides, kind.dyads, strict=True):
-        three, four = (Turning(*(next(rows)[()] for _ in range(4))) for _ in range(2))
-        dead = next(rows) > 0
-        margins.append(next(rows)[()])
+        three, four = (Turning(*(next(row)[()] for _ in range(4))) for _ in range(2))
+        dead = next(row) > 0
+        margins.append(next(row)[()])
         turning += [three, four]
-        motions.append(SlideMotion(*(next(rows)[()] for _ in range(4))) if has_slide else None)
+        motions.append(SlideMotion(*(next(row)[()] for _ in range(4))) if has_slide else None)
         if not shape and np.isnan(three.theta):
             given = linkage if assembly is None else linkage.changed(assembly=assembly)
-            raise AssemblyError(_cannot_close(given, float(theta2)))
+            open_at = f"the linkage cannot close at driver angle {np.degrees(theta2):.6g} deg"
+            ranges = np.degrees(driver_ranges(given))
+            ends = " and from ".join(f"{low:.6g} to {high:.6g}" for low, high in ranges if np.isfinite(low))
+            raise AssemblyError(open_at + (f"; it closes from {ends} deg" if ends else " or at any other"))
         if dead.any():
-            _warn_of(theta2, dead, _WHY_DEAD[len(motions) - 1][dyad.kind])
+            _warn_of_dead_positions(theta2, dead, _WHY_DEAD[len(motions), dyad.kind])
     return Kinematics(linkage, tuple(turning), tuple(motions), tuple(margins))
 
 
-_WHY_DEAD = (
-    {
-        DyadKind.RRR: "coupler and output lie in one line",
-        DyadKind.RRP: "the rod stands square to the slide",
-        DyadKind.RPR: "the block is at A",
-    },
-    {
-        DyadKind.RRR: "links 5 and 6 lie in one line",
-        DyadKind.RRP: "link 5 stands square to the slide",
-    },
-)
+_WHY_DEAD = {
+    (1, DyadKind.RRR): "coupler and output lie in one line",
+    (1, DyadKind.RRP): "the rod is square to the slide",
+    (1, DyadKind.RPR): "the block is at A",
+    (2, DyadKind.RRR): "links 5 and 6 lie in one line",
+    (2, DyadKind.RRP): "link 5 is square to the slide",
+}
 
 
 def _solution(kind: Mechanism, count: int) -> Callable[..., list[FloatArray]]:
-    """Of each loop: angles and rates of its links, 1 where dead, its margin; travel and rates of a slide."""
+    """For each loop: angles and rates of its links, 1 where dead, its margin; travel and rates of a slide."""
 
     def solve(*operands: FloatArray) -> list[FloatArray]:
         theta2, omega2, alpha2, jerk2 = operands[count:]
@@ -357,9 +347,9 @@ def _turned(
     cosine, sine = np.cos(theta), np.sin(theta)
     arm = x, y = u * cosine - v * sine, u * sine + v * cosine
     with np.errstate(invalid="ignore", over="ignore"):
-        arms = (x, y, *chain.from_iterable(Turns.of(omega, alpha, jerk).moved(arm)))
+        arms = (x, y, *chain.from_iterable(Rotation.of(omega, alpha, jerk).moved(arm)))
         dead = ~np.isfinite(jerk) & np.isfinite(theta)
-        if np.any(dead):  # the fastest growing terms alone, and nothing where there is no arm
+        if np.any(dead):  # the fastest growing terms alone, and zero without an arm
             leading = (-alpha * y, alpha * x, -jerk * y, jerk * x)
             fastest = [np.where(dead, *pair) for pair in zip(leading, arms[4:], strict=True)]
             return tuple(np.where((u == 0) & (v == 0), 0.0, arm) for arm in (*arms[:4], *fastest))
@@ -375,7 +365,7 @@ def is_slider(linkage: Linkage, link: int) -> bool:
     return link % 2 == 0 and link > 2 and linkage.mechanism.dyads[link // 2 - 2].kind is DyadKind.RRP
 
 
-def _warn_of(theta2: FloatArray, dead: BoolArray, why: str) -> None:
+def _warn_of_dead_positions(theta2: FloatArray, dead: BoolArray, why: str) -> None:
     angles = np.degrees(np.broadcast_to(theta2, dead.shape)[dead])
     named = ", ".join(f"{angle:.6g}" for angle in angles[:3]) + (", ..." if len(angles) > 3 else "")
     warnings.warn(
@@ -385,10 +375,25 @@ def _warn_of(theta2: FloatArray, dead: BoolArray, why: str) -> None:
     )
 
 
-def _cannot_close(linkage: Linkage, theta2: float) -> str:
-    ranges = driver_ranges(linkage)
-    open_at = f"the linkage cannot close at driver angle {np.degrees(theta2):.6g} deg"
-    ends = [f"{low:.6g} to {high:.6g}" for low, high in np.degrees(ranges) if np.isfinite(low)]
-    return (
-        f"{open_at}; it closes from {' and from '.join(ends)} deg" if ends else f"{open_at} or at any other"
-    )
+def virtual_motion(
+    linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
+) -> tuple[Kinematics, Kinematics]:
+    """Virtual velocities that stay finite in dead positions, and the same positions at rest.
+
+    The speed of the driver is the product of the sines of all transmission angles.
+    """
+    angle, (loops, _) = np.asarray(theta2, dtype=np.float64), closed_at(linkage, theta2, assembly)
+    margins = tuple(loop.closed.margin for loop in loops)
+    shape = np.shape(margins[-1])
+    none = np.zeros(shape)
+
+    def state(omega2: FloatArray, rates: Sequence[Solved]) -> Kinematics:
+        turning, slides = [Turning(np.broadcast_to(angle, shape)[()], omega2, none, none)], []
+        for loop, solved in zip(loops, rates, strict=True):
+            turns = solved.turn3, np.broadcast_to(solved.turn4, shape)[()]
+            turning += [Turning(*each, none, none) for each in zip(loop.closed.angles, turns, strict=True)]
+            has_slide = loop.dyad.row.slides
+            slides.append(SlideMotion(loop.travel, solved.travel, none, none) if has_slide else None)
+        return Kinematics(linkage, tuple(turning), tuple(slides), margins)
+
+    return state(*virtual_rates(loops)), state(none, [Solved(none, none, none)] * len(loops))

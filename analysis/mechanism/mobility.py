@@ -1,13 +1,15 @@
-"""How far a linkage can move: its class, rotatability, driver ranges, circuits and branches."""
+"""Mobility: Grashof class, rotatability, driver ranges, circuits and branches."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
+from grashof.analysis.mechanism.closing import closed_at, dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, GrashofClass, first_loop, first_ranges
-from grashof.analysis.mechanism.second_loop import branches, cut, lifted
+from grashof.analysis.mechanism.second_loop import branches, cut, recurring
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray
 
@@ -15,14 +17,14 @@ _OUTWARDS = np.concatenate([[0], 2.0 ** np.arange(14)]) * np.finfo(np.float64).e
 
 
 def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
-    """Grashof class of a single linkage, or what takes its place with a slide; of its first loop.
+    """Grashof class of the first loop of a single linkage, or its counterpart with a slide.
 
     Parameters
     ----------
     linkage : Linkage
     tolerance : float
-        s + l and p + q count as equal (change point) within this share of their sum; of a linkage with a
-        slide, its `rotatability` counts as zero.
+        Share of the lengths within which s + l equals p + q (change point), or with a slide the
+        `rotatability` is zero.
 
     Returns
     -------
@@ -30,10 +32,10 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
 
     Notes
     -----
-    With shortest s, longest l and the others p, q: s + l < p + q is Grashof, and the shortest
-    link names the kind (Grashof 1883; Norton, *Design of Machinery*, sec. 2.13). With a slide the driver
-    of a slider-crank turns fully and that of a slider-rocker swings; of an inverted one whose driver turns
-    fully the block swings (crank-shaper) or turns (Whitworth).
+    With shortest link s, longest l and the others p, q: s + l < p + q is Grashof, and the shortest link
+    decides the kind (Grashof 1883; Norton, *Design of Machinery*, sec. 2.13). The driver of a slider-crank
+    turns fully, that of a slider-rocker swings; the block of an inverted one whose driver turns fully swings
+    (crank-shaper) or turns (Whitworth).
 
     Examples
     --------
@@ -45,20 +47,14 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
 
 
 def triple_rocker_kind(linkage: Linkage) -> str:
-    """Barker's kind of a non-Grashof linkage, RRR1 to RRR4 by its longest link; '' for the others.
-
-    Notes
-    -----
-    Barker 1985, *A complete classification of planar four-bar linkages*: the number is that of the
-    longest link (ground, driver, coupler, output).
-    """
+    """Kind of a non-Grashof linkage (Barker 1985), RRR1 to RRR4 by its longest link; '' for the others."""
     if grashof_class(linkage) is not GrashofClass.NON_GRASHOF:
         return ""
     return f"RRR{int(np.argmax(linkage.lengths[:4])) + 1}"
 
 
 def rotatability(linkage: Linkage) -> FloatArray:
-    """The two differences whose signs decide how the driver turns, as shares of the lengths.
+    """The two differences whose signs decide how the driver of the first loop turns.
 
     Parameters
     ----------
@@ -67,12 +63,11 @@ def rotatability(linkage: Linkage) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., 2)
-        (r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4. Of a slider-crank
+        (r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4; of a slider-crank
         (r3 - r2 - offset) and (r3 - r2 + offset), of r2 + r3 + |offset|; of an inverted one 1 and
         (|r1 - r2| - |offset|), of r1 + r2 + |offset|. Both positive: the driver turns fully. Both
-        negative: it swings in two separate ranges. Otherwise it swings in one, through
-        theta1 + pi when the first is positive, through theta1 when the second is. Of a six-bar those of its
-        first loop.
+        negative: it swings in two ranges. Otherwise it swings in one, through theta1 + pi if the first is
+        positive, through theta1 if the second is.
 
     Notes
     -----
@@ -83,21 +78,18 @@ def rotatability(linkage: Linkage) -> FloatArray:
 
 
 def full_rotation(linkage: Linkage) -> BoolArray:
-    """Whether the driver turns fully without a dead position, shape (...).
-
-    A linkage with a change point does not: it has one there.
-    """
+    """Whether the driver turns fully without a dead position, shape (...): not at a change point."""
     turns: BoolArray = np.all(rotatability(linkage) > CHANGE, axis=-1)
     if len(linkage.mechanism.dyads) > 1:
         turns = np.array(turns)
         for index in np.argwhere(turns).tolist():
             single = linkage[tuple(index)]
-            turns[tuple(index)] = whole_turn(single) and not len(cut(single).touched)
+            turns[tuple(index)] = closes_everywhere(single) and not len(cut(single).touched)
     return turns[()]
 
 
-def whole_turn(linkage: Linkage) -> bool:
-    """Whether a single linkage closes at every driver angle, also where it has change points on the way."""
+def closes_everywhere(linkage: Linkage) -> bool:
+    """Whether a single linkage closes at every driver angle, change points included."""
     if len(linkage.mechanism.dyads) == 1:
         return bool((rotatability(linkage) >= 0).all())
     ranges = cut(linkage).ranges
@@ -107,8 +99,7 @@ def whole_turn(linkage: Linkage) -> bool:
 def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     """Whether a motion of the driver takes a single linkage to a change point, where all joints are in line.
 
-    A parallelogram can leave one as an antiparallelogram, which no driver decides: a dead position like
-    others.
+    There a parallelogram may become an antiparallelogram whatever the driver does: a dead position.
     """
     stretched, folded = np.abs(rotatability(linkage)) <= CHANGE
     low, high = (np.array(sorted((start, end))) - linkage.theta1) / np.pi
@@ -116,7 +107,7 @@ def passes_change_point(linkage: Linkage, start: float, end: float) -> bool:
     first = (folded and (passed % 2 == 0).any()) or (stretched and (passed % 2 == 1).any())
     if len(linkage.mechanism.dyads) == 1:
         return bool(first)
-    return bool(first) or len(lifted(cut(linkage).touched, min(start, end), max(start, end))) > 0
+    return bool(first) or len(recurring(cut(linkage).touched, min(start, end), max(start, end))) > 0
 
 
 def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
@@ -126,23 +117,21 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     ----------
     linkage : Linkage
     transmission : float, rad
-        Only angles at which min(mu, pi - mu) of all loops is at least this; below pi / 2.
+        Least min(mu, pi - mu) of all loops; below pi / 2.
 
     Returns
     -------
     ndarray, shape (..., K, 2), rad
-        Ranges [low, high] of theta2, NaN for those that do not exist: up to two of one loop (K = 2), of a
-        six-bar on its own assembly as many as any of the batch has, at least two. A driver that
-        turns fully has one range of a whole turn. The middle of each lies within half a turn.
+        Ranges [low, high] of theta2, padded with NaN; the middle of each lies within half a turn. K = 2 for
+        one loop; for a six-bar, on its own assembly, at least 2. A driver that turns fully has one range of
+        a full turn.
 
     Notes
     -----
-    With phi = theta2 - theta1, counted across the slide of a slider-crank, the loop closes where
-    sin^2(phi/2) + a >= 0 and cos^2(phi/2) + b >= 0. Of a four-bar cos(phi) runs between
-    (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh, sec. 2.2.2); with a limit of the transmission
-    angle mu the diagonal A-O4 takes the place of r3 +- r4 at which it is met.
-    The second loop of a six-bar cuts these ranges where the width of its gap meets its limits, which is
-    searched for by dense samples, refined.
+    Of a four-bar cos(theta2 - theta1) runs between (r1^2 + r2^2 - (r3 +- r4)^2) / (2 r1 r2) (McCarthy & Soh,
+    sec. 2.2.2); with a limit of the transmission angle, the diagonal A-O4 at which mu meets it replaces r3 +-
+    r4. The second loop of a six-bar cuts these ranges where the width of its gap meets its limits, found by
+    dense samples and halving.
 
     Examples
     --------
@@ -161,8 +150,16 @@ def driver_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     return ranges
 
 
+def one_by_one(function: Callable[..., float], linkage: Linkage, *angles: npt.ArrayLike) -> FloatArray:
+    """Values of a function of a single linkage and driver angles, broadcast over a batch; shape (...)."""
+    members = [linkage[index] if index else linkage for index in np.ndindex(linkage.shape)]
+    every = np.broadcast(np.arange(len(members)).reshape(linkage.shape), *map(np.asarray, angles))
+    values = [function(members[number], *map(float, at)) for number, *at in every]
+    return np.array(values, dtype=np.float64).reshape(every.shape)
+
+
 def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
-    """Ends of a driver's range, put outwards by so much of their rounding that they are dead positions.
+    """Ends of a driver's range, moved outwards within their rounding until they are dead positions.
 
     Parameters
     ----------
@@ -174,25 +171,21 @@ def dead_ends(linkage: Linkage, low: float, high: float) -> tuple[float, float]:
     Returns
     -------
     low, high : float, rad
-        `solve_position` has a transmission angle of 0 or 180 deg there. As they are where that cannot be.
-
-    Notes
-    -----
-    The links move with the root of the driver angle: an end that is a rounding of 1e-16 inside is
-    1e-8 off the dead position.
+        There `solve_position` has a transmission angle of 0 or 180 deg; unchanged where that cannot be.
+        (Links move with the root of the driver angle: an end 1e-16 inside is 1e-8 off the dead position.)
     """
     scale = max(abs(low), abs(high), 1.0)
     places = np.array([[low], [high]]) + np.array([[-scale], [scale]]) * _OUTWARDS
-    loops, _ = close(linkage.mechanism, operands_of(linkage), places)
+    loops, _ = closed_at(linkage, places)
     dead = np.any([loop.closed.margin == 0 for loop in loops], axis=0)
     first = np.where(dead.any(axis=1), dead.argmax(axis=1), 0)
     return float(places[0, first[0]]), float(places[1, first[1]])
 
 
 def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) -> tuple[IntArray, FloatArray]:
-    """The driver range that each angle lies in, and the angle (rad) inside it; -1 and NaN outside all.
+    """Index of the driver range of each angle, and the angle (rad) moved into it; -1 and NaN outside all.
 
-    Moved by whole turns into it; an angle within `slack` (rad) of an end is inside.
+    An angle within `slack` (rad) of an end is inside.
     """
     return _within(driver_ranges(linkage), np.asarray(theta2, dtype=np.float64), slack)
 
@@ -200,7 +193,7 @@ def range_index(linkage: Linkage, theta2: npt.ArrayLike, slack: float = 1e-9) ->
 def _within(
     ranges: FloatArray, angle: FloatArray, slack: float = 1e-9, allowed: BoolArray | None = None
 ) -> tuple[IntArray, FloatArray]:
-    """The first range that each angle lies in, of those that are allowed to it, shape (K, ...)."""
+    """The first range that each angle lies in, of those that `allowed`, shape (K, ...), admits."""
     shape = angle.shape if allowed is None else allowed.shape[1:]
     index, inside = np.full(shape, -1, dtype=np.int64), np.full(shape, np.nan)
     for number, (low, high) in enumerate(ranges):
@@ -220,7 +213,7 @@ def circuit_index(
     assembly: npt.ArrayLike,
     assembly_2: npt.ArrayLike | None = None,
 ) -> IntArray:
-    """Circuit that each position lies on: positions on different ones cannot be joined by motion.
+    """Circuit of each position: no motion joins positions on different circuits.
 
     Parameters
     ----------
@@ -239,11 +232,10 @@ def circuit_index(
 
     Notes
     -----
-    With a driver that turns fully each assembly is a circuit. Otherwise each range of the driver
-    is one, its two assemblies meeting in the dead positions at its ends (Chase & Mirth 1993). Of a six-bar
-    ranges are joined through the dead positions of the first loop, and the assemblies of the second loop
-    through its own.
-    At a change point the circuits meet; they are distinguished as on the nearest Grashof linkage.
+    If the driver turns fully each assembly is a circuit; otherwise each range of the driver is one, whose two
+    assemblies meet in the dead positions at its ends (Chase & Mirth 1993). In a six-bar, dead positions of
+    the first loop join ranges, and those of the second loop its assemblies. Circuits that meet at a change
+    point are distinguished as on the nearest Grashof linkage.
 
     Examples
     --------
@@ -257,7 +249,7 @@ def circuit_index(
         known = branches(linkage).circuits
         return np.where(index < 0, -1, known[index, side] if len(known) else -1)
     index, _ = range_index(linkage, theta2)
-    if whole_turn(linkage):
+    if closes_everywhere(linkage):
         return np.where(index < 0, -1, np.where(np.asarray(assembly) > 0, 0, 1))
     return np.broadcast_to(index, np.broadcast_shapes(np.shape(index), np.shape(assembly)))
 
@@ -268,7 +260,7 @@ def branch_index(
     assembly: npt.ArrayLike,
     assembly_2: npt.ArrayLike | None = None,
 ) -> IntArray:
-    """Branch that each position lies on: between different ones of a circuit lies a dead position.
+    """Branch of each position: a dead position lies between different branches of a circuit.
 
     Parameters and shapes as for `circuit_index`.
 
@@ -291,7 +283,7 @@ def _branch_of(
     assembly: npt.ArrayLike,
     assembly_2: npt.ArrayLike | None,
 ) -> tuple[IntArray, IntArray]:
-    """Which of the `branches` of a six-bar each position lies on, and whether its second assembly is -1."""
+    """Index in `branches` of each position of a six-bar, and 1 where its second assembly is -1."""
     second = dyad_of(linkage, 2).sign if assembly_2 is None else assembly_2
     found = branches(linkage)
     angle, first, second = np.broadcast_arrays(np.asarray(theta2, dtype=np.float64), assembly, second)

@@ -9,35 +9,35 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Frame, Loop, close, operands_of, place
+from grashof.analysis.mechanism.closing import Frame, Loop, closed_at, coupler_point
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 
 
-def _found(formula: Callable[[Position], FloatArray]) -> cached_property[FloatArray]:
-    """What follows from a position, as an attribute."""
+def _derived(formula: Callable[[Position], FloatArray]) -> cached_property[FloatArray]:
+    """An attribute that follows from a position."""
     return cached_property(formula)
 
 
 @dataclass(frozen=True, eq=False)
 class Position:
-    """Where a linkage stands, for each driver angle; NaN where it cannot close.
+    """Positions of a linkage at driver angles; NaN where it cannot close.
 
     Parameters
     ----------
     linkage : Linkage
     theta2 : ndarray, shape (...), rad
     loops : tuple of Loop
-        Closed, dyad after dyad.
+        Closed dyads.
     frames : dict of int to Frame
-        Of the links that carry something.
+        Frames of the links that carry joints or P.
 
     Notes
     -----
-    All else follows: theta3 to theta6 (rad, in [-pi, pi]; of a slider the direction across its slide, to its
-    left), the points a, b, p, of a six-bar c, d, e (shape (..., 2), length; B of an inverted slider-crank is
-    the foot of O4 on the rod), `margins` and `travel`.
+    Further attributes: theta3 to theta6 (rad, in [-pi, pi]; of a slider the direction across its slide, to
+    its left), the points a, b, p, of a six-bar c, d, e (shape (..., 2), length; B of an inverted slider-crank
+    is the foot of O4 on the rod), `margins` and `travel`.
     """
 
     linkage: Linkage
@@ -55,19 +55,18 @@ class Position:
 
     @cached_property
     def margins(self) -> tuple[FloatArray, ...]:
-        """Of each loop the sine of its transmission angle with the sign of the assembly, shape (...)."""
+        """Sine of the transmission angle of each loop, with the sign of the assembly, shape (...)."""
         return tuple(loop.closed.margin for loop in self.loops)
 
     @cached_property
     def travel(self) -> FloatArray:
-        """Of the first slide, as `SlideMotion` has it, also in dead positions; NaN without a slide."""
+        """Travel of the first slide as in `SlideMotion`; NaN without one."""
         return next((loop for loop in self.loops if loop.dyad.row.slides), self.loops[0]).travel
 
     @cached_property
     def p(self) -> FloatArray:
         """The coupler point."""
-        at = self.linkage.coupler_point
-        return self._global(place(self.frames, self.linkage.mechanism.carries, (at[..., 0], at[..., 1]))[:2])
+        return self._global(coupler_point(self.linkage, self.frames)[:2])
 
     def point(self, name: str) -> FloatArray:
         """A point of the linkage by its name, shape (..., 2)."""
@@ -80,40 +79,35 @@ class Position:
         o2 = self.linkage.o2
         return np.stack(np.broadcast_arrays(o2[..., 0] + at[0], o2[..., 1] + at[1]), axis=-1)
 
-    theta3 = _found(lambda self: self.angles[3])
-    theta4 = _found(lambda self: self.angles[4])
-    theta5 = _found(lambda self: self.angles[5])
-    theta6 = _found(lambda self: self.angles[6])
-    a = _found(lambda self: self._global(self.loops[0].c[:2]))
-    b = _found(lambda self: self._global(self.loops[0].e))
-    c = _found(lambda self: self._global(self.loops[1].c[:2]))
-    d = _found(lambda self: self._global(self.loops[1].d[:2]))
-    e = _found(lambda self: self._global(self.loops[1].e))
+    theta3 = _derived(lambda self: self.angles[3])
+    theta4 = _derived(lambda self: self.angles[4])
+    theta5 = _derived(lambda self: self.angles[5])
+    theta6 = _derived(lambda self: self.angles[6])
+    a = _derived(lambda self: self._global(self.loops[0].c[:2]))
+    b = _derived(lambda self: self._global(self.loops[0].e))
+    c = _derived(lambda self: self._global(self.loops[1].c[:2]))
+    d = _derived(lambda self: self._global(self.loops[1].d[:2]))
+    e = _derived(lambda self: self._global(self.loops[1].e))
 
 
 def solve_position(
     linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
 ) -> Position:
-    """Position of every link for given driver angles.
+    """Positions of all links at driver angles.
 
     Parameters
     ----------
     linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2` (``batch[:, None]`` for all
-        linkages at all angles).
+        One, or a batch that broadcasts against `theta2` (``batch[:, None]``: all linkages at all angles).
     theta2 : array_like, shape (...), rad
         Driver angle, global.
     assembly : array_like, shape (...), optional
-        +1 or -1; the linkage's own by default. Of a six-bar that of the first loop; the other one of the
-        second is that of ``linkage.changed(assembly_2=...)``.
+        +1 or -1, of the first loop; the linkage's own by default. For the second loop of a six-bar use
+        ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------
     Position
-
-    Notes
-    -----
-    How a loop closes is in `grashof.analysis.mechanism.dyad`, a class for each kind of dyad.
 
     Examples
     --------
@@ -123,12 +117,11 @@ def solve_position(
     >>> np.degrees([state.theta3, state.theta4]).round(6).tolist()
     [20.297883, 57.32488]
     """
+    loops, frames = closed_at(linkage, theta2, assembly)
     angle = np.asarray(theta2, dtype=np.float64)
-    loops, frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
-    theta2 = np.broadcast_to(angle, np.shape(loops[-1].closed.margin))
-    return Position(linkage, theta2, tuple(loops), frames)
+    return Position(linkage, np.broadcast_to(angle, np.shape(loops[-1].closed.margin)), tuple(loops), frames)
 
 
 def places(linkage: Linkage, state: Position) -> dict[str, FloatArray]:
-    """Where the points of a linkage are in some of its positions, each of shape (..., 2), by their names."""
+    """Points of a linkage in positions of it, each of shape (..., 2), by name."""
     return {name: state.point(name) for name in linkage.mechanism.points}

@@ -1,4 +1,4 @@
-"""Where the second loop of a linkage closes while the first one moves, and the extremes of its gap."""
+"""Driver ranges of six-bars: where the second loop closes, its dead positions, the extremes of its gap."""
 
 from __future__ import annotations
 
@@ -10,25 +10,24 @@ import numpy as np
 
 from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
-from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panelled
+from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panel_edges
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _PANELS = 480
-_TOGETHER = 1e-7  # share of the lengths: what rounding of a first loop's dead position leaves of the width
-SAME = 1e-9  # rad: so far apart two counts of one dead position may be
+_TOGETHER = 1e-7  # share of the lengths: error of the width where rounding misses a dead first loop
+SAME = 1e-9  # rad: greatest difference of two values of one dead position
 
 Curve = Callable[[FloatArray], FloatArray]
 
 
 class Cut(NamedTuple):
-    """What the second loop leaves of the ranges of the first, on the linkage's own assembly.
+    """Ranges in which both loops close, on the linkage's own assembly.
 
-    The ranges, shape (K, 2), rad; which of the two loops is dead at each end, shape (K, 2, 2); driver angles
-    at which the width of the second loop's gap has an extreme, also where it is open; and those at which it
-    has a change point: it comes to a dead position there and is closed on either side. Without a limit of
-    the transmission angle alone ends are dead positions.
+    The ranges, shape (K, 2), rad; which of the two loops is dead at each end, shape (K, 2, 2), meaningful
+    without a limit of the transmission angle; driver angles at which the width of the second loop's gap has
+    an extreme, closed or open; and its change points: dead positions with the loop closed on either side.
     """
 
     ranges: FloatArray
@@ -41,9 +40,9 @@ _NOTHING = Cut(np.empty((0, 2)), np.empty((0, 2, 2), dtype=bool), np.empty(0), n
 
 
 class Branches(NamedTuple):
-    """All ranges of both assemblies of the first loop, shape (N, 2), rad, and the sign of each, shape (N,).
+    """Ranges of both assemblies of the first loop, (N, 2), rad; the sign of each, (N,); its circuits, (N, 2).
 
-    The circuit that each lies on with `assembly_2` = +1 and -1, shape (N, 2).
+    A range has one circuit with `assembly_2` = +1 and one with -1.
     """
 
     ranges: FloatArray
@@ -59,30 +58,28 @@ def width(linkage: Linkage) -> Curve:
 
 @lru_cache(maxsize=256)
 def cut(linkage: Linkage, transmission: float = 0.0) -> Cut:
-    """What the second loop of a single linkage leaves of the ranges of the first.
+    """The ranges of a single linkage in which both loops close.
 
-    Its gap is sampled over an even motion of the first loop and each extreme refined, so that between two
-    such places it meets a limit at most once; where it does is halved down to rounding.
+    The gap is sampled over an even motion of the first loop with all its extremes among the samples, so that
+    it meets a limit at most once between neighbours; halving then finds the place to rounding.
     """
-    limits = dyad_of(linkage, 2).limits(float(np.cos(transmission)))
-    least, most = map(float, limits)
-    size = float(linkage.lengths.sum())
+    least, most = map(float, dyad_of(linkage, 2).limits(float(np.cos(transmission))))
     parts = [
-        _part(linkage, low, high, (least, most), size)
+        _part(linkage, low, high, (least, most))
         for low, high in first_ranges(linkage, transmission).tolist()
         if np.isfinite(low)
     ]
     return Cut(*map(np.concatenate, zip(_NOTHING, *parts, strict=True)))
 
 
-def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float], size: float) -> Cut:
-    """Of one range of the first loop."""
-    curve, motion = width(linkage), first_motion(linkage, low, high)
-    whole = high - low > TURN - CHANGE
-    share, extremes = _samples(curve, motion, whole)
+def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]) -> Cut:
+    """The part of `cut` within one range of the first loop."""
+    size, curve, motion = float(linkage.lengths.sum()), width(linkage), first_motion(linkage, low, high)
+    full_turn = high - low > TURN - CHANGE
+    share, extremes = _samples(curve, motion, full_turn)
 
     def missed(theta2: FloatArray) -> FloatArray:
-        """How far the loop is from closing; below 0 where it closes."""
+        """Distance of the width from closing; below 0 where the loop closes."""
         at = curve(theta2)
         return np.maximum(limits[0] - at, at - limits[1])
 
@@ -90,16 +87,16 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         return _NOTHING
     theta2, stationary, touching = motion.theta2(share), motion.theta2(extremes), CHANGE * size
     missing = missed(theta2)
-    if whole:
+    if full_turn:
         seam = int(missing.argmax())
         if missing[seam] <= touching:
             never = np.zeros((1, 2, 2), dtype=bool)
             return Cut(np.array([[low, high]]), never, stationary, theta2[missing >= -touching])
-        # It begins where it is open.
+        # Begin where the loop is open.
         theta2 = motion.theta2(np.concatenate([share[seam:], share[: seam + 1] + 1]))
         missing = np.concatenate([missing[seam:], missing[: seam + 1]])
     closed, together = missing <= 0, [False, False]
-    if not whole and len(theta2) > 1:  # what rounding leaves of both loops dead together
+    if not full_turn and len(theta2) > 1:  # both loops dead together, but for rounding
         for end, beside in ((0, 1), (-1, -2)):
             together[end] = bool(abs(missing[end]) <= _TOGETHER * size)
             closed[end] = closed[beside] if together[end] else closed[end]
@@ -107,12 +104,12 @@ def _part(linkage: Linkage, low: float, high: float, limits: tuple[float, float]
         if missing[first:last].max() <= touching:
             closed[first:last] = True
     inner = closed[:-2] & closed[1:-1] & closed[2:] & (missing[1:-1] >= -touching)
-    return Cut(*_ranges(missed, theta2, closed, whole, together), stationary, theta2[1:-1][inner])
+    return Cut(*_ranges(missed, theta2, closed, full_turn, together), stationary, theta2[1:-1][inner])
 
 
-def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray, FloatArray]:
-    """Shares of a motion of the first loop, with all extremes of a curve among them, and these alone."""
-    share = panelled(_PANELS, motion.share(motion.ground_line()))
+def _samples(curve: Curve, motion: FirstMotion, full_turn: bool) -> tuple[FloatArray, FloatArray]:
+    """Shares of a motion of the first loop that include all extremes of a curve, and the extremes."""
+    share = panel_edges(_PANELS, motion.share(motion.ground_line()))
 
     def height(at: FloatArray) -> FloatArray:
         """The width times its size, which is smooth also where it vanishes."""
@@ -120,29 +117,29 @@ def _samples(curve: Curve, motion: FirstMotion, whole: bool) -> tuple[FloatArray
         return np.asarray(values * np.abs(values))
 
     finite = np.isfinite(height(share))
-    return with_extremes(height, share[finite], periodic=whole)
+    return with_extremes(height, share[finite], periodic=full_turn)
 
 
 def _open_runs(closed: BoolArray) -> list[tuple[int, int]]:
-    """First and beyond the last of all samples between two closed ones."""
+    """Begin and end (exclusive) of each run of open samples between closed ones."""
     change = np.flatnonzero(closed[1:] != closed[:-1]) + 1
     change = change[1:] if len(change) and closed[change[0]] else change
     return list(zip(change[:-1:2].tolist(), change[1::2].tolist(), strict=True))
 
 
 def _ranges(
-    missed: Curve, theta2: FloatArray, closed: BoolArray, whole: bool, together: list[bool]
+    missed: Curve, theta2: FloatArray, closed: BoolArray, full_turn: bool, together: list[bool]
 ) -> tuple[FloatArray, BoolArray]:
-    """Ranges of the driver, and which loops are dead at their ends."""
+    """Ranges of the driver, and the loops that are dead at their ends."""
     change = np.flatnonzero(closed[1:] != closed[:-1])
     inside = np.where(closed[change], theta2[change], theta2[change + 1])
     outside = np.where(closed[change], theta2[change + 1], theta2[change])
     ends = last_where(lambda angle: missed(angle) <= 0, inside, outside).tolist()
     dead = [(False, True)] * len(ends)
     if closed[0]:
-        ends, dead = [float(theta2[0]), *ends], [(not whole, together[0]), *dead]
+        ends, dead = [float(theta2[0]), *ends], [(not full_turn, together[0]), *dead]
     if closed[-1]:
-        ends, dead = [*ends, float(theta2[-1])], [*dead, (not whole, together[1])]
+        ends, dead = [*ends, float(theta2[-1])], [*dead, (not full_turn, together[1])]
     ranges = np.array(ends).reshape(-1, 2)
     turns = np.round(ranges.mean(axis=-1, keepdims=True) / TURN)
     return ranges - TURN * turns, np.array(dead, dtype=bool).reshape(-1, 2, 2)
@@ -150,10 +147,10 @@ def _ranges(
 
 @lru_cache(maxsize=64)
 def branches(linkage: Linkage) -> Branches:
-    """All ranges of a single linkage, and the circuits that they lie on with either assembly of both loops.
+    """All ranges of a single linkage with their circuits, for either assembly of both loops.
 
-    Two ranges are joined where they end in one dead position of the first loop, and both assemblies of the
-    second loop where a range ends in one of its own.
+    A dead position of the first loop joins the ranges that end in it; one of the second loop joins both of
+    its assemblies.
     """
     cuts = [cut(linkage.changed(assembly=sign)) for sign in (1, -1)]
     ranges, dead = (np.concatenate([getattr(found, name) for found in cuts]) for name in ("ranges", "dead"))
@@ -175,8 +172,8 @@ def branches(linkage: Linkage) -> Branches:
     return Branches(ranges, assembly, np.unique(circuits, return_inverse=True)[1].reshape(-1, 2))
 
 
-def lifted(angles: FloatArray, low: float, high: float) -> FloatArray:
-    """All counts of some angles between two driver angles, ascending."""
+def recurring(angles: FloatArray, low: float, high: float) -> FloatArray:
+    """Angles, repeated by full turns, that lie between two driver angles; ascending."""
     counts = np.arange(np.floor((low - TURN) / TURN), np.ceil((high + TURN) / TURN) + 1)
     every = np.sort((angles % TURN + TURN * counts[:, None]).ravel())
     return every[(every >= low) & (every <= high)]

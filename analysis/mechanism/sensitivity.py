@@ -1,11 +1,11 @@
-"""How places and angles depend on the dimensions of a linkage, at held driver angles."""
+"""Derivatives of positions and angles by the dimensions of a linkage, at fixed driver angles."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Loop, Place, close, operands_of, place
+from grashof.analysis.mechanism.closing import LinkPoint, Loop, closed_at, coupler_point
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
@@ -13,7 +13,7 @@ from grashof.problems.values.linkages.mechanism import LoopNames
 
 
 def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None) -> FloatArray:
-    """Derivatives of the coupler's position by the dimensions, at held driver angles.
+    """Derivatives of the coupler's position by the dimensions, at fixed driver angles.
 
     Parameters
     ----------
@@ -28,12 +28,8 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     -------
     ndarray, shape (..., 3, D), length/length and rad/length
         Rows: x and y of P, the angle of the link that carries it. Columns: the dimensions of the mechanism,
-        of a four-bar r1, r2, r3, r4, u, v. NaN where the linkage cannot close, without bound towards a dead
+        of a four-bar r1, r2, r3, r4, u, v. NaN where the linkage cannot close, unbounded near a dead
         position.
-
-    Notes
-    -----
-    The varied equations of each loop give the turns of its links: J dq = dw less what its lengths change.
 
     Examples
     --------
@@ -45,8 +41,7 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
     [0.0, 1.0, 0.5]
     """
     varied = _Varied(linkage, theta2, assembly)
-    carries = linkage.mechanism.carries
-    at = place(varied.frames, carries, (linkage.coupler_point[..., 0], linkage.coupler_point[..., 1]))
+    carries, at = linkage.mechanism.carries, coupler_point(linkage, varied.frames)
     turn = varied.turns[carries]
     moved = varied.add(varied.moved(at, carries), varied.along(carries, "u", "v"))
     return np.moveaxis(np.stack([moved.real, moved.imag, turn]), (0, 1), (-2, -1))
@@ -58,14 +53,17 @@ def turn_sensitivity(linkage: Linkage, theta2: npt.ArrayLike, link: int) -> Floa
 
 
 class _Varied:
-    """A linkage in some positions, and what each dimension turns and moves; arrays of shape (D, ...)."""
+    """Turns and displacements of the links by each dimension, in some positions; arrays of shape (D, ...).
+
+    The varied equations of each loop give the turns: J dq = dw less the derivatives of the gap by its
+    lengths.
+    """
 
     def __init__(
         self, linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike | None = None
     ) -> None:
         self.linkage, self.names = linkage, linkage.mechanism.dimensions
-        angle = np.asarray(theta2, dtype=np.float64)
-        loops, self.frames = close(linkage.mechanism, operands_of(linkage, assembly), angle)
+        loops, self.frames = closed_at(linkage, theta2, assembly)
         shape = np.shape(loops[-1].closed.margin)
         self.turns: dict[int, FloatArray] = {2: np.zeros((len(self.names), *shape))}
         self.origins: dict[int, ComplexArray] = {2: np.zeros((len(self.names), *shape), dtype=complex)}
@@ -73,21 +71,21 @@ class _Varied:
             self._vary(names, loop)
 
     def add(self, moved: ComplexArray, by: dict[str, ComplexArray]) -> ComplexArray:
-        """What some dimensions move besides, added in place."""
+        """Add further displacements by some dimensions, in place."""
         for name, value in by.items():
             moved[self.names.index(name)] += value
         return moved
 
     def along(self, link: int, *names: str) -> dict[str, ComplexArray]:
-        """How a point of a link moves with its places along and across the link."""
+        """Displacements of a point of a link by its coordinates along and across the link."""
         unit = np.ones((), dtype=complex) if link == 1 else _complex(self.frames[link][:2])
         return dict(zip(names, (unit, np.asarray(1j * unit)), strict=False))
 
-    def moved(self, at: Place, link: int) -> ComplexArray:
-        """How a point moves with the link that carries it; one of the ground does not."""
+    def moved(self, at: LinkPoint, link: int) -> ComplexArray:
+        """Displacements of a point with the link that carries it; zero on the ground."""
         if link == 1:
             return np.zeros(self.origins[2].shape, dtype=complex)
-        _, arm = at.way[-1]
+        _, arm = at.arms[-1]
         carried: ComplexArray = 1j * _complex(arm) * self.turns[link]
         return self.origins[link] + carried
 
@@ -109,7 +107,7 @@ class _Varied:
             self.origins[second] = self.add(c + carried, {names.bars[0]: e3})
 
     def _own(self, names: LoopNames) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
-        """How C and D move with their places on their links."""
+        """Displacements of C and D by their coordinates on their links."""
         (on_c, on_d), far = names.dyad.hosts, dict[str, ComplexArray]()
         if names.links[0] == 3:
             far = {"r1": np.exp(1j * self.linkage.theta1)} if names.pinned else far

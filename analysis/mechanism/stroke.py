@@ -1,4 +1,4 @@
-"""Strokes: limit positions, swing and time ratio, of link 4 in closed form, of any link by its velocity."""
+"""Strokes: limit positions, swing and time ratio of link 4 in closed form, of any link by its velocity."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import counted_on, motion_between
+from grashof.analysis.mechanism.extremes import motion_between, unwrapped
 from grashof.analysis.mechanism.first_loop import first_loop
-from grashof.analysis.mechanism.kinematics import is_slider
+from grashof.analysis.mechanism.kinematics import is_slider, virtual_motion
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.virtual_motion import virtual_motion
 from grashof.analysis.numerics.peaks import last_where, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
@@ -27,8 +26,8 @@ class OutputStroke:
     Parameters
     ----------
     theta2 : ndarray, shape (..., 2), rad
-        Driver angle in [0, 2 pi) with the links 2 and 3 stretched, and with them folded; NaN where
-        there is no such position, as for an output that turns fully.
+        Driver angle in [0, 2 pi) with links 2 and 3 stretched, and folded; NaN where there is no such
+        position, as for an output that turns fully.
     theta4 : ndarray, shape (..., 2), rad
         Output angle there, the second within half a turn of the first.
     b : ndarray, shape (..., 2, 2), length
@@ -36,8 +35,7 @@ class OutputStroke:
     swing : ndarray, shape (...), rad
         Angle between the two.
     time_ratio : ndarray, shape (...)
-        Time of the slow stroke over that of the quick one, with a steady driver; NaN where the
-        driver does not turn fully.
+        Time of the slow stroke over that of the quick one; NaN if the driver does not turn fully.
     """
 
     theta2: FloatArray
@@ -66,9 +64,8 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
 
     Notes
     -----
-    Triangles O2-B-O4 with the side O2B = r2 + r3 or |r2 - r3| (Norton, *Design of Machinery*,
-    secs. 3.2, 3.4). The toggle positions of the driver, with links 3 and 4 in one line, are the
-    ends of `driver_ranges`.
+    Triangles O2-B-O4 with the side O2B = r2 + r3 or |r2 - r3| (Norton, *Design of Machinery*, secs. 3.2,
+    3.4). The dead positions of the driver, with links 3 and 4 in line, are the ends of `driver_ranges`.
 
     Examples
     --------
@@ -97,19 +94,19 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkStroke:
-    """How a link goes to and fro while the driver moves on.
+    """Limit positions and stroke of a link.
 
     Parameters
     ----------
     theta2 : ndarray, shape (N,), rad
         Driver angles at which the link turns back, ascending.
     value : ndarray, shape (N,), rad or length
-        Its direction there, counted on from the beginning of the motion; of a slider its travel.
+        Its direction there, unwrapped from the start of the motion; of a slider its travel.
     stroke : float, rad or length
         Greatest less least value over the motion, its ends included; NaN for a link that turns fully.
     time_ratio : float
-        Time of the slow stroke over that of the quick one, with a steady driver; NaN where the driver does
-        not turn fully or the link does not turn back twice.
+        Time of the slow stroke over that of the quick one; NaN if the driver does not turn fully or the link
+        does not turn back twice.
     """
 
     theta2: FloatArray
@@ -130,7 +127,7 @@ def link_stroke(
     link : int, optional
         The last one by default: the output of a six-bar.
     start, end : float, rad, optional
-        Driver angles; by default the whole turn, or the first of `driver_ranges`.
+        Driver angles; by default a full turn, or the first of `driver_ranges`.
 
     Returns
     -------
@@ -143,8 +140,8 @@ def link_stroke(
 
     Notes
     -----
-    The velocity, times the sines of the transmission angles, is sampled densely with all its extremes among
-    the samples, so that no two limit positions are missed between two of them.
+    The velocity times the sines of the transmission angles is sampled with all its extremes, so that at most
+    one limit position lies between two samples.
 
     Examples
     --------
@@ -170,9 +167,9 @@ def link_stroke(
     share, _ = with_extremes(lambda at: moving(motion.theta2(at))[1], motion.edges(_PANELS), periodic=turns)
     theta2 = motion.theta2(np.append(share, share[0] + 1) if turns else share)
     raw, velocity = moving(theta2)
-    value = counted_on(theta2, raw, None if slides else TURN)
+    value = unwrapped(theta2, raw, None if slides else TURN)
     rises = velocity > 0
-    if not turns:  # of a dead position of another loop the sine vanishes, too
+    if not turns:  # the sine vanishes in a dead position of another loop, too
         rises[0], rises[-1] = rises[1], rises[-2]
     back = np.flatnonzero(rises[1:] != rises[:-1])
     first = rises[back]

@@ -1,4 +1,4 @@
-"""Transmission angle: at a position, and its worst value over an interval or a turn, exactly."""
+"""Transmission angle at a position, and its worst value over an interval or a turn."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import numpy.typing as npt
 
 from grashof.analysis.mechanism.closing import dyad_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_loop
-from grashof.analysis.mechanism.mobility import full_rotation, rotatability
-from grashof.analysis.mechanism.second_loop import cut, lifted, width
+from grashof.analysis.mechanism.mobility import full_rotation, one_by_one, rotatability
+from grashof.analysis.mechanism.second_loop import cut, recurring, width
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.errors import wrong_value
 
 
 def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike, loop: int = 1) -> FloatArray:
-    """Transmission angle mu, of a four-bar between coupler AB and output link O4B.
+    """Transmission angle mu: of a four-bar between coupler AB and output link O4B.
 
-    Of a slider-crank it is that between the rod and the normal of the slide, of an inverted one that with
-    sin mu = AB / AO4, up to 90 deg.
+    Of a slider-crank between the rod and the normal of the slide; of an inverted one up to 90 deg, with
+    sin mu = AB / AO4.
 
     Parameters
     ----------
@@ -27,18 +27,18 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike, loop: int = 1) -
     theta2 : array_like, shape (...), rad
         Driver angle.
     loop : int
-        2 for the second loop of a six-bar: the angle between links 5 and 6, or between link 5 and the
-        normal of the slide, on the linkage's own assembly.
+        2 for the second loop of a six-bar, on its own assembly: the angle between links 5 and 6, or between
+        link 5 and the normal of the slide.
 
     Returns
     -------
     ndarray, shape (...), rad
-        In [0, pi]; NaN where the loop cannot close. That of the first loop is the same on both assemblies.
+        In [0, pi]; NaN where the loop cannot close.
 
     Notes
     -----
-    Of a four-bar the law of cosines in O2-A-O4 and A-B-O4 (Norton, *Design of Machinery*, ch. 4), the
-    second in its half-angle form, which keeps its digits near 0 and pi. sin mu is 0 in dead positions.
+    The law of cosines in O2-A-O4 and A-B-O4 (Norton, *Design of Machinery*, ch. 4), the second in half-angle
+    form, which keeps its digits near 0 and pi.
 
     Examples
     --------
@@ -58,32 +58,31 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike, loop: int = 1) -
 
 
 def quality(mu: npt.ArrayLike) -> FloatArray:
-    """min(mu, pi - mu), what a transmission angle is judged by; 0 where mu is NaN. Shape (...), rad."""
+    """min(mu, pi - mu), 0 where mu is NaN; shape (...), rad."""
     mu = np.asarray(mu, dtype=np.float64)
     folded: FloatArray = np.nan_to_num(np.minimum(mu, np.pi - mu), nan=0.0)
     return folded
 
 
 def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLike) -> FloatArray:
-    """Least min(mu, pi - mu) of all loops over the driver interval from `start` to `end`, exactly.
+    """Least min(mu, pi - mu) of all loops over the driver interval from `start` to `end`.
 
     Parameters
     ----------
     linkage : Linkage
     start, end : array_like, shape (...), rad
-        Driver angles in either order; a turn or more apart is the whole turn.
+        Driver angles in either order; a turn or more apart covers the full turn.
 
     Returns
     -------
     ndarray, shape (...), rad
-        0 when the interval holds a position in which the linkage cannot close.
+        0 if the linkage cannot close somewhere in the interval.
 
     Notes
     -----
-    mu depends on the driver angle only through the diagonal A-O4, or the distance of A from the slide, which
-    is monotone between the positions where O2A lies along the ground line, or square to the slide: the
-    extremes are there and at the ends. Those of a second loop are where the width of its gap has an extreme,
-    sampled and refined.
+    Extremes of mu are at the ends and where O2A lies along the ground line, or square to the slide, since the
+    diagonal A-O4, or the distance of A from the slide, is monotone between. Those of a second loop are where
+    the width of its gap has an extreme, sampled and refined.
     """
     low = np.minimum(start, end) - linkage.theta1
     high = np.maximum(start, end) - linkage.theta1
@@ -91,32 +90,27 @@ def worst_transmission(linkage: Linkage, start: npt.ArrayLike, end: npt.ArrayLik
     crossed = last - first
     even = (crossed >= 2) | ((crossed == 1) & (last % 2 == 0))
     odd = (crossed >= 2) | ((crossed == 1) & (last % 2 == 1))
-    worst: FloatArray = quality(transmission_angle(linkage, np.stack([low, high]) + linkage.theta1)).min(
-        axis=0
-    )
+    at_ends = quality(transmission_angle(linkage, np.stack([low, high]) + linkage.theta1))
+    worst: FloatArray = at_ends.min(axis=0)
     folded, stretched = ground_line_transmission(linkage)
     worst = np.where(even, np.minimum(worst, quality(folded)), worst)
     worst = np.where(odd, np.minimum(worst, quality(stretched)), worst)
     if len(linkage.mechanism.dyads) == 1:
         return worst
-    numbers = np.arange(np.prod(linkage.shape, dtype=int)).reshape(linkage.shape)
-    every = np.broadcast_arrays(start, end, numbers)
-    second = np.full(every[0].shape, np.nan)
-    for index in np.ndindex(second.shape):
-        one, other, number = (each[index] for each in every)
-        single = linkage[np.unravel_index(number, linkage.shape)]
-        second[index] = quality(transmission_at_extremes(single, float(one), float(other), 2)[1]).min()
-    least: FloatArray = np.minimum(worst, second)[()]
-    return least
+
+    def second(single: Linkage, one: float, other: float) -> float:
+        return float(quality(transmission_at_extremes(single, one, other, 2)[1]).min())
+
+    return np.asarray(np.minimum(worst, one_by_one(second, linkage, start, end)))[()]
 
 
 def transmission_at_extremes(
     linkage: Linkage, start: float, end: float, loop: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Driver angles of a single linkage at extremes of mu of a loop and at the ends, and mu, each (N,)."""
+    """Ends and driver angles at extremes of mu of a loop of a single linkage, and mu there, each (N,)."""
     low, high = min(start, end), max(start, end)
     if loop != 1:
-        at = np.concatenate([[start, end], lifted(cut(linkage).extremes, low, high)])
+        at = np.concatenate([[start, end], recurring(cut(linkage).extremes, low, high)])
         return at, transmission_angle(linkage, at, loop)
     theta1 = float(linkage.theta1)
     along = np.arange(np.ceil((low - theta1) / np.pi), np.floor((high - theta1) / np.pi) + 1)
@@ -127,7 +121,7 @@ def transmission_at_extremes(
 
 
 def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
-    """Least min(mu, pi - mu) of all loops over a whole turn, shape (...), rad; 0 if the driver cannot turn.
+    """Least min(mu, pi - mu) of all loops over a full turn, shape (...), rad; 0 if the driver cannot turn.
 
     Examples
     --------
@@ -144,7 +138,7 @@ def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
 
 
 def ground_line_transmission(linkage: Linkage) -> tuple[FloatArray, FloatArray]:
-    """Mu of the first loop with O2A along theta1, towards O4 and away from it: the extremes over a turn."""
+    """Extremes of mu of the first loop over a turn: O2A along theta1, towards O4 and away from it."""
     folded, stretched = first_loop(linkage).apart_on_line(linkage)
     dyad = dyad_of(linkage)
     return dyad.transmission_at(folded), dyad.transmission_at(stretched)

@@ -1,4 +1,4 @@
-"""Long array formulas a block at a time, so that intermediate values stay in the processor's cache."""
+"""Long array formulas in blocks, so that intermediate values stay in the processor's cache."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motions of one unknown under an acceleration that depends on place, speed and time, to many digits."""
+"""Motions of one unknown under an acceleration that depends on position, speed and time, to many digits."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from numpy.polynomial import legendre
 from grashof.problems import SolverError
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
-# Of time, place, speed and a guess of the acceleration itself, shape (N,) each.
+# A function of time, position, speed and a guess of the acceleration itself, shape (N,) each.
 Acceleration = Callable[[FloatArray, FloatArray, FloatArray, FloatArray], FloatArray]
-Events = Callable[[FloatArray, FloatArray], FloatArray]  # of place and speed, shape (N,), to (K, N)
+Events = Callable[[FloatArray, FloatArray], FloatArray]  # of position and speed, (N,), to (K, N)
 
 _NODES = 16
 _SWEEPS = 25
 _DIFFERENCE = 1e-7
 _GROWTH, _SHRINK, _STEEP, _CAREFUL = 4.0, 0.4, 0.1, 0.8
-_SHORTEST = 1e-11  # of the whole time: such a panel may hold a jump of the acceleration
-_SAME = 1e-15  # sweeps that change less have settled
+_SHORTEST = 1e-11  # share of the time: such a panel may hold a jump of the acceleration
+_SAME = 1e-15  # share of the acceleration: smaller changes have settled
 _MOST = 10_000  # panels: some five hundred turns
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """From `start` (s) and a place and speed there: Legendre coefficients (N,) of the acceleration."""
+    """A time step from `start` (s): position and speed there, Legendre coefficients of the acceleration."""
 
     start: float
     length: float
@@ -37,11 +37,11 @@ class Panel:
 
     @property
     def end(self) -> float:
-        """Time at which it ends."""
+        """Time at its end."""
         return self.start + self.length
 
     def at(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Place, speed and acceleration at times, shape (N,) each."""
+        """Position, speed and acceleration at times, shape (N,) each."""
         half = self.length / 2
         share, once = (time - self.start) / half - 1, legendre.legint(self.terms, lbnd=-1)
         twice = legendre.legint(once, lbnd=-1)
@@ -50,31 +50,31 @@ class Panel:
         return np.asarray(place), np.asarray(speed), np.asarray(legendre.legval(share, self.terms))
 
     def last(self) -> tuple[float, float]:
-        """Place and speed at its end."""
+        """Position and speed at its end."""
         place, speed, _ = self.at(np.array([self.end]))
         return float(place[0]), float(speed[0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Path:
-    """A motion, panel by panel, and which event ended it; None where the time was over."""
+    """A motion in panels, and the event that ended it; None at the end of time."""
 
     panels: tuple[Panel, ...]
     event: int | None
 
     @property
     def end(self) -> float:
-        """Time at which it ends."""
+        """Time at its end."""
         return self.panels[-1].end
 
     def fastest(self) -> float:
-        """The greatest speed, of either sign, at nine times of each panel."""
+        """The greatest absolute speed at nine times of each panel."""
         shares = np.linspace(0, 1, 9)
         speeds = [panel.at(panel.start + panel.length * shares)[1] for panel in self.panels]
         return float(np.abs(speeds).max())
 
     def at(self, time: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Place, speed and acceleration at times of the motion, shape (N,) each."""
+        """Position, speed and acceleration at times of the motion, shape (N,) each."""
         starts = np.array([panel.start for panel in self.panels])
         which = np.clip(np.searchsorted(starts, time, side="right") - 1, 0, len(starts) - 1)
         found = np.empty((3, len(time)))
@@ -95,31 +95,29 @@ def integrate_motion(
     events: Events | None = None,
     fastest: float = 0.0,
 ) -> Path:
-    """The motion from a place and a speed until an end of time (s) or an event falls below zero.
+    """The motion from a position and a speed until `end` (s) or until an event falls below zero.
 
-    `acceleration` takes time, place, speed and a guess of itself, (N,) each; NaN where there is no motion,
-    which no panel reaches. `events` go to (K, N); one below zero at the start counts once it was above.
-    `tolerance` is of speed and place within a panel, as a share of what they change by so far and of
-    `fastest`, the greatest speed (rad/s) before. Collocation at 16 Gauss-Legendre points of each panel
-    (Hairer, Lubich & Wanner, *Geometric Numerical Integration*, sec. II.1), of order 32, by sweeps; the last
-    terms of the polynomial say what a panel errs by. SolverError where panels become too short to get on.
-
-    >>> path = integrate_motion(lambda t, x, v, a: -x, 0.0, 20.0, 1.0, 0.0)
-    >>> bool(np.abs(path.at(np.array([20.0]))[0] - np.cos(20.0)).max() < 1e-13), len(path.panels) < 16
-    (True, True)
+    `acceleration` may be NaN where no motion exists, which no panel reaches. An event that is below zero at
+    the start counts once it has been above. `tolerance` bounds the error of speed and position within a
+    panel, as a share of their changes so far and of `fastest`, the greatest earlier speed (rad/s).
+    Collocation at 16 Gauss-Legendre points of each panel, of order 32 (Hairer, Lubich & Wanner, *Geometric
+    Numerical Integration*, sec. II.1); the last terms of the polynomial estimate the error. SolverError if
+    panels become too short.
     """
     span = end - start
     guess = float(acceleration(*(np.array([value]) for value in (start, place, speed, 0.0)))[0])
     if not np.isfinite(guess):
         raise SolverError("the motion could not be integrated: it has no acceleration at its start")
     length, panels, now = _first_length(span, speed, guess), list[Panel](), start
-    armed = np.zeros(0, dtype=bool) if events is None else _values(events, place, speed) > 0
+    armed = np.zeros(0, dtype=bool)
+    if events is not None:
+        armed = events(np.array([place]), np.array([speed]))[:, 0] > 0
     fastest, terms = max(fastest, abs(speed)), np.array([guess])
     while now < end:
         length = min(length, end - now)
         panel, error, sweeps = _panel(acceleration, now, length, place, speed, terms)
         scale = max(fastest, abs(speed), 1e-3 * span * float(np.abs(panel.terms).sum())) or 1.0
-        share = error * length / (tolerance * scale)  # of what it may err by
+        share = error * length / (tolerance * scale)  # of the allowed error
         if not share <= 1 and length > _SHORTEST * span:
             length *= _SHRINK if not np.isfinite(share) else max(_STEEP, _CAREFUL * share ** (-1 / _NODES))
             continue
@@ -131,11 +129,9 @@ def integrate_motion(
             if met is not None:
                 return Path((*panels[:-1], _cut(panel, met[1])), met[0])
         if len(panels) > _MOST:
-            raise SolverError(
-                f"the motion could not be integrated: {_MOST} steps reach no further than {now:.3g} s"
-            )
+            raise SolverError(f"the motion could not be integrated: {_MOST} steps only reach {now:.3g} s")
         now, (place, speed) = panel.end, panel.last()
-        fastest, terms = max(fastest, abs(speed)), _carried_on(panel)
+        fastest, terms = max(fastest, abs(speed)), np.array([float(panel.terms.sum())])
         length *= (
             min(_GROWTH, _CAREFUL * max(share, 1e-16) ** (-1 / _NODES)) if sweeps < _SWEEPS // 2 else 1.0
         )
@@ -145,7 +141,7 @@ def integrate_motion(
 
 
 def _first_length(span: float, speed: float, acceleration: float) -> float:
-    """Of a panel in which a motion in rad goes about a tenth of a turn."""
+    """Length of a panel in which a motion in rad covers about a tenth of a turn."""
     lengths = [span]
     lengths += [0.6 / abs(speed)] if speed else []
     lengths += [np.sqrt(1.2 / abs(acceleration))] if acceleration else []
@@ -153,7 +149,7 @@ def _first_length(span: float, speed: float, acceleration: float) -> float:
 
 
 def _integration() -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Nodes, the matrix that gives Legendre coefficients from values, and that which integrates values."""
+    """Nodes, the matrix from values to Legendre coefficients, and the matrix that integrates values."""
     nodes, weights = legendre.leggauss(_NODES)
     degrees = np.arange(_NODES)
     basis = legendre.legvander(nodes, _NODES - 1)
@@ -171,9 +167,9 @@ _BETWEEN = np.concatenate([[-1.0], (_AT[:-1] + _AT[1:]) / 2, [1.0]])
 def _panel(
     acceleration: Acceleration, now: float, length: float, place: float, speed: float, terms: FloatArray
 ) -> tuple[Panel, float, int]:
-    """A panel, what its acceleration errs by, and the sweeps that it took; infinite where they do not settle.
+    """A panel, the error of its acceleration, infinite without convergence, and the number of sweeps.
 
-    Newton's method, its derivatives by differences and kept while it gets on.
+    Newton's method with derivatives by differences, which are kept while it converges.
     """
     half = length / 2
     time = now + half * (1 + _AT)
@@ -192,7 +188,9 @@ def _panel(
             break
         if moved <= _SAME * size or (moved <= 1e-11 * size and moved >= 0.1 * before):
             panel = Panel(now, length, place, speed, _TO_TERMS @ found)
-            return panel, max(_tail(panel.terms), _defect(acceleration, panel)), sweep
+            rounding = 4e-16 * _NODES * float(np.abs(panel.terms).max())
+            tail = float(np.abs(panel.terms[-3:]).max()) - rounding  # estimates the next terms
+            return panel, max(tail, _defect(acceleration, panel)), sweep
         if moved > 0.5 * before and sweep > 4:
             break
         inverse = inverse if moved <= 0.05 * before or before == np.inf else None
@@ -208,7 +206,7 @@ def _newton(
     guess: FloatArray,
     half: float,
 ) -> FloatArray:
-    """The inverse of what the residual of a panel changes by with its accelerations."""
+    """Inverse of the derivative of a panel's residual by its accelerations."""
     operands = np.stack([place, speed, guess])
     steps = _DIFFERENCE * np.maximum(1.0, np.abs(operands).max(axis=1))
     moved = operands[:, None] + np.concatenate([np.zeros((3, 1)), np.diag(steps)], axis=1)[..., None]
@@ -222,7 +220,7 @@ def _newton(
 
 
 def _defect(acceleration: Acceleration, panel: Panel) -> float:
-    """What the polynomial of a panel is off by at its ends and halfway between its points."""
+    """Error of a panel's polynomial at its ends and halfway between its points."""
     time = panel.start + panel.length / 2 * (1 + _BETWEEN)
     place, speed, found = panel.at(time)
     off = np.abs(acceleration(time, place, speed, found) - found)
@@ -230,22 +228,8 @@ def _defect(acceleration: Acceleration, panel: Panel) -> float:
     return max(0.0, float(off.max()) - rounding) if np.isfinite(off).all() else np.inf
 
 
-def _tail(terms: FloatArray) -> float:
-    """What the next terms of a Legendre series may come to, rounding left out."""
-    return max(0.0, float(np.abs(terms[-3:]).max()) - 4e-16 * _NODES * float(np.abs(terms).max()))
-
-
-def _carried_on(panel: Panel) -> FloatArray:
-    """A guess for the next panel: the acceleration at the end of this one."""
-    return np.array([float(panel.terms.sum())])
-
-
-def _values(events: Events, place: float, speed: float) -> FloatArray:
-    return np.asarray(events(np.array([place]), np.array([speed]))[:, 0])
-
-
 def _event(panel: Panel, events: Events, armed: BoolArray) -> tuple[tuple[int, float] | None, BoolArray]:
-    """The first event in a panel with its time, if there is one, and which are armed at its end."""
+    """The first event in a panel with its time, if any, and the events armed at its end."""
     times = np.concatenate([[panel.start], panel.start + panel.length / 2 * (1 + _AT), [panel.end]])
     above = events(*panel.at(times)[:2]) > 0
     ever = np.logical_or.accumulate(above, axis=1) | armed[:, None]
@@ -272,7 +256,7 @@ def _crossing(panel: Panel, events: Events, number: int, low: float, high: float
 
 
 def _cut(panel: Panel, end: float) -> Panel:
-    """The part of a panel before a time."""
+    """The part of a panel before `end`."""
     length = max(end - panel.start, 1e-300)
     times = panel.start + length / 2 * (1 + _AT)
     return Panel(panel.start, length, panel.place, panel.speed, _TO_TERMS @ panel.at(times)[2])

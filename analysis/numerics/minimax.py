@@ -1,4 +1,4 @@
-"""The least peak of a curve that parameters shift linearly."""
+"""Chebyshev fits: the least peak of a curve that parameters shift linearly."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Curve = Callable[[FloatArray], FloatArray]
 
 _SAMPLES = 181
 _ROUNDS = 40
-_SETTLED = 1e-9  # share of the peak: what is still missing to the least one
-_FINE = 1e-10  # the finest tolerance that the solver knows
+_SETTLED = 1e-9  # share of the peak above the lower bound at which to stop
+_FINE = 1e-10  # the finest tolerance of the solver
 
 
 class LeastPeak(NamedTuple):
-    """Parameters, shape (K,), and the greatest magnitude that they leave."""
+    """Parameters, shape (K,), and the greatest remaining magnitude."""
 
     parameters: FloatArray
     peak: float
@@ -33,21 +33,12 @@ def least_peak(
     end: float,
     outermost: Callable[[Curve], tuple[float, float]],
 ) -> LeastPeak:
-    """Parameters x (K,) for which |base + effects x| is least where it is greatest between two ends.
+    """Parameters x (K,) that minimise the maximum of |base + effects x| between two ends.
 
-    `base` goes from places (N,) to (N,), `effects` to (N, K); `outermost` gives the places of a curve's least
-    and largest value. A linear programme at some places, which the peaks of its curve join (an exchange
-    method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429). NaN where a curve is not finite; SolverError
-    where the programme was not solved. Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
-
-    >>> from grashof.analysis.mechanism.extremes import extremes_of
-    >>> def outermost(curve):
-    ...     found = extremes_of(curve, 0.0, 1.0)
-    ...     return found.at_low, found.at_high
-    >>> line = lambda t: np.stack([np.ones_like(t), t], axis=-1)
-    >>> found = least_peak(lambda t: t**2, line, 0.0, 1.0, outermost)
-    >>> round(found.peak, 12), (found.parameters + 0.0).round(9).tolist()
-    (0.125, [0.125, -1.0])
+    `base` maps places (N,) to (N,), `effects` to (N, K); `outermost` gives the places of a curve's least and
+    largest value. A linear programme at some places, to which the peaks of its curve are added (an exchange
+    method: Hettich & Kortanek 1993, *SIAM Rev.* 35(3), 380-429). NaN if a curve is not finite; SolverError if
+    the programme is not solved. Chebyshev: x^2 less the best straight line on [0, 1] leaves 1/8.
     """
     places = np.linspace(start, end, _SAMPLES)
     best = LeastPeak(np.zeros(effects(places[:1]).shape[-1]), np.inf)
@@ -65,7 +56,7 @@ def least_peak(
         peak = float(np.abs(left(peaks)).max())
         if peak < best.peak:
             best = LeastPeak(parameters, peak)
-        if peak - bound <= _SETTLED * peak or bound <= before:  # the new places change nothing
+        if peak - bound <= _SETTLED * peak or bound <= before:  # no progress by the new places
             break
         places = np.concatenate([places, peaks])
     return best

@@ -1,4 +1,4 @@
-"""Newton's method for many small minimisations at once, each in one driver angle or several in order."""
+"""Newton's method for many small minimisations at once, each in one driver angle or in several in order."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 
-# What is minimised: its value, first and second derivative, and a positive stand-in for the second.
+# The objective: its value, first and second derivative, and a positive substitute for the second.
 Model: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
-_STEPS = 60  # enough for a way of more than half a turn at _REACH
-_REACH = 0.1  # rad: no first step is longer
+_STEPS = 60  # enough for more than half a turn at _REACH
+_REACH = 0.1  # rad: the longest first step
 _SAME = 1e-12  # rad
-_EDGE = 3e-7  # share of a range: so near its end derivatives have no digits
-_FIXED = 1e12  # how much heavier than the others an angle is that must not move
+_EDGE = 3e-7  # share of a range beside its end where derivatives have no digits
+_FIXED = 1e12  # relative weight of an angle that must not move
 _LEAST_WEIGHT = 1e-12  # of the mean
 
 
 def lowest(
     model: Callable[[FloatArray], Model], angle: FloatArray, low: FloatArray, high: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Each angle (...) in rad moved by itself to the bottom of its valley, and the value there.
+    """Each angle (...) in rad moved to its local minimum, and the value there.
 
-    Bounds are infinite, or where the driver's range ends; the model is inf where it is not defined.
+    Bounds are infinite, or the ends of the driver's range; the model is inf where undefined.
     """
     unknown = _Unknown(model, low, high)
     angle, low, high = unknown.of(np.clip(angle, low, high)), unknown.of(low), unknown.of(high)
@@ -35,7 +35,9 @@ def lowest(
         step = np.clip(-_quotient(current[1], _curvature(current)), -reach, reach)
         tried = np.clip(angle + step, low, high)
         fresh = unknown.model(tried)
-        better = _better(current, fresh)
+        with np.errstate(invalid="ignore"):  # where the values agree to rounding, the slope decides
+            level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
+        better = (fresh[0] < current[0]) | level
         moved = np.abs(tried - angle)
         reach = np.where(better, np.maximum(reach, 2 * moved), moved / 4)
         angle = np.where(better, tried, angle)
@@ -51,11 +53,11 @@ def lowest_in_order(
     bounds: tuple[FloatArray, FloatArray],
     ends: tuple[FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
-    """Rows of angles (K, N) moved to a least sum of values, kept from going back within one turn.
+    """Rows of angles (K, N) moved to a least sum of values, in ascending order within one turn.
 
     Each value depends on its own angle only; bounds, in order, and ends of the driver's range in rad. Newton
-    steps with the diagonal second derivative (angles that stand together share theirs), projected on the
-    order by weighted isotonic regression (Best & Chakravarti 1990), the exact solution of the quadratic step.
+    steps with the diagonal second derivative (shared by equal angles), projected on the order by weighted
+    isotonic regression (Best & Chakravarti 1990), the exact solution of the quadratic step.
     """
     unknown = _Unknown(model, *ends)
     low, high = (np.clip(bound, *ends) for bound in bounds)
@@ -69,7 +71,8 @@ def lowest_in_order(
         wish = np.where(fixed, angle, angle - _quotient(current[1], weight))
         weight = np.where(fixed, weight.max(axis=1, keepdims=True) * _FIXED, weight)
         tried = _in_order(wish, weight, low, high)
-        tried = angle + (tried - angle) * _shortened(tried - angle)
+        longest = np.abs(tried - angle).max(axis=1, keepdims=True)
+        tried = angle + (tried - angle) * (_REACH / np.maximum(longest, _REACH))
         fresh = unknown.model(tried)
         better = _better_rows(current, fresh, angle, tried)
         moved = np.abs(tried - angle).max(axis=1, keepdims=True)
@@ -83,10 +86,10 @@ def lowest_in_order(
 
 
 class _Unknown:
-    """What is solved for instead of an angle t of a range: x in t = low + (high - low) (1 - cos pi x) / 2.
+    """The unknown x in place of an angle t = low + (high - low) (1 - cos pi x) / 2 of a range.
 
-    Near the ends of its range, the dead positions, a linkage moves with the square root of the
-    driver angle, so smoothly with x. Scaled to [low, high], and t itself without a range.
+    Near the dead positions at its ends a linkage moves with the square root of t, so smoothly with x. Scaled
+    to [low, high]; t itself without a range.
     """
 
     def __init__(self, model: Callable[[FloatArray], Model], low: FloatArray, high: FloatArray) -> None:
@@ -112,7 +115,7 @@ class _Unknown:
         return value, slope * rate, second * rate**2 + slope * bend, positive * rate**2
 
     def found(self, unknown: FloatArray, value: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The angles, put on the ends of their ranges where they came up against them."""
+        """The angles, moved to the ends of their ranges when within the edge of them, and their values."""
         if not self._swings.any():
             return unknown, value
         share = np.clip((unknown - self._floor) / self._span, 0, 1)
@@ -133,13 +136,6 @@ def _curvature(model: Model) -> FloatArray:
         return np.where(second > 0.01 * positive, second, positive)
 
 
-def _better(current: Model, fresh: Model) -> BoolArray:
-    # Where the value has no digits left to fall by, the slope still decides.
-    with np.errstate(invalid="ignore"):
-        level = (fresh[0] <= current[0] * (1 + 1e-14)) & (np.abs(fresh[1]) < np.abs(current[1]))
-    return (fresh[0] < current[0]) | level
-
-
 def _better_rows(current: Model, fresh: Model, angle: FloatArray, tried: FloatArray) -> BoolArray:
     before, after = current[0].sum(axis=1), fresh[0].sum(axis=1)
     way = tried - angle
@@ -156,14 +152,8 @@ def _chosen(better: BoolArray, fresh: Model, current: Model) -> Model:
     return value, slope, second, positive
 
 
-def _shortened(step: FloatArray) -> FloatArray:
-    longest = np.abs(step).max(axis=1, keepdims=True)
-    share: FloatArray = _REACH / np.maximum(longest, _REACH)
-    return share
-
-
 def _pooled(angle: FloatArray, model: Model) -> FloatArray:
-    """Curvature of each value, so large that no step is long; angles that stand together share theirs."""
+    """Curvature of each value, large enough to limit the step; equal angles share theirs."""
     together = np.abs(np.diff(angle, axis=1, prepend=np.nan)) <= _SAME
     if not together.any():
         return np.maximum(_curvature(model), np.abs(model[1]) / _REACH)
@@ -178,7 +168,7 @@ def _pooled(angle: FloatArray, model: Model) -> FloatArray:
 
 
 def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """The nearest angles, by weight, that do not go back, within one turn and within their bounds."""
+    """The nearest ascending angles, by weight, within one turn and their bounds."""
     ordered = wish.copy()
     for row in np.flatnonzero((np.diff(wish, axis=1) < 0).any(axis=1)):
         ordered[row] = scipy.optimize.isotonic_regression(wish[row], weights=weight[row]).x
@@ -189,7 +179,7 @@ def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: Float
 
 
 def _within_a_turn(ordered: FloatArray, weight: FloatArray) -> FloatArray:
-    """Ordered angles pressed into one turn, at the least weighted cost."""
+    """Ordered angles compressed into one turn at the least weighted cost."""
     first = (ordered[0] + ordered[-1] - TURN) / 2
     for _ in range(2 * len(ordered)):
         under, over = ordered < first, ordered > first + TURN

@@ -1,4 +1,4 @@
-"""Greatest values of several curves at once, extremes of one, and where a condition ends."""
+"""Greatest values of several curves at once, extremes of one, and the end of a condition."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 
 _MOST = 3
 _POINTS = 17
-_ROUNDS = 4  # each narrows the place of a peak eight times; a parabola does the rest
+_ROUNDS = 4  # each narrows the place of a peak eight times; a parabola follows
 
 _CLOSER = 5  # rounds for each extreme of one curve
 _HALVINGS = 64
@@ -21,14 +21,14 @@ Curves = Callable[[FloatArray], FloatArray]
 def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over stretches of ascending samples (..., N).
 
-    No peak may be narrower than the samples are apart; shorter rows repeat their last. NaN counts as
-    infinite, and a curve whose first sample is infinite has no other peak. Closer and closer samples, then a
-    parabola: right to rounding where a curve is smooth.
+    Peaks narrower than the spacing of the samples may be missed; shorter rows repeat their last sample. NaN
+    counts as infinite, and a curve whose first sample is infinite has no other peak.
     """
 
     def each_its_own(places: FloatArray) -> FloatArray:
         beside = np.moveaxis(places, 0, -2)
-        values = _infinite_if_none(curves(beside.reshape(*beside.shape[:-2], -1)))
+        values = curves(beside.reshape(*beside.shape[:-2], -1))
+        values = np.where(np.isnan(values), np.inf, values)
         return own(np.moveaxis(values.reshape(len(values), *beside.shape), -2, 1))
 
     found = [greatest(each_its_own, at) for at in stretches]
@@ -42,8 +42,8 @@ def greatest(
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over ascending dense samples (..., N).
 
-    Repeated samples count once. Curves take (1, ..., N) or each its own (R, ..., N), see `own`; about the
-    `most` highest samples each looks `rounds` times, an eighth as far: four are enough for smooth curves.
+    Repeated samples count once. Curves take (1, ..., N) or each its own (R, ..., N), see `own`. The `most`
+    highest samples are refined `rounds` times, eightfold each; four suffice for smooth curves.
     """
     values = curves(places[None])
     padded = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(1, 1)], constant_values=-np.inf)
@@ -55,7 +55,7 @@ def greatest(
     low, high = (_taken(all_places, np.clip(top + k, 0, places.shape[-1] - 1)) for k in (-1, 1))
     for _ in range(rounds):
         near = low[..., None] + (high - low)[..., None] * np.linspace(0, 1, _POINTS)
-        near[..., -1] = high  # and not beyond it by rounding
+        near[..., -1] = high  # not beyond by rounding
         here = curves(near.reshape(*top.shape[:-1], -1)).reshape(near.shape)
         peak = here.argmax(axis=-1)[..., None]
         at.append(_taken(near, peak)[..., 0])
@@ -72,10 +72,9 @@ def greatest(
 def with_extremes(
     curve: Callable[[FloatArray], FloatArray], places: FloatArray, *, periodic: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Ascending dense places (N,) with a smooth curve's extremes (M,) among them, and these alone.
+    """Ascending dense places (N,) of a smooth curve with its extremes (M,) inserted, and the extremes.
 
-    The curve is monotone between. If `periodic` the places are those of a whole period, whose last is left
-    out.
+    The curve is monotone between. If `periodic` the places cover a period, whose last one is omitted.
 
     >>> every, extremes = with_extremes(np.sin, np.linspace(0, 6, 20), periodic=False)
     >>> len(every), (extremes / np.pi).round(9).tolist()
@@ -112,7 +111,7 @@ def with_extremes(
 def last_where(
     holds: Callable[[FloatArray], BoolArray], inside: FloatArray, outside: FloatArray
 ) -> FloatArray:
-    """Where a condition holds last on the way from some places to others, to rounding; shape (N,).
+    """The last places, to rounding, at which a condition holds on the way from inside to outside; shape (N,).
 
     >>> last_where(lambda x: x * x <= 2, np.array([0.0, -1.0]), np.array([2.0, -3.0])).round(12).tolist()
     [1.414213562373, -1.414213562373]
@@ -140,7 +139,7 @@ def own(values: FloatArray) -> FloatArray:
 def vertex(
     place: FloatArray, step: FloatArray, before: FloatArray, middle: FloatArray, after: FloatArray
 ) -> FloatArray:
-    """Where the parabola through three values at equal steps is highest; the middle where none is.
+    """Vertex of the parabola through three values at equal steps; the middle if it is not a maximum.
 
     >>> float(vertex(*map(np.float64, (2.0, 1.0, 0.0, 4.0, 4.0))))
     2.5
@@ -150,7 +149,3 @@ def vertex(
         away = (before - after) / (2 * bend)
     inside = (bend < 0) & (before <= middle) & (after <= middle)
     return np.where(inside, place + step * np.where(inside, away, 0.0), place)
-
-
-def _infinite_if_none(values: FloatArray) -> FloatArray:
-    return np.where(np.isnan(values), np.inf, values)

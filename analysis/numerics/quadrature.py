@@ -1,4 +1,4 @@
-"""Integrals of curves that may have peaks, kinks and jumps, with what they may be wrong by."""
+"""Integrals of curves that may have peaks, kinks and jumps, with error bounds."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ Curve = Callable[[FloatArray], FloatArray]
 
 NODES, WEIGHTS = legendre.leggauss(16)  # of a panel from -1 to 1
 _TERMS = legendre.legvander(NODES, 15) * (WEIGHTS[:, None] * (np.arange(16) + 0.5))
-_TO_ENDS = np.stack([_TERMS @ (-1.0) ** np.arange(16), _TERMS.sum(axis=1)], axis=1)  # of the polynomial
+_TO_ENDS = np.stack([_TERMS @ (-1.0) ** np.arange(16), _TERMS.sum(axis=1)], axis=1)  # values at both ends
 _GAP = (1 - NODES[-1]) / 2  # share of a panel beyond its last node
-_SPLIT = 0.4636  # not the middle, beside which a jump would leave the sum over both parts as it was
-_SETTLED = 1e-13  # share of the integral of the magnitude: splitting a panel changes it by no more
+_SPLIT = 0.4636  # not the middle, where both parts may hide a jump
+_SETTLED = 1e-13  # change by splitting a panel, as a share of the integral of the magnitude, at which to stop
 _LEAST_ERROR = 1.5e-12  # the same: some changes are this small by chance
-_DOUBT = 2.0  # times the last change of a panel: it may be wrong by so much
-_SHRINKS = 0.95  # share of a change that the next one has at most, where there is an integral
+_DOUBT = 2.0  # error of a panel over its last change
+_SHRINKS = 0.95  # greatest ratio of successive changes of a convergent integral
 _FULL = 1e-9  # relative error up to which all digits of a number count
-_MOST = 1 << 18  # values of the curve, beyond which it is left as it is
+_MOST = 1 << 18  # values of the curve at which to stop
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panels:
-    """Integrals (..., M) between edges (M + 1,); `error` of their sum, infinite where there is none."""
+    """Integrals (..., M) between edges (M + 1,); `error` bounds that of their sum, infinite if divergent."""
 
     edges: FloatArray
     parts: FloatArray
@@ -50,16 +50,17 @@ class Panels:
 
 
 def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> Panels:
-    """Integral of curves, (N,) to (..., N), by panels that are split until the sum stays as it is.
+    """Integral of curves, (N,) to (..., N), by panels that are split until the sum settles.
 
-    `edges` (M + 1,) are in order, and no panel below a share `narrowest` is split; not finite where a curve
-    is not. Gauss-Legendre sums of 16 nodes over each panel and over two parts of it; panels whose polynomials
-    do not meet the next ones are split, too: a jump beyond the last node leaves sums alone.
+    `edges` (M + 1,) are in order; panels below a share `narrowest` are not split; not finite where a curve is
+    not. Gauss-Legendre sums of 16 nodes over each panel are compared with those over two parts of it. Panels
+    whose polynomials do not meet those of their neighbours are split, too: the sums do not reveal a jump
+    beyond the last node.
     """
     edges = np.asarray(edges, dtype=np.float64)
     least, spent = narrowest * float(np.abs(edges[-1] - edges[0])), 0
     low, high, count = edges[:-1], edges[1:], len(edges) - 1
-    parts_low, parts_high = _split(low, high)  # with the whole panels in one call of the curve
+    parts_low, parts_high = _split(low, high)  # with their panels in one call of the curve
     both = _Pieces.over(curve, np.append(low, parts_low), np.append(high, parts_high))
     rough, ahead = both[:count], both[count:]
     done, error = rough[:0], np.zeros(rough.part.shape[:-1])
@@ -68,7 +69,10 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
         parts = ahead if ahead.low.size else _Pieces.over(curve, *_split(rough.low, rough.high))
         ahead = ahead[:0]
         spent += parts.low.size * len(NODES)
-        change, narrow = np.abs(_paired(parts.part) - rough.part), rough.width <= least
+        change, narrow = (
+            np.abs(parts.part[..., ::2] + parts.part[..., 1::2] - rough.part),
+            rough.width <= least,
+        )
         unsettled = change > _SETTLED * (done.size.sum(axis=-1) + parts.size.sum(axis=-1))[..., None]
         kept = ~unsettled.reshape(-1, narrow.size).any(axis=0) | narrow | (spent > _MOST)
         doubt = np.where(unsettled & narrow, _to_come(change, before), _DOUBT) * change
@@ -86,7 +90,7 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
 
 
 def held(value: float, error: float) -> float:
-    """A number without the digits that an error may change: 0 where none is left.
+    """A number rounded to the digits that an error leaves certain: 0 if there are none.
 
     >>> held(1234.5678, 0.03), held(1234.5678, 1e-9), held(1e-9, 1e-6), held(1.0, float("nan"))
     (1234.6, 1234.5678, 0.0, nan)
@@ -145,7 +149,7 @@ class _Pieces:
         )
 
     def apart(self, narrowest: float) -> npt.NDArray[np.bool_]:
-        """Those, in order, beside whose ends a jump may hide that counts, shape (M,)."""
+        """Whether a jump that matters may hide at an end of a panel, in order, shape (M,)."""
         jump = np.abs(self.ends[..., 1:, 0] - self.ends[..., :-1, 1])
         none = np.zeros((*jump.shape[:-1], 1))
         beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
@@ -159,12 +163,8 @@ def _split(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
     return ends[:, :2].ravel(), ends[:, 1:].ravel()
 
 
-def _paired(halves: FloatArray) -> FloatArray:
-    return np.asarray(halves[..., ::2] + halves[..., 1::2])
-
-
 def _to_come(change: FloatArray, before: FloatArray) -> FloatArray:
-    """Times its last change that a panel may yet change by; infinite where splitting does not lessen it."""
+    """Bound of the further change of a panel over its last one; infinite without convergence."""
     with np.errstate(invalid="ignore", divide="ignore"):
         share = change / before
         return np.where(share < _SHRINKS, np.maximum(share / (1 - share), _DOUBT), np.inf)

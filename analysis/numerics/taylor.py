@@ -20,7 +20,7 @@ def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[Fl
     """A function of time (...) and its first three derivatives, to rounding, by truncated Taylor series.
 
     Forward automatic differentiation (Griewank & Walther, *Evaluating Derivatives*, ch. 13) of arithmetic,
-    NumPy's functions and ``np.where``, or a SciPy spline or NumPy polynomial; ProblemError for others.
+    NumPy functions and ``np.where``, or of a SciPy spline or NumPy polynomial; ProblemError for others.
 
     >>> [float(value) for value in derivatives(lambda t: t**3 - np.cos(2 * t), 0.0)]
     [-1.0, 0.0, 4.0, 6.0]
@@ -38,8 +38,8 @@ def derivatives(function: Callable[[Any], Any], time: npt.ArrayLike) -> tuple[Fl
         series = function(Taylor([at, 1.0]))
     except (TypeError, ValueError, AttributeError) as error:
         raise ProblemError(
-            f"a function of time cannot be differentiated: {error}; it must be made of arithmetic, "
-            "NumPy's functions, splines and polynomials"
+            f"a function of time cannot be differentiated: {error}; it must consist of arithmetic, "
+            "NumPy functions, splines and polynomials"
         ) from error
     terms = series.terms if isinstance(series, Taylor) else Taylor([series]).terms
     return tuple(
@@ -108,25 +108,13 @@ def _power(x: Taylor, y: Taylor) -> Taylor:
     def slopes(value: FloatArray) -> list[FloatArray]:
         found, factor = [], np.ones(())
         for order in range(_ORDER + 1):
-            # A vanished factor must not meet the pole of a negative power.
+            # A zero factor must not meet the pole of a negative power.
             power = np.where(factor == 0, 1.0, exponent - order)
             found.append(factor * value**power)
             factor = factor * (exponent - order)
         return found
 
     return _composed(slopes)(x)
-
-
-def _tan(x: Taylor) -> Taylor:
-    return _quotient(_RULES[np.sin](x), _RULES[np.cos](x))
-
-
-def _absolute(x: Taylor) -> Taylor:
-    return Taylor([np.sign(x.terms[0]) * term for term in x.terms])
-
-
-def _remainder(x: Taylor, y: Taylor) -> Taylor:
-    return Taylor([np.remainder(x.terms[0], y.terms[0]), *x.terms[1:]])
 
 
 def _extreme(first_wins: Callable[[FloatArray, FloatArray], Any]) -> Callable[[Taylor, Taylor], Taylor]:
@@ -153,13 +141,13 @@ _RULES: dict[np.ufunc, Callable[..., Taylor]] = {
     np.square: lambda x: _product(x, x),
     np.negative: lambda x: Taylor([-term for term in x.terms]),
     np.positive: lambda x: x,
-    np.absolute: _absolute,
-    np.remainder: _remainder,
+    np.absolute: lambda x: Taylor([np.sign(x.terms[0]) * term for term in x.terms]),
+    np.remainder: lambda x, y: Taylor([np.remainder(x.terms[0], y.terms[0]), *x.terms[1:]]),
     np.minimum: _extreme(np.less_equal),
     np.maximum: _extreme(np.greater_equal),
     np.sin: _composed(lambda x: (np.sin(x), np.cos(x), -np.sin(x), -np.cos(x))),
     np.cos: _composed(lambda x: (np.cos(x), -np.sin(x), -np.cos(x), np.sin(x))),
-    np.tan: _tan,
+    np.tan: lambda x: _quotient(_RULES[np.sin](x), _RULES[np.cos](x)),
     np.exp: _composed(lambda x: [np.exp(x)] * 4),
     np.log: _composed(lambda x: (np.log(x), 1 / x, -1 / x**2, 2 / x**3)),
     np.sqrt: lambda x: _power(x, Taylor([0.5])),

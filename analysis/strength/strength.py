@@ -21,7 +21,7 @@ from grashof.analysis.strength.along_bar import (
 from grashof.analysis.strength.section_forces import BarForces, section_forces
 from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.section import CrossSection
+from grashof.problems.values.dynamics.strength import CrossSection
 from grashof.problems.values.linkages.linkage import Linkage
 
 _ROUNDING = 1e-12  # share of the greatest force in a bar below which other forces are none

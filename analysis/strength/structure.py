@@ -14,8 +14,7 @@ from grashof.analysis.forces.mass import Masses
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.dynamics.section import OneOrEach, SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+from grashof.problems.values.dynamics.strength import OneOrEach, SectionSpec, StrengthSpec, check_strength
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place

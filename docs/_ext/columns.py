@@ -5,7 +5,7 @@ from __future__ import annotations
 from marking import code, row, sentence
 
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.requirements.quantities import Needs, Over, Quantity
+from grashof.problems.values.requirements.quantities import Needs, Quantity, Scope
 from grashof.synth.designs.table import ABOUT, COLUMNS, LISTED, NAMES, OWN
 
 _BY_COLUMN = {quantity.column: quantity for quantity in (*LISTED, OWN)}
@@ -21,16 +21,16 @@ def _row(name: str) -> str:
     quantity = _BY_COLUMN.get(name)
     if quantity is None:
         words = "" if NAMES[name].replace(" ", "_").lower() == name else NAMES[name]
-        told = ": ".join(filter(None, (words, ABOUT.get(name, ""))))
-        return row(code(name), "", "", sentence(told), "")
+        text = ": ".join(filter(None, (words, ABOUT.get(name, ""))))
+        return row(code(name), "", "", sentence(text), "")
     better = {1: "greater", -1: "smaller", 0: ""}[quantity.better]
-    over = "" if quantity.over is Over.DESIGN else str(quantity.over).partition(",")[0]
+    over = "" if quantity.over is Scope.DESIGN else str(quantity.over).partition(",")[0]
     return row(code(name), str(quantity.unit), better, _meaning(quantity), over)
 
 
 def _meaning(quantity: Quantity) -> str:
-    told = (quantity.full, str(quantity.over), "from the first target to the last")
-    about = "" if quantity.about in told else quantity.about
+    known = (quantity.full, str(quantity.over), "from the first target to the last")
+    about = "" if quantity.about in known else quantity.about
     parts = [sentence(quantity.full), sentence(about)]
     if quantity.needs is not Needs.NOTHING:
         parts.append(f"Needs {quantity.needs.value}.")

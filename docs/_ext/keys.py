@@ -1,7 +1,7 @@
 """Tables and keys of problem, linkage and study files, from the models that read them.
 
-What a key means is told where the value is declared: in the docstring of the table or of the value type that
-it makes. Nothing is told here a second time.
+The meaning of a key is stated where the value is declared: in the docstring of the table or of the value type
+that it makes. Nothing is repeated here.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def problem_tables() -> dict[str, type[Table]]:
 
 
 def linkage_tables() -> dict[str, type[Table]]:
-    """What all linkage files have, the file of each kind, and tables that problem files have not."""
+    """The keys of all linkage files, those of each kind, and the tables that problem files lack."""
     shared = MachineTables.model_fields
     inner = {path: table for file in FILES.values() for path, table in tables_of(file)}
     own = {path: table for path, table in inner.items() if path and path.split(".")[0] not in shared}
@@ -99,7 +99,7 @@ def keys_of(table: type[Table]) -> list[Key]:
 
 
 def _sources(table: type[Table]) -> Iterator[object]:
-    """What describes the keys of a table: its own docstring first, then that of the value it makes."""
+    """The docstrings that describe the keys of a table: its own, then that of the value it makes."""
     tables = (each for each in table.__mro__ if issubclass(each, Table) and each is not Table)
     yield from (each for each in tables if each.__dict__.get("__doc__"))
     if issubclass(table, SearchOptions):
@@ -116,7 +116,7 @@ def _sources(table: type[Table]) -> Iterator[object]:
 
 
 def _summary(table: type[Table]) -> str:
-    """What a table states: the first line of its own docstring, or of the value that it makes."""
+    """The subject of a table: the first line of its own docstring, or of that of the value it makes."""
     own = table.__dict__.get("__doc__")
     return summary_of(table if own else _made(table))
 
@@ -176,7 +176,7 @@ def _quantity_text(quantity: Quantity) -> str:
 
 
 def _words(name: str, declared: Any, known: Described | None, limited: Limit | None) -> tuple[str, ...]:
-    """The words that a key may be; none where it is no word."""
+    """The allowed words of a key; none if its value is not a word."""
     if limited is not None:
         return tuple(limited.words)
     if known is not None and known.type.startswith("{"):
@@ -196,7 +196,7 @@ def _bounds(limited: Limit | None) -> str:
 
 
 def _shape(annotation: Any, metadata: Sequence[Any] = ()) -> str:
-    """What a type of the models is in a file."""
+    """The form of a model's type in a file."""
     for each in metadata:
         if wanted := getattr(getattr(each, "func", None), "keywords", {}).get("wanted"):
             return str(wanted)

@@ -3,7 +3,7 @@ Lifting arm driven by a cylinder
 ================================
 
 A hydraulic cylinder between the bench and one of the links lifts a box of 60 kg by a metre and tilts it by
-60 deg for emptying. Asked for are both: the linkage, and where the cylinder acts.
+60 deg for emptying. Both are to be found: the linkage, and the place of the cylinder.
 """
 
 # %%
@@ -37,7 +37,7 @@ assert (table["cylinder_angle_min_deg"] >= 25).all()
 
 # %%
 # The force over the stroke, with the weights of box and links. The area under the curve is the work of one
-# lift: it cannot be less than what the box gains, whatever the linkage.
+# lift: for any linkage it is at least the energy that the box gains.
 
 theta2 = np.linspace(best.verdict.theta2[0], best.verdict.theta2[-1], 181)
 length = cylinder_state(best.verdict.cylinder, best.linkage, solve_position(best.linkage, theta2)).length

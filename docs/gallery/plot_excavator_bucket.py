@@ -31,7 +31,7 @@ print(result.to_frame()[columns].head(5).round(2).to_string(index=False))
 plot_linkage(best, problem).get_legend().set_loc("upper right")
 
 # %%
-# What the rocker's moment becomes at the bucket is the mechanical advantage, the speed of the rocker over
+# The moment at the bucket over that at the rocker is the mechanical advantage, the speed of the rocker over
 # that of the bucket. It falls while the bucket curls: such a linkage breaks out with its greatest force at
 # the start and is quick at the end.
 

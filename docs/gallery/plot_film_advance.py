@@ -8,7 +8,7 @@ leaves the hole and goes back up. The point of a coupler does that without a cam
 
 # %%
 # Ten points state the path; the tenth is the first again. Four of them lie on the straight pull. The pivots
-# have to be on one side of the film, and a whole turn of the crank moves one frame, so that the
+# have to be on one side of the film, and a full turn of the crank moves one frame, so that the
 # transmission angle counts over the turn.
 
 import numpy as np
@@ -40,7 +40,7 @@ plot_linkage(best, problem)
 
 # %%
 # More than nine points cannot be met exactly, and nobody needs that here. The list is a choice: the least
-# error, and what a little more of it buys in size or transmission.
+# error, and the gain in size or transmission from accepting slightly more.
 
 columns = ["best_at", "error_rms", "error_max", "size", "transmission_min_cycle_deg"]
 print(result.to_frame()[columns].head(6).round(3).to_string(index=False))

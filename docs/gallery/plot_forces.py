@@ -3,12 +3,12 @@ Forces and motor torque of a design
 ===================================
 
 A linkage lifts boxes of 25 kg from a conveyor, tilts them and sets them down, twenty times a minute. Which
-motor does it need, and what do the pins bear?
+motor does it need, and which forces act on the pins?
 """
 
 # %%
 # Three poses are the task. The links are steel bars of 2.4 kg/m, the box is carried at P. The motor goes on
-# turning, so that the transmission angle has to be good over the whole turn: the way back counts, too.
+# turning, so that the transmission angle has to be good over the full turn: the way back counts, too.
 
 from dataclasses import replace
 

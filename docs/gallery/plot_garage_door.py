@@ -10,7 +10,7 @@ not touch the lintel on its way.
 # P is the middle of the door, and the angle that of the door from its lower edge to its upper one: 90 deg
 # closed, 180 deg open. In between the door is at 130 deg with its middle just inside the opening. The
 # ground pivots are on the walls beside the opening, where nobody walks; the moving ones on brackets on the
-# inside of the door. ``keep_out`` keeps the door itself (``body``) out of lintel and ceiling over the whole
+# inside of the door. ``keep_out`` keeps the door itself (``body``) out of lintel and ceiling over the full
 # motion, not at the three poses only.
 
 import numpy as np
@@ -45,7 +45,7 @@ print(result.to_frame()[columns].head(5).round(3).to_string(index=False))
 plot_linkage(best, problem)
 
 # %%
-# What the drawing does not say is how far the lower edge swings out into the drive, where a car may stand.
+# The drawing does not show how far the lower edge swings out into the drive, where a car may stand.
 
 theta2 = np.linspace(best.verdict.theta2[0], best.verdict.theta2[-1], 200)
 position = solve_position(best.linkage, theta2)
@@ -55,5 +55,5 @@ print(f"the door swings out by {corners.real.max():.2f} m, and reaches {corners.
 assert corners.imag.max() < 2.251
 
 # %%
-# Such a door is heavy: what is missing here is the spring that carries it. ``[[springs]]`` or
-# ``[[torsion_springs]]`` and a mass per length in the problem show the moment that is left to the hand.
+# Such a door is heavy, and the spring that carries it is missing here. With ``[[springs]]`` or
+# ``[[torsion_springs]]`` and a mass per length the problem shows the remaining moment for the hand.

@@ -45,5 +45,5 @@ assert best.verdict.error_max < 1e-6
 
 # %%
 # Three poses leave much freedom: each moving pivot may be anywhere on the plate. The pivots of real hinges
-# are limited by what is around them, so narrow the boxes to the room there is; where nothing fits, the
-# message says which limit would have to give way.
+# are limited by the parts around them, so narrow the boxes to the available room; where no design fits, the
+# message names the limit to relax.

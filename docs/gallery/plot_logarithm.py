@@ -7,7 +7,7 @@ output. This has been the test of function generators since Freudenstein (1955).
 """
 
 # %%
-# No four-bar does it exactly. With ``norm = "max"`` the greatest error over the whole range is made small,
+# No four-bar does it exactly. With ``norm = "max"`` the greatest error over the full range is minimised,
 # not that at a few pairs. The problem asks for a transmission angle of 40 deg at least.
 
 import matplotlib.pyplot as plt
@@ -24,10 +24,10 @@ print(result.to_frame()[columns].head(4).round(4).to_string(index=False))
 plot_linkage(best, problem)
 
 # %%
-# What the mechanism puts out less what is wanted, over the whole range. A four-bar function generator has
-# five unknowns: three ratios of lengths and two starting angles. A best approximation with five unknowns is
-# as far off as anywhere six times, with changing sign (Chebyshev). Here it is so five times, as the limit
-# of 40 deg binds and takes one freedom.
+# The generated minus the required output, over the full range. A four-bar function generator has five
+# unknowns: three ratios of lengths and two starting angles. A best approximation with five unknowns reaches
+# its greatest error six times, with alternating sign (Chebyshev). Here it does so five times, because the
+# active limit of 40 deg removes one freedom.
 
 curves = function_curves(best.linkage, problem.task, best.verdict)
 figure, ax = plt.subplots()

@@ -19,7 +19,7 @@ best = result.best
 plot_linkage(best, problem)
 
 # %%
-# The list. The first transmission angle counts from the first pose to the last, the second one over the whole
+# The list. The first transmission angle counts from the first pose to the last, the second over the full
 # turn of the crank.
 
 columns = [
@@ -47,4 +47,4 @@ plot_design_space(result)
 # %%
 # 27 deg is a poor transmission angle, and the drawing shows where it comes from: links of 8 m, the longest
 # allowed, are what limits it. Some of the linkage also passes through the stairs, which are drawn only.
-# ``keep_out`` keeps pivots or links out of them, and what is left is worse.
+# ``keep_out`` keeps pivots or links out of them, and the remaining designs are worse.

@@ -7,8 +7,8 @@ motor can work with.
 """
 
 # %%
-# Five poses have only a few four-bars that meet them exactly, and here none that fits. Grashof says what
-# would have to give way.
+# Only a few four-bars meet five poses exactly, and here none of them fits. Grashof names the requirements
+# to relax.
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ assert not exact.candidates
 
 # %%
 # Few grippers need every pose to the last micrometre. With zones of 12 mm and 3 deg about each pose there
-# are designs, and the room is spent on what the objective asks for, the transmission angle.
+# are designs, and the objective, the transmission angle, uses that freedom.
 
 zones = MotionTask.from_degrees(poses, within=12, angle_within_deg=3)
 roomy = replace(problem, task=zones)

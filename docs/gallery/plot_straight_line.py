@@ -37,7 +37,7 @@ for o2, o4, a, b, p in cognate_points(pivots, timed=False)[:2]:
 assert np.allclose([r1, r2, r3, r4], [4, 5, 2, 5])
 
 # %%
-# Now a line of 100 mm is asked for by nine points, more than a coupler curve can meet, so that the least
+# Now nine points on a line of 100 mm are required, more than a coupler curve can meet, so that the least
 # squared error decides. The limits of the problem leave room for Hoeken's linkage.
 
 problem = load("straight-line")
@@ -68,5 +68,5 @@ print(f"{gain:.0f} times as straight over the same rotation")
 assert gain > 50
 
 # %%
-# Hoeken's linkage has what was not asked for: P goes along its line at a nearly even speed. And a width of
+# Hoeken's linkage has another advantage: P moves along its line at a nearly constant speed. And a width of
 # 4 micrometres is that of exact links; what tolerances leave of it is another matter.

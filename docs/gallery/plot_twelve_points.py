@@ -7,8 +7,7 @@ unknowns. What does a general least-squares solver make of them?
 """
 
 # %%
-# The points are taken from a linkage, which neither solver is told of, so that an error of zero is known to
-# be possible.
+# The points are taken from a linkage that neither solver knows, so that an error of zero is possible.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -53,9 +52,9 @@ print(
 assert np.sum(rms < 1e-6) <= 5
 
 # %%
-# Most starts end in a local minimum, and nothing tells such a design from the best one. Grashof searches
-# over the proportions and places each linkage best on the points by linear algebra, thousands at once, so
-# that few unknowns are left to guess.
+# Most starts end in a local minimum, and nothing distinguishes such a design from the best one. Grashof
+# searches over the proportions and places each linkage best on the points by linear algebra, thousands at
+# once, so that few unknowns are left to guess.
 
 problem = Problem(
     length_unit="mm",

@@ -8,7 +8,7 @@ of a crank-rocker.
 """
 
 # %%
-# The stance is asked for point by point with the turn of the crank for each: 160 mm in 150 deg. Of the way
+# The stance is given point by point with the turn of the crank for each: 160 mm in 150 deg. On the way
 # back one point is stated, 40 mm above the ground and 105 deg later. Both pivots are on the body, above the
 # ground.
 

@@ -1,4 +1,4 @@
-"""Lines of a DXF drawing that others made."""
+"""Lines of a foreign DXF drawing."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.foreign import Budget, finite, read_by_others
+from grashof.problems.files.on_disk import read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.errors import ProblemError, shown
 
 MOST_POINTS = 20_000
+_DEEPEST = 32  # blocks within blocks, groups within groups
 FLAT = 1e-3  # share of the drawing's size by which a polyline may miss a curve
 # By $INSUNITS: in, ft, mm, cm, m, yd, micrometre, dm.
 _METRES = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 13: 1e-6, 14: 0.1}
@@ -28,11 +29,33 @@ _MOST_DEGREES, _MOST_DEGREE = 1e6, 11  # of an arc, and of a spline
 _DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"})
 
 
+class Budget:
+    """The number of parts that a drawing may have once its repetitions are expanded.
+
+    `part` names the parts, `level` those that may contain others, in the plural: "entities", "blocks".
+    """
+
+    def __init__(self, most: int, part: str, level: str) -> None:
+        self._most, self._part, self._level = most, part, level
+        self._left = most
+
+    def spend(self, count: int = 1) -> None:
+        """Count parts; `ProblemError` when they are too many."""
+        self._left -= count
+        if self._left < 0:
+            raise ProblemError(f"the drawing has more than {self._most} {self._part}; that is the most")
+
+    def enter(self, depth: int) -> None:
+        """`ProblemError` for parts within parts that are nested too deep."""
+        if depth > _DEEPEST:
+            raise ProblemError(f"{self._level} are nested more than {_DEEPEST} deep, perhaps in themselves")
+
+
 def dxf_polylines(text: str) -> list[FloatArray]:
     """Lines and curves of the model space as polylines (N, 2), in the units of the drawing.
 
-    Blocks are taken apart; text, dimensions and hatches are left out. `ProblemError` where it is no DXF file,
-    has no lines, or too many; or ezdxf is not installed.
+    Blocks are exploded; text, dimensions and hatches are ignored. `ProblemError` where it is not a DXF file,
+    has no lines or too many, or ezdxf is not installed.
     """
     return dxf_drawing(text.encode("utf-8", "surrogateescape"))[0]
 
@@ -69,14 +92,14 @@ def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], floa
         where = f"on the layer {shown(layer)}" if layer else "in its model space"
         raise ProblemError(f"the drawing has no lines {where}")
     if not all(np.isfinite(each).all() for each in found):
-        raise ProblemError("the drawing has places that are not finite numbers")
+        raise ProblemError("the drawing has coordinates that are not finite")
     if unit and unit not in _METRES:
         raise ProblemError(f"the drawing is in unit {unit} of DXF; it must be one of {_NAMES}, or none")
     return found, _METRES.get(unit)
 
 
 def _drawn(entities: Iterable[Any], budget: Budget, depth: int = 0) -> Iterator[Any]:
-    """Lines and curves, with those of blocks one by one: a few bytes may stand for millions."""
+    """Lines and curves, those of blocks one by one: a few bytes may expand to millions."""
     budget.enter(depth)
     for entity in entities:
         budget.spend()
@@ -93,8 +116,17 @@ def _is_sound(entity: Any) -> bool:
     given = entity.dxf.all_existing_dxf_attribs()
     places = [getattr(entity, name, ()) for name in _PLACES]
     turns = [given.get(name, 0.0) for name in _TURNS]
-    small = finite(turns, _MOST_DEGREES) and given.get("degree", 3) <= _MOST_DEGREE
-    return small and finite([*given.values(), *places], GREATEST)
+    small = _finite(turns, _MOST_DEGREES) and given.get("degree", 3) <= _MOST_DEGREE
+    return small and _finite([*given.values(), *places], GREATEST)
+
+
+def _finite(values: Any, most: float) -> bool:
+    """Whether all numbers within nested sequences are finite and not beyond a size."""
+    if isinstance(values, int | float):
+        return abs(values) <= most
+    if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
+        return True
+    return all(_finite(each, most) for each in values)
 
 
 def ezdxf_installed() -> ModuleType:

@@ -1,4 +1,4 @@
-"""Tables of problem and linkage files: what a linkage weighs, what acts on it and what drives it."""
+"""Tables of problem and linkage files for masses, loads and drives."""
 
 from __future__ import annotations
 
@@ -9,26 +9,14 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
-from grashof.problems.files.number_table import Names, number_table
-from grashof.problems.files.spec_table import SpecTable, keys_of, spec_table
-from grashof.problems.files.tables import Table, listed
+from grashof.problems.files.spreadsheet import Names, number_table
+from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spec_table
 from grashof.problems.values.checks import located, refuse
+from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.dynamics.load_specs import (
-    OVER,
-    TURNING,
-    CounterweightSpec,
-    DamperSpec,
-    FrictionSpec,
-    LoadSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
 from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
-from grashof.problems.values.dynamics.section import SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec
+from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.specs.dynamics_of_kind import without_place
@@ -36,9 +24,9 @@ from grashof.problems.values.specs.dynamics_of_kind import without_place
 _POINT = Annotated[list[float], listed("[u, v]")]
 _Kinds = Sequence[Sequence[Names]]
 # Columns of files, with or without their units.
-_ENDINGS = {"time": "_s", **dict.fromkeys(TURNING, "_deg")}
+_ENDINGS = {"time": "_s", **dict.fromkeys(load_specs.TURNING, "_deg")}
 _FORCE, _MOMENT = (("fx", "fx_n"), ("fy", "fy_n")), (("moment", "moment_nm"),)
-_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in OVER}
+_PLACES = {over: (over, "over", over + _ENDINGS.get(over, "")) for over in load_specs.OVER}
 _LOADS: dict[str, _Kinds] = {
     over: ((places, *_FORCE), (places, *_MOMENT)) for over, places in _PLACES.items()
 }
@@ -49,7 +37,7 @@ _ROD_LOADS: dict[str, _Kinds] = {
 _MOTION = (("time", "time_s"), ("angle", "angle_deg"))
 
 
-class _Acting(SpecTable):
+class _Nested(SpecTable):
     """A table of numbers, lists and places, which become tuples."""
 
     @classmethod
@@ -59,7 +47,7 @@ class _Acting(SpecTable):
         return tuple(cls.argument(each) for each in given) if isinstance(given, list) else given
 
 
-class _FromFile(_Acting):
+class _FromFile(_Nested):
     """A table whose `values` may be in a CSV file beside it; its columns depend on what they are over."""
 
     columns: ClassVar[Mapping[str, _Kinds]]
@@ -80,7 +68,7 @@ class _FromFile(_Acting):
 
 
 @keys_of(
-    LoadSpec,
+    load_specs.LoadSpec,
     {
         "at": _POINT,
         "force": Annotated[list[float], listed("[fx, fy] in N")],
@@ -131,7 +119,7 @@ class PumpingUnitTable(_FromFile):
         "values": Annotated[list[list[float]], listed("rows [time in s, angle in deg]")],
     },
 )
-class MotorTable(_Acting):
+class MotorTable(_Nested):
     """The drive of link 2.
 
     Parameters
@@ -158,9 +146,9 @@ class MotorTable(_Acting):
         return _rows(profile, info, (_MOTION,)) if is_file else profile
 
 
-@keys_of(Place, {"at": _POINT})
-class PlaceTable(_Acting):
-    telling = False
+@keys_of(load_specs.Place, {"at": _POINT})
+class PlaceTable(_Nested):
+    suggested = False
 
 
 _SECTION: dict[str, Any] = {"section": SectionSpec(1.0, 1.0)}
@@ -177,8 +165,8 @@ _LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
     },
     ("speed_rpm", "gravity", "mass_per_length", "density", "masses", "inertias", "centres", "payload"),
 )
-class DynamicsTable(_Acting):
-    # The file as a whole says whether there is a section.
+class DynamicsTable(_Nested):
+    # Whether there is a section is checked with the complete file.
     beside = MappingProxyType({"*": _SECTION, **dict.fromkeys(("masses", "inertias", "centres"), _LINKS)})
 
     def value(self) -> DynamicsSpec:
@@ -216,19 +204,19 @@ _Machine = create_model(
     __base__=Table,
     dynamics=_one(DynamicsTable),
     loads=_some(LoadTable),
-    springs=_some(spec_table(SpringSpec, _Acting, {"between": _BETWEEN})),
-    dampers=_some(spec_table(DamperSpec, _Acting, {"between": _BETWEEN})),
-    torsion_springs=_some(spec_table(TorsionSpringSpec, _Acting, {"between": _JOINT})),
-    counterweights=_some(spec_table(CounterweightSpec, _Acting, {"at": _POINT})),
-    friction=_one(spec_table(FrictionSpec, _Acting, _ONE_OR_EACH)),
+    springs=_some(spec_table(load_specs.SpringSpec, _Nested, {"between": _BETWEEN})),
+    dampers=_some(spec_table(load_specs.DamperSpec, _Nested, {"between": _BETWEEN})),
+    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, _Nested, {"between": _JOINT})),
+    counterweights=_some(spec_table(load_specs.CounterweightSpec, _Nested, {"at": _POINT})),
+    friction=_one(spec_table(load_specs.FrictionSpec, _Nested, _ONE_OR_EACH)),
     motor=_one(MotorTable),
-    section=_one(spec_table(SectionSpec, _Acting)),
-    strength=_one(spec_table(StrengthSpec, _Acting)),
+    section=_one(spec_table(SectionSpec, _Nested)),
+    strength=_one(spec_table(StrengthSpec, _Nested)),
 )
 
 
 class MachineTables(_Machine):  # type: ignore[misc, valid-type]
-    """What problem and linkage files have in common."""
+    """Tables that problem and linkage files have in common."""
 
     def dynamics_spec(self, *kinds: Mechanism) -> DynamicsSpec | None:
         """All of it as one value, for some kinds of linkages; None where nothing is stated."""
@@ -237,7 +225,7 @@ class MachineTables(_Machine):  # type: ignore[misc, valid-type]
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
         spec = DynamicsSpec(
-            **own, **{name: _Acting.argument(getattr(self, name)) for name in names if name != "dynamics"}
+            **own, **{name: _Nested.argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
         refuse([line for kind in kinds for line in without_place(spec, kind)])
         return spec

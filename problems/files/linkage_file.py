@@ -11,23 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.problem_file import catalogue, problem_of
-from grashof.problems.files.toml_file import (
+from grashof.problems.files.on_disk import (
     MOST_BYTES_MADE,
     Catalogue,
     document_of,
     exists,
     file_text,
-    looks_like_path,
 )
-from grashof.problems.values.checks import (
-    GREATEST,
-    finite_number,
-    located,
-    located_in,
-    number_within,
-    readable,
-)
+from grashof.problems.files.problem_file import catalogue, problem_of
+from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
@@ -86,17 +78,9 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         raise ProblemError(f"{text}: is a table; name the design as {table.removesuffix('.csv')}.json#{row}")
     if text.endswith(".json"):
         raise ProblemError(f"{text}: is a list of designs; name one of them, such as {text}#1")
-    if isinstance(linkage, str) and not looks_like_path(text):
-        if text in _LINKAGES.names:
-            return _parsed(_LINKAGES.text(text), f"{text}.toml", text)
-        if not exists(text):
-            if text in catalogue():
-                raise ProblemError(_problem_given(text, text))
-            raise ProblemError(
-                f"{shown(text)} is neither a linkage of the catalogue nor a file; {_LINKAGES.hint(text)}"
-            )
-    path = Path(linkage)
-    return _parsed(file_text(path, "a linkage file"), str(path), readable(path.stem), path.parent)
+    if isinstance(linkage, str) and text in catalogue() and not exists(text):
+        raise ProblemError(_problem_given(text, text))
+    return _parsed(*_LINKAGES.read(linkage))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -106,8 +90,11 @@ def load_design(path: Path, which: str) -> ListedDesign:
         return ListedDesign(
             spec=spec,
             rank=_rank(design["rank"]),
-            id=readable(str(design["id"])),
-            theta2=tuple(number_within(angle, -GREATEST, GREATEST, "theta2") for angle in design["theta2"]),
+            id=checks.readable(str(design["id"])),
+            theta2=tuple(
+                checks.number_within(angle, -checks.GREATEST, checks.GREATEST, "theta2")
+                for angle in design["theta2"]
+            ),
             assembly=tuple(design["assembly"]),
             position_error=_errors(design["position_error"]),
             angle_error=_errors(design.get("angle_error", [])),
@@ -149,7 +136,7 @@ def _problem_given(given: str, name: str) -> str:
     return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
 
 
-def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) -> LinkageSpec:
+def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> LinkageSpec:
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.files.linkage_schema import linkage_from
 
@@ -159,11 +146,11 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None = None) ->
     try:
         return linkage_from(document, name, folder)
     except ProblemError as error:
-        raise located(error, file_name) from None
+        raise checks.located(error, file_name) from None
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
-    """Design of a list that `grashof solve` wrote, and all that the list states of it."""
+    """Design of a list that `grashof solve` wrote, and its entry in the list."""
     from grashof.problems.files.linkage_schema import as_document, linkage_from
 
     where = f"{path}#{which}"
@@ -187,7 +174,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(f"{where}: has no design {which or '(none named)'}; {hint}")
     rank = ranks[which]
     design = designs[rank]
-    with located_in(where):
+    with checks.located_in(where):
         kind = mechanism(design.get("mechanism", FOUR_BAR), among=WORDS)
     keys = _names(kind, design.get("linkage"))
     try:
@@ -199,20 +186,20 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
             f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
         ) from None
     # JSON can spell what no file can hold.
-    heading, unit = (readable(word) if isinstance(word, str) else word for word in (heading, unit))
+    heading, unit = (checks.readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "mechanism": kind, **as_document(stated)}
     document["dynamics"] = content.get("dynamics", {})
-    with located_in(where):
+    with checks.located_in(where):
         driven = _cylinder(design.get("cylinder"))
-        spec = linkage_from(document, readable(f"{path.parent.name or path.stem}-{rank}"))
-        angles = {key: np.asarray(finite_number(angle, key)) for key, angle in turned.items()}
+        spec = linkage_from(document, checks.readable(f"{path.parent.name or path.stem}-{rank}"))
+        angles = {key: np.asarray(checks.finite_number(angle, key)) for key, angle in turned.items()}
         linkage = spec.linkage.changed(**angles)
     if direction not in (1, -1):
         raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
     problem = _listed_problem(content, path)
     dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
-    title, source = f"{spec.title}: design {rank}", readable(str(path))
-    with located_in(where):
+    title, source = f"{spec.title}: design {rank}", checks.readable(str(path))
+    with checks.located_in(where):
         listed = LinkageSpec(
             linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
         )
@@ -220,7 +207,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
 
 
 def _names(word: str, stated: Any) -> dict[str, bool]:
-    """What `Linkage.stated` has for a kind of linkage, and whether it is an angle."""
+    """Keys of `Linkage.stated` for a kind of linkage, and whether each is an angle."""
     rows = [row for row in MECHANISMS if row.word == word]
     given = set(stated) if isinstance(stated, dict) else set()
     kind = max(rows, key=lambda row: len(given & {each.name for each in row.parameters}))
@@ -247,7 +234,7 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
     wrong = f"{shown(text)} is not text"
     if isinstance(text, str):
         try:
-            return problem_of(text, "problem_toml", readable(str(content.get("problem", path.stem))))
+            return problem_of(text, "problem_toml", checks.readable(str(content.get("problem", path.stem))))
         except ProblemError as error:
             wrong = str(error).splitlines()[0]
     writer = content.get("grashof")
@@ -260,11 +247,14 @@ def _listed_problem(content: dict[str, Any], path: Path) -> Problem | None:
 
 
 def _errors(given: list[float | None]) -> tuple[float | None, ...]:
-    return tuple(None if error is None else number_within(error, 0.0, GREATEST, "error") for error in given)
+    return tuple(
+        None if error is None else checks.number_within(error, 0.0, checks.GREATEST, "error")
+        for error in given
+    )
 
 
 def _rank(given: object) -> int:
-    """A rank; `ValueError` for what is none."""
+    """A rank; `ValueError` where it is not one."""
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= _LAST_RANK:
         raise ValueError
     return given

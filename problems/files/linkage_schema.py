@@ -1,4 +1,4 @@
-"""The linkage file's structure: which keys there are, of what type, and what they may hold."""
+"""The structure of linkage files: their keys, types and allowed values."""
 
 from __future__ import annotations
 
@@ -12,20 +12,11 @@ from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_
 
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
 from grashof.problems.files.tables import Table, Text, listed, of_length, one_of, stated
-from grashof.problems.values.checks import (
-    GREATEST,
-    MOST_TURNS,
-    finite_number,
-    noted,
-    number_within,
-    refuse,
-    refused,
-)
+from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
     PARAMETERS,
@@ -46,15 +37,15 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
     wrong = dict(_of_other_kinds(document, kind))
     rest = {key: value for key, value in document.items() if key not in wrong}
     lines = list(wrong.values())
-    with noted(lines):
+    with checks.noted(lines):
         found: LinkageTable = stated(FILES[kind], rest, folder)
         if not lines:
             return found.spec(name)
-    raise refused(lines)
+    raise checks.refused(lines)
 
 
 def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `Linkage.stated` has, but angles, by the keys of a linkage file."""
+    """`Linkage.stated` without angles, by the keys of a linkage file."""
     inner = {key: given[row.name] for key, row in _OF_DYAD.items() if row.name in given}
     names = ("hosts", *(row.name for row in _OF_DYAD.values()))
     rest = {name: value for name, value in given.items() if name not in names}
@@ -65,9 +56,9 @@ def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _of_other_kinds(document: dict[str, Any], kind: str) -> Iterator[tuple[str, str]]:
-    """Keys that only linkages of other kinds have, with what is wrong."""
+    """Keys that only linkages of other kinds have, with their errors."""
     own = set(FILES[kind].model_fields)
-    own |= set(DyadTable.model_fields) if "dyad" in own else set()  # one of these is in the wrong place
+    own |= set(DyadTable.model_fields) if "dyad" in own else set()  # such a key is in the wrong place
     for key in (key for key in document if key not in own):
         having = [word for word, file in FILES.items() if key in file.model_fields]
         if having:
@@ -82,7 +73,7 @@ def _by_key(row: Parameter) -> tuple[str, Parameter]:
     return replace(row, name=row.name.removesuffix("_2")).key, row
 
 
-# What the second dyad of six-bars is given by, by the keys of its table; the first loop is a four-bar.
+# Parameters of the second dyad of six-bars, by the keys of its table; the first loop is a four-bar.
 _OF_DYAD = dict(
     _by_key(each) for row in _SIX_BARS for each in row.parameters if each not in row.one_loop.parameters
 )
@@ -107,7 +98,7 @@ _Word = Annotated[str, AfterValidator(_word)]
 
 
 class _Heading(Table):
-    """What every linkage file may begin with; the keys of a file come in this order.
+    """The heading of every linkage file; the keys of a file come in this order.
 
     Parameters
     ----------
@@ -133,19 +124,19 @@ class _Checked(Table):
     @field_validator("*")
     @classmethod
     def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
-        where, most = str(key.field_name), MOST_TURNS * 360
+        where, most = str(key.field_name), checks.MOST_TURNS * 360
         row = _PARAMETERS.get(where)
         if given is None:
             return given
         if where in ("r1", "output_arm"):
-            if finite_number(given, where) <= 0:
+            if checks.finite_number(given, where) <= 0:
                 raise ProblemError(f"{where} is {given:g}; it must be greater than zero")
-            number_within(given, -GREATEST, GREATEST, where)
+            checks.number_within(given, -checks.GREATEST, checks.GREATEST, where)
         elif where == "ground_angle_deg" or (row is not None and row.kind == "angle"):
-            number_within(given, -most, most, where)
+            checks.number_within(given, -most, most, where)
         elif row is not None:
             for number in np.ravel(row.array(given)).tolist():
-                number_within(number, -GREATEST, GREATEST, where)
+                checks.number_within(number, -checks.GREATEST, checks.GREATEST, where)
         return given
 
 
@@ -170,7 +161,7 @@ class _DyadTable(_Checked):
     hosts: _Hosts | None = None
 
     def value(self) -> dict[str, Any]:
-        """What it states, as arguments of `SixBar`."""
+        """The arguments of `SixBar` that it states."""
         found, wrong = {}, []
         for key, row in _OF_DYAD.items():
             having = _kinds_having(row)
@@ -181,7 +172,7 @@ class _DyadTable(_Checked):
                 found[row.name] = _in_radians(row, given)
             elif given is not None:
                 wrong.append(f"{key} does not go with kind {self.kind}; only {' and '.join(having)} has it")
-        refuse(wrong)
+        checks.refuse(wrong)
         return found
 
     def row(self, word: str) -> Mechanism:
@@ -213,7 +204,7 @@ def _in_radians(row: Parameter, given: Any) -> Any:
 
 
 class LinkageTable(_Checked, MachineTables, _Heading):
-    """The whole linkage file, whatever the kind; the tables of each kind have its parameters besides.
+    """The complete linkage file of any kind; each kind adds its parameters.
 
     Parameters
     ----------
@@ -223,7 +214,7 @@ class LinkageTable(_Checked, MachineTables, _Heading):
         With `r1`: direction of O4 from O2; 0 without it.
     """
 
-    one_loop: ClassVar[Mechanism]  # what its file states but for a second dyad
+    one_loop: ClassVar[Mechanism]  # the kind without a second dyad
 
     def value(self) -> Linkage:
         """The linkage itself, checked with what belongs to it."""
@@ -262,11 +253,11 @@ class LinkageTable(_Checked, MachineTables, _Heading):
         return [float(x + r1 * np.cos(angle)), float(y + r1 * np.sin(angle))]
 
     def _given(self, key: str) -> Any:
-        """What a key states; None where the kind has no such key."""
+        """The value of a key; None where the kind has no such key."""
         return getattr(self, key, None)
 
     def spec(self, name: str) -> LinkageSpec:
-        """What the file states."""
+        """The file as a value."""
         unit = self._given("pumping_unit")
         return LinkageSpec(
             linkage=self.value(),
@@ -290,7 +281,7 @@ def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
 
 
 def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
-    """The file of a kind: the parameters that it has, and what else goes with them."""
+    """The file of a kind: its parameters and the keys that go with them."""
     keys = {key: made for row in kind.parameters for key, made in _keys(row)} | more
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys and not more else {}
     if "r4" in keys and not more:  # the walking beam
@@ -304,7 +295,7 @@ def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
 
 
 def _dyad_file() -> type[_DyadTable]:
-    """The table of the second dyad: what all have, and what not all have."""
+    """The table of the second dyad: keys of all kinds, and of some."""
     keys: dict[str, Any] = {}
     for key, row in _OF_DYAD.items():
         of_all = set(_kinds_having(row)) == {row.dyads[1].kind for row in _SIX_BARS}

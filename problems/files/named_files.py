@@ -3,17 +3,77 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from copy import copy
 from pathlib import Path
 from typing import Any
 
-from grashof.problems.files import drawing_files, spreadsheet
-from grashof.problems.files.drawing_files import areas_of, outlines_of
-from grashof.problems.files.number_table import number_rows, numbers_wanted
-from grashof.problems.files.spreadsheet import rows_of
-from grashof.problems.values.checks import bounded, each_checked, located, noted, refuse
+import numpy as np
+
+from grashof.problems.files.dxf_lines import dxf_drawing
+from grashof.problems.files.on_disk import file_bytes
+from grashof.problems.files.spreadsheet import number_rows, numbers_wanted, rows_of
+from grashof.problems.files.svg_lines import svg_drawing
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import bounded, each_checked, located_in, noted, refuse
+from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.specs.problem import MOST_TARGETS
+
+TABLES, DRAWINGS = (".csv", ".xlsx"), (".dxf", ".svg")
+_ENDS_MEET = 1e-6  # share of a drawing's size within which two ends are one place
+
+
+def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
+    """Polygons that the lines of a drawing enclose; `ProblemError` where they enclose nothing.
+
+    In `name` ``machine.dxf#KEEP_OUT`` are the lines of a layer, of an SVG those of a group; a drawing that
+    states its own unit is converted to that of the problem, `length_unit`.
+    """
+    import shapely
+
+    lines, size = _lines(name, folder, length_unit)
+    grid = _ENDS_MEET * size
+    closed = [line for line in lines if _meets(line, grid)]
+    rest = [line for line in lines if not _meets(line, grid)]
+    apart: Any = [shapely.set_precision(shapely.linestrings(line), grid) for line in rest]
+    merged: Any = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(apart))) if apart else []
+    chained = [np.asarray(shapely.get_coordinates(part)) for part in merged]
+    if left := [line for line in chained if not _meets(line, grid)]:
+        (x, y), more = left[0][0].tolist(), len(left) - 1
+        others = f", and {more} more" if more else ""
+        where = f"the line that begins at ({x:.6g}, {y:.6g})"
+        raise ProblemError(f"{name}: {where} is open{others}; it must be closed")
+    for line in [*closed, *chained]:
+        if len(line) < 4 or not shapely.Polygon(line).area:
+            x, y = line[0].tolist()
+            raise ProblemError(f"{name}: the line that begins at ({x:.6g}, {y:.6g}) encloses nothing")
+    return [line[:-1].tolist() for line in [*closed, *chained]]
+
+
+def _meets(line: FloatArray, grid: float) -> bool:
+    """Whether a line ends where it begins."""
+    return bool(np.hypot(*(line[0] - line[-1])) <= 2 * grid)
+
+
+def outlines_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
+    """Lines of a drawing as they are drawn; parameters as for `areas_of`."""
+    return [line.tolist() for line in _lines(name, folder, length_unit)[0]]
+
+
+def _lines(name: str, folder: Path, length_unit: str) -> tuple[list[FloatArray], float]:
+    """Polylines in the problem's unit, and the size of all."""
+    file, _, part = name.partition("#")
+    path = folder / file
+    read: Callable[[bytes, str], tuple[list[FloatArray], float | None]]
+    read = dxf_drawing if path.suffix.lower() == ".dxf" else svg_drawing
+    try:
+        lines, metre = read(file_bytes(path, "a drawing"), part)
+    except ProblemError as error:
+        raise ProblemError(str(error) if str(error).startswith(str(path)) else f"{name}: {error}") from None
+    factor = metre / METRES[length_unit] if metre is not None and length_unit in METRES else 1.0
+    lines = [factor * line for line in lines]
+    every = np.concatenate(lines)
+    return lines, float(np.ptp(every, axis=0).max())
+
 
 Read = Callable[[str, Path, str], dict[str, Any]]  # from a name, its folder and the length unit to keys
 _ANGLES = ("angle_deg", "angle")
@@ -24,7 +84,7 @@ def poses_of(name: str, folder: Path) -> dict[str, Any]:
     """``poses``, as a problem file has them, and ``timing_deg`` where a column has it.
 
     The columns are x, y and angle_deg; empty cells leave parts of a pose free. `ProblemError` where there are
-    others, or what is no number, a line each.
+    others, or cells that are not numbers, a line each.
     """
     rows, timing = _table(name, folder, ("x", "y", "angle_deg"))
     return {"poses": each_checked(rows, name, _pose, ": row {}", 1), **timing}
@@ -85,62 +145,45 @@ def _body(name: str, folder: Path, unit: str) -> dict[str, Any]:
     return {"body": areas[0]}
 
 
-# By table and key; what is read may be keys of the same table besides.
+# By table and key; a file may give further keys of the same table.
 FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
-    ("motion", "poses"): (spreadsheet.ENDINGS, lambda name, folder, _: poses_of(name, folder)),
-    ("path", "points"): (spreadsheet.ENDINGS, lambda name, folder, _: points_of(name, folder)),
-    ("motion", "body"): (drawing_files.ENDINGS, _body),
+    ("motion", "poses"): (TABLES, lambda name, folder, _: poses_of(name, folder)),
+    ("path", "points"): (TABLES, lambda name, folder, _: points_of(name, folder)),
+    ("motion", "body"): (DRAWINGS, _body),
     ("requirements", "keep_out"): (
-        drawing_files.ENDINGS,
+        DRAWINGS,
         lambda name, folder, unit: {"keep_out": areas_of(name, folder, unit)},
     ),
     ("scene", "outlines"): (
-        drawing_files.ENDINGS,
+        DRAWINGS,
         lambda name, folder, unit: {"outlines": outlines_of(name, folder, unit)},
     ),
 }
 
 
 def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """A copy of a parsed problem file with what it names in place of the names.
+    """A copy of a parsed problem file with the content of the files that it names.
 
-    Names are relative to a folder; without it none may be given. `ProblemError` has what a file lacks, after
-    the key that names it, a line each.
+    Names are relative to a folder; without it they are refused. `ProblemError` has a line for each error of
+    a file, after the key that names it.
     """
     found, wrong = dict(document), list[str]()
     unit = document.get("length_unit", "")
     for (table, key), (endings, read) in FILES.items():
-        stated = found.get(table)
+        stated, where = found.get(table), f"{table}.{key}"
         name = stated.get(key) if isinstance(stated, dict) else None
         if not isinstance(name, str) or not isinstance(stated, dict):
             continue
         with noted(wrong):
-            found[table] = _filled(stated, f"{table}.{key}", name, endings, folder, read, unit)
+            if Path(name.partition("#")[0]).suffix.lower() not in endings:
+                allowed = f"it must be a list, or a file {' or '.join(endings)}"
+                raise ProblemError(f"{where} is {shown(name)}; {allowed}")
+            if folder is None:
+                raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
+            with located_in(where):
+                keys = read(name, folder, unit if isinstance(unit, str) else "")
+                for other in (other for other in keys if other in stated and other != key):
+                    raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
+            found[table] = stated | keys
     refuse(wrong)
     return found
-
-
-def _filled(
-    stated: dict[str, Any],
-    where: str,
-    name: str,
-    endings: tuple[str, ...],
-    folder: Path | None,
-    read: Read,
-    unit: Any,
-) -> dict[str, Any]:
-    """A table with what a file has in place of its name."""
-    if Path(name.partition("#")[0]).suffix.lower() not in endings:
-        raise ProblemError(f"{where} is {shown(name)}; it must be a list, or a file {' or '.join(endings)}")
-    if folder is None:
-        raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
-    try:
-        keys = read(name, folder, unit if isinstance(unit, str) else "")
-    except ProblemError as error:
-        raise located(error, where) from None
-    filled = copy(stated)
-    for key, value in keys.items():
-        if key in stated and not where.endswith(f".{key}"):
-            raise ProblemError(f"{where}: {name} has {key}, which is given besides; give one of them")
-        filled[key] = value
-    return filled

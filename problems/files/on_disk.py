@@ -1,18 +1,138 @@
-"""Results on disk: files that are there whole or not at all, and the versions that they depend on."""
+"""Files on disk: TOML that people write, the catalogues, and results that are complete or absent."""
 
 from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
-from contextlib import suppress
+import stat
+import tomllib
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import cache
+from importlib import resources
 from importlib.metadata import version
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from grashof.problems.values.checks import hint, readable
+from grashof.problems.values.errors import ProblemError, shown
+
+MOST_BYTES = 4 * 2**20  # of files that people write or draw
+MOST_BYTES_MADE = 256 * 2**20  # of those that this program writes
+
+
+@dataclass(frozen=True, slots=True)
+class Catalogue:
+    """Files shipped with the package, each under the name of its stem."""
+
+    what: str  # one of them, in messages
+    folder: str = ""  # below the data of the problems; empty for these themselves
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All names, sorted."""
+        return tuple(sorted(self._files))
+
+    def text(self, name: str) -> str:
+        """The file of this name; `ProblemError` when there is none."""
+        if name not in self._files:
+            raise ProblemError(f"{shown(name)} is not a {self.what} of the catalogue; {self.hint(name)}")
+        return self._files[name].read_text(encoding="utf-8")
+
+    def hint(self, name: str) -> str:
+        """The likely name in place of one that is not there."""
+        return hint(name, self.names, f"the catalogue has {', '.join(self.names)}")
+
+    def read(self, given: str | os.PathLike[str]) -> tuple[str, str, str, Path | None]:
+        """Text, file name, name and folder of an entry, or of the file of a path; entries have no folder."""
+        name = os.fspath(given)
+        if isinstance(given, str) and not looks_like_path(name):
+            if name in self.names:
+                return self.text(name), f"{name}.toml", name, None
+            if not exists(name):
+                neither = f"{shown(name)} is neither a {self.what} of the catalogue nor a file"
+                raise ProblemError(f"{neither}; {self.hint(name)}")
+        path = Path(given)
+        text = file_text(path, f"a {self.what} file", self.hint(path.stem))
+        return text, str(path), readable(path.stem), path.parent
+
+    @property
+    def _files(self) -> dict[str, Traversable]:
+        folder = resources.files("grashof.problems") / "data" / self.folder
+        return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
+
+
+def looks_like_path(text: str) -> bool:
+    """Whether a string names a file, and not an entry of a catalogue."""
+    separators = {"/", os.sep, os.altsep}
+    return text.endswith(".toml") or any(sep in text for sep in separators if sep)
+
+
+def exists(text: str) -> bool:
+    """Whether there is such a file; False for names that no file can have, where Path.exists raises."""
+    return bool(text) and os.path.exists(text)  # noqa: PTH110
+
+
+def file_text(path: Path, wanted: str, suggestion: str = "", most: int = MOST_BYTES) -> str:
+    """Text of a file that a user named; `ProblemError` states why it cannot be read, with a suggestion."""
+    try:
+        # utf-8-sig: editors on Windows put a byte order mark first, which TOML does not know.
+        return file_bytes(path, wanted, suggestion, most).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ProblemError(f"{path}: is not UTF-8 text, at byte {error.start}") from None
+
+
+def file_bytes(path: Path, wanted: str, suggestion: str = "", most: int = MOST_BYTES) -> bytes:
+    """Content of a plain file of at most `most` bytes, likewise."""
+    content = b""
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISREG(mode):  # reading a pipe or a device may never end
+            with path.open("rb") as file:
+                content = file.read(most + 1)
+    except FileNotFoundError:
+        raise ProblemError(f"{path}: there is no such file{suggestion and '; '}{suggestion}") from None
+    except OSError as error:
+        raise ProblemError(f"{path}: cannot be read: {error.strerror}") from None
+    except ValueError as error:  # no name of a file, such as one with a null character
+        raise ProblemError(f"{str(path)!r}: cannot be read: {error}") from None
+    if not stat.S_ISREG(mode):
+        found = "a folder" if stat.S_ISDIR(mode) else "not a plain file"
+        raise ProblemError(f"{path}: is {found}; it must be {wanted}")
+    if len(content) > most:
+        raise ProblemError(f"{path}: has more than {most} bytes; {wanted} must have at most that")
+    return content
+
+
+@contextmanager
+def read_by_others(wanted: str) -> Iterator[None]:
+    """Errors of a library on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except ProblemError:
+        raise
+    except Exception as error:  # noqa: BLE001  (no library documents what damaged bytes make it raise)
+        said = str(error).split("\n", maxsplit=1)[0].strip()
+        raise ProblemError(f"is not {wanted}: {shown(said) if said else type(error).__name__}") from None
+
+
+def document_of(text: str, file_name: str) -> dict[str, Any]:
+    """The document of a TOML text; `ProblemError` where it is not TOML."""
+    try:
+        return tomllib.loads(text)
+    # Besides its own error: an integer of thousands of digits, lists nested a thousand deep.
+    except (ValueError, RecursionError) as error:
+        why = str(error).replace("Cannot overwrite a value", "a key or table is given twice")
+        raise ProblemError(f"{file_name}: is not TOML: {why}") from None
+
+
 PACKAGES = ("grashof", "casadi", "numpy", "scipy")  # whose versions may change a digit
-WRITING = ".writing-"  # how names of files begin that are not whole yet
+WRITING = ".writing-"  # beginning of the names of incomplete files
 
 
 @cache
@@ -22,9 +142,9 @@ def versions() -> dict[str, str]:
 
 
 def write_whole(path: Path, content: Mapping[str, Any] | str) -> None:
-    """A file, JSON or text, that is there whole or not at all, whenever the machine stops.
+    """Write a file, JSON or text, that is complete or absent even if the machine stops.
 
-    `OSError` where the disk is full or the folder is lost; nothing is left of the file then.
+    `OSError` where the disk is full or the folder is lost; no part of the file is left then.
     """
     beside = path.with_name(f"{WRITING}{os.getpid()}-{path.name}")
     try:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from grashof.problems.files.toml_file import Catalogue, document_of, exists, file_text, looks_like_path
-from grashof.problems.values.checks import located, readable
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.files.on_disk import Catalogue, document_of
+from grashof.problems.values.checks import located
+from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.specs.problem import Problem
 
 _PROBLEMS = Catalogue("problem")
@@ -46,16 +46,8 @@ def load_with_text(problem: str | os.PathLike[str]) -> tuple[Problem, str]:
     >>> text == problem_text("luggage")
     True
     """
-    if isinstance(problem, str) and not looks_like_path(problem):
-        if problem in _PROBLEMS.names:
-            text = _PROBLEMS.text(problem)
-            return problem_of(text, f"{problem}.toml", problem), text
-        if not exists(problem):
-            hint = _PROBLEMS.hint(problem)
-            raise ProblemError(f"{shown(problem)} is neither a problem of the catalogue nor a file; {hint}")
-    path = Path(problem)
-    text = file_text(path, "a problem file", _PROBLEMS.hint(path.stem))
-    return problem_of(text, str(path), readable(path.stem), path.parent), text
+    text, file_name, name, folder = _PROBLEMS.read(problem)
+    return problem_of(text, file_name, name, folder), text
 
 
 def catalogue() -> tuple[str, ...]:

@@ -1,7 +1,4 @@
-"""The problem file's structure: which keys there are and of what type.
-
-The value types check what the values mean; both kinds of error leave as one `ProblemError`.
-"""
+"""The structure of problem files: their keys and types; the value types check the values."""
 
 from __future__ import annotations
 
@@ -21,23 +18,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from grashof.problems.files import tables
 from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
-from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
-from grashof.problems.files.tables import (
-    LIST,
-    NUMBER,
-    TABLE,
-    WORD,
-    WRONG,
-    Table,
-    Text,
-    either,
-    listed,
-    one_of,
-    stated,
-    tag,
-)
 from grashof.problems.files.task_schema import TASKS, Corners, Pair, SceneTable
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, refused
@@ -49,7 +32,7 @@ from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
-from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
+from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
@@ -63,12 +46,12 @@ def problem_from(document: dict[str, Any], name: str, folder: Path | None = None
     document = with_files(document, folder)
     wrong: list[str] = []
     with noted(wrong):
-        return stated(ProblemFile, document, folder).problem(name)
+        return tables.stated(ProblemFile, document, folder).problem(name)
     raise refused([*wrong, *_ill_matched(document)])
 
 
 def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
-    """Errors between tables, which nothing else reports as long as one of them is wrong by itself."""
+    """Contradictions between tables, which stay unreported while a table has errors of its own."""
     kind, unit = document.get("kind"), document.get("length_unit", "")
     for other in TASKS if kind in [*TASKS] else ():  # a file may state a table as its kind
         if other != kind and other in document:
@@ -80,52 +63,49 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     yield from wrong
 
 
-@keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
-class BoxTable(SpecTable):
-    telling: ClassVar[bool] = False  # x and y do not show where they belong
+@tables.keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
+class BoxTable(tables.SpecTable):
+    suggested: ClassVar[bool] = False  # x and y do not show where they belong
 
     @field_validator("x", "y", mode="before", check_fields=False)
     @classmethod
     def _line(cls, given: Any) -> Any:
         """A number alone is a side of no width."""
-        return [given, given] if tag(given) == NUMBER else given
+        return [given, given] if tables.tag(given) == tables.NUMBER else given
 
 
 def _at(point: list[float]) -> Box:
     """The box of a single point."""
     if len(point) != 2:
-        raise PydanticCustomError(WRONG, _PLACE_SHAPES)
+        raise PydanticCustomError(tables.WRONG, _PLACE_SHAPES)
     x, y = point
     return Box((x, x), (y, y))
 
 
 _PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
 Place = Annotated[
-    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(TABLE)]
-    | Annotated[list[float], AfterValidator(_at), Tag(LIST)],
-    either(_PLACE_SHAPES),
+    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(tables.TABLE)]
+    | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST)],
+    tables.either(_PLACE_SHAPES),
 ]
 
 
 _AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg file"
 
 
-def _several(given: Any) -> Any:
-    """Polygons; a single one, which is no list of them, is refused in one line."""
-    if isinstance(given, list) and given and all(_is_corner(each) for each in given):
-        raise PydanticCustomError(WRONG, "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]")
-    return given
-
-
 def _is_corner(given: Any) -> bool:
     return isinstance(given, list) and len(given) == 2 and all(isinstance(x, int | float) for x in given)
 
 
-Areas = Annotated[list[Corners], listed(_AREAS), BeforeValidator(_several)]
-Parts = Annotated[list[str], listed(f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}")]
+_SEVERAL = tables.unless(
+    lambda given: not (isinstance(given, list) and given and all(map(_is_corner, given))),
+    "a list of polygons, such as [[[0, 0], [1, 0], [1, 1]]]",  # a single one is refused in one line
+)
+Areas = Annotated[list[Corners], tables.listed(_AREAS), BeforeValidator(_SEVERAL)]
+Parts = Annotated[list[str], tables.listed(KEPT_OUT)]
 Direction = Annotated[
-    Annotated[float, Tag(NUMBER)] | Annotated[Pair, Tag(LIST)],
-    either("a number or [lo, hi]"),
+    Annotated[float, Tag(tables.NUMBER)] | Annotated[Pair, Tag(tables.LIST)],
+    tables.either("a number or [lo, hi]"),
 ]
 _BY_KIND = {
     Kind.DIRECTION: Direction,
@@ -142,17 +122,21 @@ _MODES: dict[str, Any] = {
 }
 
 
-def _type_of(name: str) -> Any:
-    """Type of a key of ``[requirements]``: by what it limits, or as a mode."""
-    return _BY_KIND.get(LIMITS[name].kind, float) if name in LIMITS else _MODES.get(name, float)
+# The type of each key of ``[requirements]``: by its limit, or as a mode.
+_TYPES: dict[str, Any] = {
+    each.name: _BY_KIND.get(LIMITS[each.name].kind, float)
+    if each.name in LIMITS
+    else _MODES.get(each.name, float)
+    for each in fields(Requirements)
+}
 
 
-@keys_of(Requirements, {each.name: (_type_of(each.name) | None, None) for each in fields(Requirements)})
-class RequirementsTable(SpecTable):
-    beside = EACH
+@tables.keys_of(Requirements, {name: (given | None, None) for name, given in _TYPES.items()})
+class RequirementsTable(tables.SpecTable):
+    beside = tables.EACH
 
 
-_Weights = create_model("_Weights", __base__=Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
+_Weights = create_model("_Weights", __base__=tables.Table, **dict.fromkeys(GOALS, (float, 0.0)))  # type: ignore[call-overload]
 
 
 class WeightsTable(_Weights):  # type: ignore[misc, valid-type]
@@ -168,18 +152,18 @@ _GOALS = "transmission, compactness, torque, another quantity"
 
 def _goal(word: str) -> str:
     if word not in GOALS:
-        raise PydanticCustomError(WRONG, f"{near_miss(word, list(GOALS)) or _GOALS}")
+        raise PydanticCustomError(tables.WRONG, f"{near_miss(word, list(GOALS)) or _GOALS}")
     return word
 
 
 Maximise = Annotated[
-    Annotated[str, AfterValidator(_goal), Tag(WORD)] | Annotated[WeightsTable, Tag(TABLE)],
-    either(f"{_GOALS} or a table of weights"),
+    Annotated[str, AfterValidator(_goal), Tag(tables.WORD)] | Annotated[WeightsTable, Tag(tables.TABLE)],
+    tables.either(f"{_GOALS} or a table of weights"),
 ]
 
 
-class ObjectiveTable(Table):
-    """What makes one design better than another.
+class ObjectiveTable(tables.Table):
+    """The criterion that ranks designs.
 
     Parameters
     ----------
@@ -195,16 +179,16 @@ class ObjectiveTable(Table):
         return Objective(**{"transmission": 0.0, self.maximise: 1.0})
 
 
-Carriers = Annotated[list[str], listed(f"a list of some of {', '.join(CARRIERS)}")]
+Carriers = Annotated[list[str], tables.listed(f"a list of some of {', '.join(CARRIERS)}")]
 
 
-@keys_of(CylinderSpec, {"closed": Pair, "on": Carriers, "base": Place})
-class CylinderTable(SpecTable):
-    beside = EACH
+@tables.keys_of(CylinderSpec, {"closed": Pair, "on": Carriers, "base": Place})
+class CylinderTable(tables.SpecTable):
+    beside = tables.EACH
 
 
-class DriverTable(Table):
-    """What drives the linkage in place of a crank.
+class DriverTable(tables.Table):
+    """The drive of the linkage in place of a crank.
 
     Parameters
     ----------
@@ -219,25 +203,25 @@ class DriverTable(Table):
         return made
 
 
-@keys_of(Manufacturing)
-class ManufacturingTable(SpecTable):
+@tables.keys_of(Manufacturing)
+class ManufacturingTable(tables.SpecTable):
     beside = MappingProxyType({"*": {"length_tolerance": 1.0}})
 
 
-@keys_of(Search)
-class SearchTable(SpecTable):
-    beside = EACH
+@tables.keys_of(Search)
+class SearchTable(tables.SpecTable):
+    beside = tables.EACH
 
 
 Mechanism = Annotated[
-    Annotated[str, Tag(WORD)] | Annotated[list[Any], Tag(LIST)],
-    either(ANY_KINDS),
+    Annotated[str, Tag(tables.WORD)] | Annotated[list[Any], Tag(tables.LIST)],
+    tables.either(ANY_KINDS),
     AfterValidator(mechanisms),
 ]
 
 
-class _Heading(Table):
-    """What is asked; the keys of a file come in this order.
+class _Heading(tables.Table):
+    """The complete problem; the keys of a file come in this order.
 
     Parameters
     ----------
@@ -248,21 +232,21 @@ class _Heading(Table):
     source : str
         Where the problem is from, for people.
     length_unit : str
-        Unit of all lengths: mm, cm, m, in or ft where forces are asked for, otherwise any word.
+        Unit of all lengths: mm, cm, m, in or ft where there are forces, otherwise any word.
     """
 
-    kind: Annotated[str, one_of(*TASKS)]
+    kind: Annotated[str, tables.one_of(*TASKS)]
     mechanism: Mechanism = FOUR_BAR
-    title: Text = ""
-    source: Text = ""
-    length_unit: Text = ""
+    title: tables.Text = ""
+    source: tables.Text = ""
+    length_unit: tables.Text = ""
 
 
 _tables: dict[str, Any] = {kind: (table | None, None) for kind, table in TASKS.items()}
-_Stated = create_model("_Stated", __base__=_Heading, **_tables)
+_WithTask = create_model("_WithTask", __base__=_Heading, **_tables)
 
 
-class _Task(_Stated):  # type: ignore[misc, valid-type]
+class _Task(_WithTask):  # type: ignore[misc, valid-type]
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None
@@ -274,9 +258,9 @@ class ProblemFile(MachineTables, _Task):
     search: SearchTable = SearchTable()
 
     def value(self) -> Task:
-        tables: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
-        mine = tables.pop(self.kind)
-        for other, table in tables.items():
+        by_kind: dict[str, Any] = {kind: getattr(self, kind) for kind in TASKS}
+        mine = by_kind.pop(self.kind)
+        for other, table in by_kind.items():
             if table is not None:
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
@@ -287,7 +271,7 @@ class ProblemFile(MachineTables, _Task):
         return task
 
     def _requirements(self) -> Requirements:
-        """As they are stated; a cylinder turns nothing fully, so that any linkage will do by default."""
+        """As stated; a cylinder turns nothing fully, so that with one the default rotatability is any."""
         wanted: Requirements = self.requirements.value()
         if self.driver is not None and not wanted.same_branch:
             raise ProblemError("requirements.same_branch is false; it must be true with driver.cylinder")

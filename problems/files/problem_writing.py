@@ -1,4 +1,4 @@
-"""A problem written as its file: what `load` reads back as the same problem."""
+"""A problem written as a file, which `load` reads back as the same problem."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from grashof.problems.values.tasks.task import Task, row_of
 def problem_toml(problem: Problem) -> str:
     """The problem as TOML, complete, with numbers in full precision.
 
-    Angles are in degrees there: what a file stated comes back to the last bit, other radians to rounding.
+    Angles are in degrees: those that a file stated come back to the last bit, others to rounding.
     """
     kinds = problem.mechanism
-    asked = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
-    head = {"kind": problem.task.kind, **asked, **{key: getattr(problem, key) for key in _WORDS}}
+    kind = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
+    head = {"kind": problem.task.kind, **kind, **{key: getattr(problem, key) for key in _WORDS}}
     lines = [f"{key} = {_value(value)}" for key, value in head.items()]
     for name, given in _tables(problem):
         heading = f"[[{name}]]" if isinstance(given, list) else f"[{name}]"
@@ -101,7 +101,7 @@ def _poses(task: Task) -> list[Any]:
 
 
 def _degrees(angles: FloatArray) -> FloatArray:
-    """Degrees that give these radians to the last bit, where there are such."""
+    """Degrees that give these radians to the last bit, where possible."""
     nearest = np.degrees(angles)
     beside = [np.nextafter(nearest, -np.inf), np.nextafter(nearest, np.inf), np.round(nearest, 9)]
     found = nearest.copy()

@@ -11,11 +11,11 @@ from importlib import resources
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
-from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.linkages.one_loop import FourBar
 
 
 class ErrorDefinition(StrEnum):
-    """How a published sum of squared distances is meant.
+    """Definitions of a published sum of squared distances.
 
     At the printed driver angles, at the best driver angle for the first of the timed points, or over the
     closest points of the coupler curve in whatever order.
@@ -35,7 +35,7 @@ class PublishedDesign:
     year: int
     linkage: FourBar  # as printed, so with few digits
     error: float  # length squared: sum of squared distances of the linkage as printed
-    reported: float | None  # length squared: the sum that its authors state, where it is another one
+    reported: float | None  # length squared: the sum that its authors state, where it differs
     error_definition: ErrorDefinition
     theta2: FloatArray | None  # (N,), rad: printed driver angle at each point
     source: str

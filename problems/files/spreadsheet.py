@@ -1,29 +1,29 @@
-"""Rows of CSV and Excel files as text, the cells as they stand."""
+"""Tables in CSV and Excel files: their rows as text, or as numbers under named columns."""
 
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from io import BytesIO, StringIO
 from itertools import islice
 from pathlib import Path
+from typing import TypeVar
 from zipfile import ZipFile
 
-from grashof.problems.files.foreign import read_by_others
-from grashof.problems.files.toml_file import MOST_BYTES, file_bytes, file_text
-from grashof.problems.values.checks import located_in
+from grashof.problems.files.on_disk import MOST_BYTES, file_bytes, file_text, read_by_others
+from grashof.problems.values.checks import bounded, each_checked, located_in
 from grashof.problems.values.errors import ProblemError, shown
 
 MOST_LINES = 20_000  # of a table, empty ones among them
 _MOST_COLUMNS = 64
-
-ENDINGS = (".csv", ".xlsx")
 
 
 def rows_of(name: str, folder: Path) -> list[list[str]]:
     """The rows of a table, .csv or .xlsx, that are not empty.
 
     Of a workbook ``points.xlsx#Sheet`` is a sheet, the first one by default. `ProblemError` where it cannot
-    be read, is no workbook or has no such sheet; or openpyxl is not installed.
+    be read, is not a workbook, has no such sheet, or openpyxl is not installed.
     """
     file, _, sheet = name.partition("#")
     path = folder / file
@@ -32,7 +32,7 @@ def rows_of(name: str, folder: Path) -> list[list[str]]:
 
 
 def csv_rows(path: Path, wanted: str) -> list[list[str]]:
-    """All rows of a CSV file, stripped cells; `ProblemError` where it is not what is wanted."""
+    """All rows of a CSV file, cells stripped; `ProblemError` where it is not `wanted`."""
     text = StringIO(file_text(path, wanted), newline="")
     with located_in(str(path)), read_by_others(wanted):
         lines = list(islice(csv.reader(text), MOST_LINES + 1))
@@ -71,3 +71,54 @@ def _sheet(path: Path, name: str) -> list[list[str]]:
     if any(len(row) > _MOST_COLUMNS for row in rows):
         raise ProblemError(f"{path}: has more than {_MOST_COLUMNS} columns; it must have at most that")
     return rows
+
+
+Names = tuple[str, ...]  # that a column may have
+_MOST_ROWS = 10_000
+Cell = TypeVar("Cell", float, float | None)
+
+
+def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
+    """The rows of a CSV file whose first line names its columns.
+
+    `kinds` are the possible tables, each by the possible names of its columns. `ProblemError` where
+    it cannot be read, has other columns, or has cells that are not numbers, a line each.
+    """
+    lines = rows_of(path.name, path.parent)
+    given = [name.strip().casefold() for name in lines[0]] if lines else []
+    if not any(_named(given, kind) for kind in kinds):
+        wanted = " or ".join(",".join(names[-1] for names in kind) for kind in kinds)
+        found = f"has the columns {shown(','.join(given))}" if given else "is empty"
+        raise ProblemError(f"{path}: {found}; its first line must be {wanted}")
+    return number_rows(lines[1:], str(path), _MOST_ROWS, lambda line, where: _row(line, len(given), where))
+
+
+def number_rows(
+    lines: list[list[str]], where: str, most: int, row: Callable[[list[str], str], list[Cell]]
+) -> list[list[Cell]]:
+    """The rows of a table below its first line, each read with its place; `ProblemError` has a line a row."""
+    if len(lines) > most:
+        raise ProblemError(f"{where}: has {len(lines)} rows; it must have at most {most}")
+    return each_checked(lines, where, row, ": row {}", 1)
+
+
+def _named(given: list[str], kind: Sequence[Names]) -> bool:
+    return len(given) == len(kind) and all(name in names for name, names in zip(given, kind, strict=True))
+
+
+def _row(line: list[str], columns: int, where: str) -> list[float]:
+    if len(line) != columns:
+        raise ProblemError(f"{where} has {len(line)} cells; it must have {columns}")
+    with numbers_wanted(line, where):
+        return [bounded(float(cell), where) for cell in line]
+
+
+@contextmanager
+def numbers_wanted(line: list[str], where: str) -> Iterator[None]:
+    """`ProblemError` for a line whose cells, read inside, are not all numbers."""
+    try:
+        yield
+    except ProblemError:
+        raise
+    except ValueError:
+        raise ProblemError(f"{where} is {shown(','.join(line))}; it must be numbers") from None

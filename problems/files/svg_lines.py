@@ -1,4 +1,4 @@
-"""Lines of an SVG drawing that others made."""
+"""Lines of a foreign SVG drawing."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS
-from grashof.problems.files.foreign import Budget, read_by_others
+from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS, Budget
+from grashof.problems.files.on_disk import read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError, shown
 
-_CURVE = 129  # points of a curve, of which those are kept that it takes
-_KEPT = 0.8  # of that, what leaving points out may take; the rest is between the points
+_CURVE = 129  # points of a curve before it is simplified
+_KEPT = 0.8  # share of that for omitted points; the rest is for the curve between points
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "Q": 0.25}
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _WIDTH = re.compile(rf"\s*({_FLOAT})\s*(mm|cm|in|pt|pc|Q)\s*")
-# Nothing else decides where the lines of a drawing are; a long one of the first would take long to read.
+# Nothing else decides where the lines of a drawing are; long ones of the first kind would be slow to read.
 _SHORT = {
     "id", "class", "display", "transform", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry",
     "x1", "y1", "x2", "y2", "viewBox", "preserveAspectRatio",
@@ -35,7 +35,7 @@ _SVG = "{http://www.w3.org/2000/svg}"
 def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], float | None]:
     """Lines of an SVG, or of a group, with y upwards, in mm (and a mm in metres) where its size is stated so.
 
-    `ProblemError` where it is no SVG file, has no lines, or too many; or svgelements is not installed.
+    `ProblemError` where it is not an SVG file, has no lines or too many, or svgelements is not installed.
     """
     try:
         import svgelements  # type: ignore[import-untyped]
@@ -56,7 +56,7 @@ def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], floa
     if not lines:
         raise ProblemError(f"the drawing has no lines{f' in the group {shown(group)}' if group else ''}")
     if not all(np.isfinite(line).all() for line in lines):
-        raise ProblemError("the drawing has places that are not finite numbers")
+        raise ProblemError("the drawing has coordinates that are not finite")
     lines = _simplified(lines)
     if (count := sum(map(len, lines))) > MOST_POINTS:
         raise ProblemError(f"the drawing has {count} points; it must have at most {MOST_POINTS}")
@@ -64,7 +64,7 @@ def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], floa
 
 
 def _plain(content: bytes) -> bytes:
-    """The same drawing with what says where its lines are, and no more than can be read in a second."""
+    """The drawing reduced to its lines; refused if it is too large to be read in about a second."""
     budget, depth = Budget(2 * MOST_POINTS, "places", "groups"), 0
     found: ElementTree.Element | None = None
     # Expat itself limits what entities expand to.
@@ -107,7 +107,7 @@ def _copied(element: ElementTree.Element) -> ElementTree.Element:
 def _spend(
     element: ElementTree.Element, named: dict[str, ElementTree.Element], budget: Budget, depth: int
 ) -> None:
-    """Count what an element draws, with what it uses in its place."""
+    """Count the points that an element draws, those of elements that it uses included."""
     budget.enter(depth)
     budget.spend(4)
     for key in _COORDINATES:

@@ -1,12 +1,14 @@
-"""What the tables of TOML files share: strict types, and one line with the key path for what is wrong."""
+"""The tables of TOML files: strict types, keys from value types, one line with the key path per error."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
+from types import MappingProxyType
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args, get_type_hints
 
 from pydantic import (
     AfterValidator,
@@ -16,12 +18,14 @@ from pydantic import (
     Discriminator,
     ValidationError,
     ValidationInfo,
+    create_model,
+    field_validator,
     model_validator,
 )
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from grashof.problems.values.checks import near_miss, plain_text
-from grashof.problems.values.errors import ProblemError, shown, shown_key
+from grashof.problems.values.checks import hint, plain_text
+from grashof.problems.values.errors import ProblemError, listing, shown, shown_key
 
 # Type of a validator's error; its message is what the value must be.
 WRONG = "wrong"
@@ -38,14 +42,14 @@ _WANTED = {
 
 
 class Table(BaseModel):
-    """A table of a file. Its value type is built once here, so that what it refuses is counted too."""
+    """A table of a file. Its value type is built once here, so that errors of it are reported, too."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-    # Whether one of its keys, found elsewhere, shows that this table was meant.
-    telling: ClassVar[bool] = True
+    # Whether a misplaced key may be reported as belonging to this table.
+    suggested: ClassVar[bool] = True
 
     def value(self) -> object:
-        """What the table states, as a value type."""
+        """The value type that the table states."""
         return None
 
     @model_validator(mode="after")
@@ -62,15 +66,15 @@ def stated(
     document: dict[str, Any],
     folder: Path | None = None,
 ) -> AnyTable:
-    """What a parsed file states, as its table; `ProblemError` has a line with the key path of each error.
+    """A parsed file as its table; `ProblemError` has a line with the key path of each error.
 
-    Names of other files in it are relative to the folder; without one none may be named.
+    Names of other files are relative to the folder; without one they are refused.
     """
     try:
         return table.model_validate(document, context={"folder": folder})
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
-    # A missing key comes last: most often it stands in the file, misspelt, and that error is clearer.
+    # A missing key comes last: most often it is in the file, misspelt, and that error is clearer.
     errors.sort(key=lambda error: error["type"] == "missing")
     tables = dict(tables_of(table))
     raise ProblemError("\n".join(dict.fromkeys(_described(error, tables) for error in errors)))
@@ -103,39 +107,35 @@ Text: TypeAlias = Annotated[str, AfterValidator(_plain)]
 _MOST_ENTRIES = 20_000  # of any list, such as the corners of a drawing
 
 
-def listed(wanted: str, most: int = _MOST_ENTRIES) -> BeforeValidator:
-    """Validator that refuses what is not a list, or too long a one, with what it must be."""
-    return BeforeValidator(partial(_listed, wanted=wanted, most=most))
+def unless(accepted: Callable[[Any], bool], wanted: str) -> partial[Any]:
+    """The check that refuses a value, with what it must be, unless it is accepted."""
+    return partial(_checked, accepted=accepted, wanted=wanted)
 
 
-def _listed(value: object, *, wanted: str, most: int) -> object:
-    if not isinstance(value, list):
+def _checked(value: Any, *, accepted: Callable[[Any], bool], wanted: str) -> Any:
+    if not accepted(value):
         raise PydanticCustomError(WRONG, wanted)
-    if len(value) > most:
-        raise PydanticCustomError(WRONG, f"a list of at most {most} entries")
     return value
 
 
+def listed(wanted: str, most: int = _MOST_ENTRIES) -> BeforeValidator:
+    """Validator that refuses what is not a list, and a list that is too long."""
+    return BeforeValidator(partial(_listed, wanted=wanted, most=most))
+
+
+def _listed(value: Any, *, wanted: str, most: int) -> Any:
+    short = unless(lambda entries: len(entries) <= most, f"a list of at most {most} entries")
+    return short(_checked(value, accepted=lambda given: isinstance(given, list), wanted=wanted))
+
+
 def of_length(count: int, wanted: str) -> AfterValidator:
-    """Validator of a list: so many entries."""
-
-    def refuse(values: list[float]) -> list[float]:
-        if len(values) != count:
-            raise PydanticCustomError(WRONG, wanted)
-        return values
-
-    return AfterValidator(refuse)
+    """Validator of a list of `count` entries."""
+    return AfterValidator(unless(lambda values: len(values) == count, wanted))
 
 
 def one_of(*words: str) -> AfterValidator:
     """Validator of a word: one of those given."""
-    return AfterValidator(partial(_one_of, wanted=f"{', '.join(words[:-1])} or {words[-1]}", words=words))
-
-
-def _one_of(word: str, *, wanted: str, words: tuple[str, ...]) -> str:
-    if word not in words:
-        raise PydanticCustomError(WRONG, wanted)
-    return word
+    return AfterValidator(unless(words.__contains__, listing(words)))
 
 
 def tag(value: object) -> str | None:
@@ -145,7 +145,7 @@ def tag(value: object) -> str | None:
 
 
 def either(wanted: str) -> Discriminator:
-    """Distinguishes the shapes that a value may have, which `wanted` tells, by the tags of its types."""
+    """Distinguishes the shapes that a value may have, described by `wanted`, by the tags of its types."""
     return Discriminator(tag, custom_error_type=WRONG, custom_error_message=wanted)
 
 
@@ -162,7 +162,7 @@ def _described(error: ErrorDetails, tables: Mapping[str, type[Table]]) -> str:
 
 
 def _placed(line: str, path: str) -> str:
-    """A value type names its key from the top of the file or by itself; a box cannot know whose it is."""
+    """A line with the full key path: a value type names its key from the top of the file, or alone."""
     table, dot, key = path.rpartition(".")
     if line.startswith(path):
         return line
@@ -172,9 +172,9 @@ def _placed(line: str, path: str) -> str:
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
     path, table, key = _path(location), _path(location[:-1]), str(location[-1])
     keys = list(tables[re.sub(r"\[\d+\]", "", table)].model_fields)
-    homes = (name for name, other in tables.items() if key in other.model_fields and other.telling)
-    meant = near_miss(key, keys) or next((f"{home}.{key}".lstrip(".") for home in homes), None)
-    return f"{path} is unknown; " + (f"did you mean {meant}?" if meant else f"the keys are {', '.join(keys)}")
+    homes = (name for name, other in tables.items() if key in other.model_fields and other.suggested)
+    elsewhere = next((f"did you mean {f'{home}.{key}'.lstrip('.')}?" for home in homes), None)
+    return f"{path} is unknown; " + hint(key, keys, elsewhere or f"the keys are {', '.join(keys)}")
 
 
 def _path(location: tuple[int | str, ...]) -> str:
@@ -192,3 +192,89 @@ def _given(value: object) -> str:
     if isinstance(value, dict):
         return "a table"
     return str(value).lower() if isinstance(value, bool) else shown(value)
+
+
+# Every key is tried by itself, with nothing besides.
+EACH: Mapping[str, Mapping[str, Any]] = MappingProxyType({"*": {}})
+
+
+class SpecTable(Table):
+    """A table whose keys are the arguments of a value type, or of its `from_degrees` where it has that."""
+
+    spec: ClassVar[type]
+    # Further keys needed to try each key by itself, "*" for all others; the rest is not tried.
+    beside: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+
+    @classmethod
+    def make(cls, **given: Any) -> Any:
+        """A value from some of the keys."""
+        return getattr(cls.spec, "from_degrees", cls.spec)(**given)
+
+    @classmethod
+    def needed(cls, key: str, given: Any) -> Mapping[str, Any] | None:  # noqa: ARG003
+        """Further keys needed to try a key by itself; None where it is not tried."""
+        return cls.beside.get(key, cls.beside.get("*"))
+
+    @classmethod
+    def argument(cls, given: Any) -> Any:
+        """The value of a key, as an argument."""
+        return given
+
+    @field_validator("*")
+    @classmethod
+    def _by_itself(cls, given: Any, key: ValidationInfo) -> Any:
+        name = str(key.field_name)
+        if given is not None and (others := cls.needed(name, given)) is not None:
+            cls.make(**{**others, name: cls.argument(given)})
+        return given
+
+    def given(self) -> dict[str, Any]:
+        """The keys that are given, as arguments."""
+        return {key: self.argument(getattr(self, key)) for key in self.model_fields_set}
+
+    def value(self) -> Any:
+        """The value of the keys that are given."""
+        return self.make(**self.given())
+
+
+AnySpecTable = TypeVar("AnySpecTable", bound=SpecTable)
+_AS_DECLARED = (bool, int, float, str, int | None, float | None, str | None)
+
+
+def spec_table(
+    spec: type,
+    base: type[AnySpecTable],
+    types: Mapping[str, Any] = {},
+    names: Sequence[str] = (),
+    doc: str | None = None,
+) -> type[AnySpecTable]:
+    """The table of a value type, its keys with the defaults of the arguments.
+
+    Types are those of the arguments where they are plain, else as given, perhaps with a default of the file's
+    own; any other key is checked by the value type. `names` are the keys, by default all arguments in
+    order.
+    """
+    make = getattr(spec, "from_degrees", spec)
+    arguments = signature(make).parameters
+    hints = get_type_hints(make.__init__ if isinstance(make, type) else make)  # type: ignore[misc]
+    keys: dict[str, Any] = {}
+    for name in names or arguments:
+        declared = hints.get(name)
+        given = types.get(name, declared if declared in _AS_DECLARED else Any)
+        if not isinstance(given, tuple):
+            default = arguments[name].default
+            optional = default is None and given is not Any
+            given = (given | None if optional else given, ... if default is Parameter.empty else default)
+        keys[name] = given
+    table = create_model(base.__name__, __base__=base, __doc__=doc, **keys)
+    table.spec = spec
+    return table
+
+
+def keys_of(
+    spec: type,
+    types: Mapping[str, Any] = {},
+    names: Sequence[str] = (),
+) -> Callable[[type[AnySpecTable]], type[AnySpecTable]]:
+    """Decorator of a table: the keys of `spec_table` besides its own docstring and methods."""
+    return lambda table: spec_table(spec, table, types, names, table.__dict__.get("__doc__"))

@@ -8,8 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Tag
 
-from grashof.problems.files.spec_table import EACH, SpecTable, keys_of
-from grashof.problems.files.tables import LIST, NUMBER, Table, either, listed
+from grashof.problems.files.tables import EACH, LIST, NUMBER, SpecTable, Table, either, keys_of, listed
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, outline
 from grashof.problems.values.specs.problem import MOST_TARGETS
@@ -107,7 +106,7 @@ Outlines = Annotated[
 
 
 class SceneTable(Table):
-    """What is drawn with the designs and limits nothing.
+    """The scene, which is drawn with the designs and does not limit them.
 
     Parameters
     ----------

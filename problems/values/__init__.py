@@ -1,1 +1,1 @@
-"""What is asked and what a linkage is, as values."""
+"""Problems and linkages as values."""

@@ -1,4 +1,4 @@
-"""Areas that parts of a linkage keep out of: polygons checked, and joined to one solid.
+"""Areas for parts of a linkage to avoid: polygons checked, and joined.
 
 The only module that gives polygons to shapely. It is imported only where there are areas.
 """
@@ -22,8 +22,7 @@ _FLAT = 1e-12  # share of the square of its extent below which a polygon has no 
 def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, ...]:
     """Corners of polygons, read-only arrays of shape (M, 2); a polygon may repeat its first corner last.
 
-    `ProblemError` where one has fewer than three corners, no area, a number that is not finite, or crosses
-    itself.
+    `ProblemError` for fewer than three corners, no area, numbers that are not finite, or a crossing.
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a list of polygons")

@@ -17,25 +17,13 @@ TURN = 2 * np.pi  # rad
 
 
 def turned_from(angle: npt.ArrayLike, other: npt.ArrayLike, period: float = TURN) -> FloatArray:
-    """From another angle to an angle, within half a period either way, rad.
-
-    Examples
-    --------
-    >>> np.degrees(turned_from(np.radians([350, 190]), 0.0, np.pi)).round(9).tolist()
-    [-10.0, 10.0]
-    """
+    """From another angle to an angle, within half a period either way, rad."""
     apart = np.subtract(angle, other, dtype=np.float64) + period / 2
     return np.asarray(apart % period - period / 2)
 
 
 def turned_beyond(angle: npt.ArrayLike, limits: tuple[float, float], period: float = TURN) -> FloatArray:
-    """By how much angles lie beyond a range of angles, after it (positive) or before it, rad; 0 within.
-
-    Examples
-    --------
-    >>> np.degrees(turned_beyond(np.radians([15, 25, 355]), (0.0, np.pi / 9))).round(9).tolist()
-    [0.0, 5.0, -5.0]
-    """
+    """By how much angles lie beyond a range of angles, after it (positive) or before it, rad; 0 within."""
     middle, half = (limits[0] + limits[1]) / 2, (limits[1] - limits[0]) / 2
     apart = turned_from(angle, middle, period)
     return np.asarray(apart - np.clip(apart, -half, half))

@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, noted, refuse
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.value_bases import check_fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class Box:
         wrong: list[str] = []
         for axis in ("x", "y"):
             with noted(wrong):
-                object.__setattr__(self, axis, _side(getattr(self, axis), axis))
+                check_fields(self, **{axis: _side})
         refuse(wrong)
 
 

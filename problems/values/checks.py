@@ -22,10 +22,11 @@ GREATEST = 1e20  # of lengths, masses and speeds: squares of torques stay within
 MOST_TURNS = 100  # of a stated angle: more of them take its last digits
 DIGITS = 300  # of whole numbers: they become floats, times an effort
 LEAST = 1e-20  # size of a task, for the same reason
-# What a spreadsheet calculates, in the wide forms of Japanese and Chinese, too, and what it may skip before.
+# Begins a formula in a spreadsheet, also in wide East Asian forms, perhaps after blanks.
 _FORMULA = re.compile(r"(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])")
 
 Checked = TypeVar("Checked")
+Rows = tuple[tuple[float, ...], ...]
 
 
 def finite_rows(
@@ -57,7 +58,7 @@ def _finite_row(row: object, columns: int, name: str, row_means: str, greatest: 
 
 @contextmanager
 def noted(wrong: list[str]) -> Iterator[None]:
-    """Note what is refused inside, and go on."""
+    """Note the errors raised inside, and continue."""
     try:
         yield
     except ProblemError as error:
@@ -65,13 +66,13 @@ def noted(wrong: list[str]) -> Iterator[None]:
 
 
 def refuse(wrong: Sequence[str]) -> None:
-    """Refuse all that was noted, if there is anything."""
+    """Raise the errors that were noted, if any."""
     if wrong:
         raise refused(wrong)
 
 
 def refused(wrong: Iterable[str]) -> ProblemError:
-    """The error of all that was noted, each in a line of its own and once."""
+    """All noted errors as one, a line each, without repetition."""
     return ProblemError("\n".join(dict.fromkeys(wrong)))
 
 
@@ -82,7 +83,7 @@ def each_checked(
     place: str = "[{}]",
     first: int = 0,
 ) -> list[Checked]:
-    """What a check makes of each value and its place; all errors are noted before they are raised as one."""
+    """The results of a check of each value and its place; all errors are raised together."""
     found: list[Checked] = []
     wrong: list[str] = []
     for number, value in enumerate(values, start=first):
@@ -93,13 +94,13 @@ def each_checked(
 
 
 def located(error: ProblemError, where: str) -> ProblemError:
-    """The same error, every line of it beginning with the place, such as the name of a file."""
+    """The error with the place, such as the name of a file, before every line."""
     return ProblemError("\n".join(f"{where}: {line}" for line in str(error).splitlines()))
 
 
 @contextmanager
 def located_in(where: str) -> Iterator[None]:
-    """Every line of what is refused inside begins with the place."""
+    """Begin every line of an error raised inside with the place."""
     try:
         yield
     except ProblemError as error:
@@ -115,7 +116,7 @@ def outline(values: npt.ArrayLike, where: str) -> FloatArray:
 
 
 def number_array(values: npt.ArrayLike, message: str, axes: Sequence[int] = range(9)) -> npt.NDArray[Any]:
-    """Values as an array of so many axes, refused with a message when they are not numbers."""
+    """Values as an array of numbers with one of these numbers of axes, else refused with a message."""
     try:
         numbers = np.asarray(values)
     except ValueError:  # lists of unequal length inside
@@ -158,9 +159,19 @@ def number_within(value: float, low: float, high: float, where: str) -> float:
     return number
 
 
+def within(low: float, high: float) -> Callable[[float, str], float]:
+    """The check of a number from `low` to `high`, by its value and the place that messages name."""
+    return lambda value, where: number_within(value, low, high, where)
+
+
 def bounded(value: float, where: str) -> float:
     """`value` as a float, refused beyond 1e20 either way."""
     return number_within(value, -GREATEST, GREATEST, where)
+
+
+def positive_bounded(value: float, where: str) -> float:
+    """`value` as a float, refused when it is not greater than zero, or beyond 1e20."""
+    return number_within(positive_number(value, where), 0.0, GREATEST, where)
 
 
 def from_zero(value: float, where: str) -> float:
@@ -172,15 +183,19 @@ def from_zero(value: float, where: str) -> float:
 
 
 def numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...]:
-    """So many floats, none beyond 1e20."""
+    """`count` floats, none beyond 1e20."""
     try:
         given = list(values)
     except TypeError:
         raise wrong_value(where, values, f"{count} numbers") from None
     if len(given) != count:
-        entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
-        raise ProblemError(f"{where} has {entries}; it must have {count} numbers")
+        raise ProblemError(f"{where} has {counted(len(given), 'entry')}; it must have {count} numbers")
     return tuple(bounded(value, f"{where}[{index}]") for index, value in enumerate(given))
+
+
+def pair(values: Sequence[float], where: str) -> tuple[float, ...]:
+    """Two floats, neither beyond 1e20."""
+    return numbers(values, 2, where)
 
 
 def one_or_each(
@@ -197,9 +212,8 @@ def one_or_each(
         return size_number(value, where, least, greatest)
     numbers = list(value)
     if len(numbers) != len(owners):
-        entries = "1 entry" if len(numbers) == 1 else f"{len(numbers)} entries"
-        owned = ", ".join(owners)
-        raise ProblemError(f"{where} has {entries}; it must be a number, or {len(owners)} ({owned})")
+        wanted = f"it must be a number, or {len(owners)} ({', '.join(owners)})"
+        raise ProblemError(f"{where} has {counted(len(numbers), 'entry')}; {wanted}")
     return tuple(
         size_number(each, f"{where}[{index}]", least, greatest) for index, each in enumerate(numbers)
     )
@@ -208,6 +222,13 @@ def one_or_each(
 def size_number(value: float, where: str, least: float = LEAST, greatest: float = GREATEST) -> float:
     """`value` as a float, refused where it is not greater than zero or beyond limits."""
     return number_within(positive_number(value, where), least, greatest, where)
+
+
+def true_or_false(value: bool, where: str) -> bool:
+    """`value` as a bool, refused when it is not one."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise wrong_value(where, value, "true or false")
+    return bool(value)
 
 
 def task_size(points: FloatArray, where: str) -> float:
@@ -247,18 +268,59 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     return low, high
 
 
+def rising_rows(
+    values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two"
+) -> FloatArray:
+    """Checked rows (N, `columns`), described by `means`; the first, in `rising`, have to rise."""
+    table = finite_rows(values, columns, "values", means, GREATEST)  # type: ignore[arg-type]
+    if len(table) < {"two": 2, "three": 3}[least]:
+        raise ProblemError(f"values has {len(table)} rows; it must have {least} or more")
+    for column, name in enumerate(rising):
+        for row in np.flatnonzero(~(np.diff(table[:, column]) > 0)) + 1:
+            given = f"values[{row}] has {name} {table[row, column]:.15g}"
+            raise ProblemError(f"{given}; it must rise from row to row")
+    return table
+
+
+def refuse_open(table: FloatArray, over: str) -> None:
+    """Refuse rows over an angle (deg) that do not cover a turn, or end otherwise than they begin."""
+    first, last = table[0, 0], table[-1, 0]
+    if abs(last - first - 360) > 1e-9:
+        raise ProblemError(
+            f"values cover {over} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
+        )
+    if (table[0, 1:] != table[-1, 1:]).any():
+        raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
+
+
+def as_rows(table: FloatArray) -> Rows:
+    """The rows as tuples."""
+    return tuple(tuple(row) for row in table.tolist())
+
+
 def counted(number: int, noun: str) -> str:
     """Count with its noun: 1 corner, 2 corners, 2 families."""
     if number == 1:
         return f"{number} {noun}"
-    return f"{number} {noun[:-1]}ies" if noun.endswith("ly") else f"{number} {noun}s"
+    return f"{number} {noun[:-1]}ies" if noun.endswith(("ly", "ry")) else f"{number} {noun}s"
+
+
+def with_article(noun: str) -> str:
+    """A noun with its article: a slider-crank, an engine."""
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
 def near_miss(word: str, words: Sequence[str]) -> str | None:
-    """The one of `words` that `word` may be a misspelling of, if any."""
+    """The one of `words` of which `word` may be a misspelling, if any."""
     by_folded = {name.casefold(): name for name in words}
     close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
     return by_folded[close[0]] if close else None
+
+
+def hint(word: object, words: Sequence[str], otherwise: str) -> str:
+    """The end of a message about an unknown word: a likely spelling, or else the given text."""
+    meant = near_miss(word, words) if isinstance(word, str) else None
+    return f"did you mean {meant}?" if meant else otherwise
 
 
 def readable(text: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import reprlib
+from collections.abc import Sequence
 
 
 class GrashofError(Exception):
@@ -12,28 +13,28 @@ class GrashofError(Exception):
 
 
 class ProblemError(GrashofError, ValueError):
-    """Bad input: the message names what is wrong, where, and what it must be."""
+    """Bad input: the message names the place, the value, and the values allowed."""
 
 
 def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
-    """The error of a value that is not what it must be."""
+    """The error of a wrong value, with the values allowed."""
     return ProblemError(f"{where} is {shown(value)}; it must be {wanted}")
 
 
+def listing(words: Sequence[object], last: str = "or") -> str:
+    """Words in a sentence: a, b or c."""
+    *most, end = map(str, words)
+    return f"{', '.join(most)} {last} {end}"
+
+
 def shown(value: object) -> str:
-    """A value as a message shows it: Python, and short whatever it is."""
+    """A value as messages show it: in Python, shortened."""
     text = " ".join(_SHORT.repr(value).splitlines())
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 43]}...{text[-40:]}"
 
 
 def shown_key(key: object) -> str:
-    """A key as TOML has it, in quotes where it is not plain, and not at any length.
-
-    Examples
-    --------
-    >>> shown_key("r2"), shown_key("r 2")
-    ('r2', '"r 2"')
-    """
+    """A key as TOML has it, in quotes where it is not plain, and shortened."""
     text = str(key)
     text = text if len(text) <= _LONGEST_KEY else f"{text[:_LONGEST_KEY]}..."
     return text if re.fullmatch(r"[A-Za-z0-9_-]+", text) else json.dumps(text)
@@ -59,7 +60,7 @@ _SHORT, _LONGEST, _LONGEST_INT = _Short(), 240, 10_000  # characters, bits
 
 
 class AssemblyError(GrashofError):
-    """A linkage cannot be assembled where a position was asked for."""
+    """A linkage cannot be assembled at a requested position."""
 
 
 class NoSolutionError(GrashofError):

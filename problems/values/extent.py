@@ -1,4 +1,4 @@
-"""Greatest distance between two points of many, without looking at every pair."""
+"""Greatest distance between two points of many, without all pairs."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 
-FEW = 64  # points of which every pair is looked at
+FEW = 64  # points up to which every pair is compared
 
 
 def span(points: FloatArray) -> float:
     """Greatest distance between two of N points (N, 2).
 
-    The two are corners of the convex hull, and parallel lines through them hold the whole of it between them.
-    Such pairs are no more than the corners are, so that memory grows as N does and time as N log N (Shamos
-    1978; Preparata & Shamos, *Computational Geometry*, 1985, section 4.2).
+    The two are corners of the convex hull on parallel lines that enclose it. Such pairs are at most as many
+    as the corners, so that memory grows with N and time with N log N (Shamos 1978; Preparata & Shamos,
+    *Computational Geometry*, 1985, section 4.2).
     """
     if len(points) <= FEW or not np.isfinite(points).all():
         return _greatest(points[:, None] - points[None])
@@ -25,7 +25,7 @@ def span(points: FloatArray) -> float:
 
 @lru_cache(maxsize=16)
 def _known_span(data: bytes) -> float:
-    """Of many points, whose span is asked for again and again."""
+    """The span of many points, which is needed repeatedly."""
     points = np.frombuffer(data).reshape(-1, 2)
     corners = convex_corners(points)
     if len(corners) <= FEW:
@@ -59,7 +59,7 @@ def convex_corners(points: FloatArray) -> FloatArray:
 
 
 def _lower(points: list[list[float]], order: range) -> list[int]:
-    """Which points, in their order, a chain passes that turns left at each of them."""
+    """Indices, in order, of the points of a chain that turns left at each of them."""
     chain: list[int] = []
     for k in order:
         x, y = points[k]

@@ -1,4 +1,4 @@
-"""Units that quantities are counted in."""
+"""Units of quantities."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Unit(StrEnum):
-    """What a quantity is counted in; lengths in the problem's unit, angles in rad but in deg in files."""
+    """Units of quantities: lengths in the problem's unit, angles in rad, in files in deg."""
 
     LENGTH = "length"
     AREA = "length²"

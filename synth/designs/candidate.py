@@ -13,8 +13,8 @@ from grashof.analysis import Design, Verdict
 from grashof.analysis.judge.design import greatest
 from grashof.analysis.judge.measures import Values
 from grashof.problems import Linkage, Problem
-from grashof.problems.values.display import Displayed
 from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
+from grashof.problems.values.value_bases import Displayed
 from grashof.synth.quantities.scores import same_error
 from grashof.synth.theory.distinct import signature
 

@@ -79,7 +79,7 @@ def distinct(
 def pareto_goals(problem: Problem) -> list[Quantity]:
     """What the Pareto mark is about besides the error: transmission, size, torque, and what is weighed."""
     keys = ["transmission", "size", *(["torque_peak"] if problem.dynamics is not None else [])]
-    usual = [problem.requirements.meant(QUANTITIES[key]) for key in keys]
+    usual = [problem.requirements.as_required(QUANTITIES[key]) for key in keys]
     return list(dict.fromkeys([*usual, *(goal for goal, _ in problem.goals)]))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.requirements.quantities import Needs, Over
+from grashof.problems.values.requirements.quantities import Needs, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
@@ -128,7 +128,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground) if wanted.keep_out else set()
     )
     placed = any(
-        limit.quantity.over is Over.TARGETS and name != "theta2_start_deg"
+        limit.quantity.over is Scope.TARGETS and name != "theta2_start_deg"
         for name, limit in wanted.limited.items()
     )
     zoned = start.terms.zoned and (scaled.has_angles or scaled.timed)

@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems import NoSolutionError, Problem
 from grashof.problems.values.checks import counted
-from grashof.problems.values.display import Displayed
+from grashof.problems.values.value_bases import Displayed
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Proof
 from grashof.synth.proof.poses.atlas import Loci

@@ -17,8 +17,7 @@ import numpy as np
 
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import linkage_of
 from grashof.synth.loop.chain import DYADS, Chain, chained
 from grashof.synth.loop.dual import Dual

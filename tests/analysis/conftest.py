@@ -1,4 +1,4 @@
-"""What the tests of the analysis share: published figures, linkages of every class, positions found anew."""
+"""Fixtures of the analysis: published figures, linkages of every class, positions by the law of cosines."""
 
 import json
 from collections.abc import Callable
@@ -23,7 +23,7 @@ _SHORTEST_IN = {
 
 @pytest.fixture(scope="session")
 def golden() -> dict[str, Any]:
-    """The reference figures, 20 digits each; their conventions stand inside the file."""
+    """The reference figures, 20 digits each; with their conventions."""
     return json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))
 
 
@@ -113,7 +113,7 @@ def close_loop() -> Callable[..., tuple[npt.NDArray[np.complex128], ...]]:
 
 @pytest.fixture(scope="session")
 def four_bars() -> Callable[[GrashofClass], st.SearchStrategy[FourBar]]:
-    """Strategy for linkages of a class, well away from change points unless they are asked for."""
+    """Strategy for linkages of a class, well away from change points unless these are requested."""
     return _four_bars
 
 

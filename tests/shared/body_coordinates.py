@@ -1,9 +1,9 @@
 """An independent judge of linkages: bodies, pins and slots between them, and one driver.
 
-A moving link is a body with three coordinates: the place of its frame's origin and its direction. What
-joins the bodies is one vector, `gap`, and all else follows from it: its Jacobian and the rates by Taylor
-series, positions by Newton's method along the motion, forces as multipliers. No formula is the package's;
-`body_plans` alone knows its value types.
+A moving link is a body with three coordinates: the position of its frame's origin and its direction. The
+constraints between the bodies are one vector, `gap`, from which all else follows: its Jacobian and the rates
+by Taylor series, positions by Newton's method along the motion, forces as multipliers. It shares no formula
+with the package, and only `body_plans` uses its value types.
 
 A plan is a batch of K linkages of one kind. Positions have the shape (..., K, 3n) for n moving bodies,
 points and forces (..., K, 2); links are numbered as in the package, 1 is the ground.
@@ -23,7 +23,7 @@ CONVERGED = 1e-12  # correction of Newton's method, in rad or sizes of the linka
 NEAR = 0.05  # share of a step that the first correction has to stay below
 MOST_STEP = 0.1  # rad, of the driver
 MOST_MOVE = 0.5  # of any body, in rad or sizes of the linkage: near a dead position tangents lead far away
-LEAST_STEP = 1e-7  # rad; a driver that cannot go on by it is in a dead position
+LEAST_STEP = 1e-7  # rad; a driver that cannot move by it is in a dead position
 MOST_FALL = np.log(4.0)  # of the determinant's logarithm in a step
 
 
@@ -51,7 +51,7 @@ def _frames(q: Array) -> tuple[Complexes, Complexes, Array]:
 
 
 def gap(plan: Plan, q: Array, theta: Any) -> Array:
-    """Series of what the constraints miss, the driver's last; shape (orders, ..., K, 3n).
+    """Series of the residuals of the constraints, the driver's last; shape (orders, ..., K, 3n).
 
     `q` and `theta`, the driver's angle, are series, too.
     """
@@ -101,11 +101,11 @@ def jacobian(plan: Plan, q: Array) -> Array:
 
 
 def margins(plan: Plan, q: Array) -> Array:
-    """How far each loop is from a dead position, with the sign of its assembly; shape (..., K, loops).
+    """Distance of each loop from a dead position, with the sign of its assembly; shape (..., K, loops).
 
-    Of three pins twice the triangle's area over the two links' lengths, positive where the joint lies left
-    of the line from the first end to the second; with a slide how far the joint is ahead along it, over
-    the length of the rod, or over the way to the block's pivot.
+    For three pins twice the triangle's area over the two links' lengths, positive where the joint lies left
+    of the line from the first end to the second; with a slide the distance of the joint along it over the
+    length of the rod, or over the distance from the block's pivot.
     """
     origin, unit, _ = _frames(q[None])
     body = np.array(plan.bodies) - 1
@@ -142,13 +142,13 @@ def _determinant(matrix: Array) -> tuple[Array, Array]:
 
 
 def _length(plan: Plan, change: Array) -> Array:
-    """Greatest of some changes of coordinates, in rad and sizes of the linkage; shape (K,)."""
+    """Greatest change of a coordinate, in rad or sizes of the linkage; shape (K,)."""
     parts = np.abs(change).reshape(*change.shape[:-1], -1, 3)
     return np.maximum(parts[..., 2], parts[..., :2].max(axis=-1) / plan.size[:, None]).max(axis=-1)
 
 
 def newton(plan: Plan, q: Array, theta: Array, most: int, turn: float = np.inf) -> tuple[Array, Array]:
-    """Positions from guesses, NaN where it does not converge, and the sizes of the first corrections.
+    """Positions from guesses, NaN without convergence, and the sizes of the first corrections.
 
     No correction turns a body by more than `turn`. Shapes (K, 3n) and (K,).
     """
@@ -170,7 +170,7 @@ def newton(plan: Plan, q: Array, theta: Array, most: int, turn: float = np.inf) 
 
 
 def start(plan: Plan, theta: Any, seed: int = 0, guesses: int = 200) -> Array:
-    """Positions at driver angles on the plan's assemblies, from random guesses; NaN where none leads there.
+    """Positions at driver angles on the plan's assemblies, from random guesses; NaN where all fail.
 
     Shape (K, 3n).
     """
@@ -190,22 +190,21 @@ def start(plan: Plan, theta: Any, seed: int = 0, guesses: int = 200) -> Array:
 
 
 @dataclass
-class _Way:
-    """How a batch of motions went: the places passed by each, the last one, and the dead position ahead."""
+class _Trace:
+    """A batch of motions: the positions passed by each, the last one, and the dead position ahead."""
 
-    passed: list[tuple[Array, Array, Array]]  # which, their driver angles, their positions
+    passed: list[tuple[Array, Array, Array]]  # motion, driver angle, position
     q: Array
     dead: Array  # (K,), NaN where the end was reached
 
 
 @np.errstate(invalid="ignore", divide="ignore")
-def _advance(plan: Plan, q: Array, here: Array, there: Array) -> _Way:
-    """Follow motions from driver angles to others, or as far as they go.
+def _advance(plan: Plan, q: Array, here: Array, there: Array) -> _Trace:
+    """Follow motions from driver angles to others, or to dead positions.
 
-    A tangent predicts, Newton's method corrects. A step counts if the first correction is small against it
-    and the determinant keeps its sign and a quarter of its size; it is halved otherwise. Towards a dead
-    position the square of the determinant is linear in the driver angle: the last two steps tell where it
-    vanishes.
+    A tangent predicts, Newton's method corrects. A step is accepted if the first correction is small relative
+    to it and the determinant keeps its sign and a quarter of its size; it is halved otherwise. Near a dead
+    position the square of the determinant is linear in the driver angle, so the last two steps give its zero.
     """
     q, here, step = q.copy(), here.copy(), np.clip(there - here, -MOST_STEP, MOST_STEP)
     passed = [(np.arange(len(q)), here.copy(), q.copy())]
@@ -237,20 +236,20 @@ def _advance(plan: Plan, q: Array, here: Array, there: Array) -> _Way:
         going[stopped] = False
         left = np.exp(2 * (log[stopped] - log_before[stopped]))
         dead[stopped] = here[stopped] + (here - before)[stopped] * left / np.where(left < 1, 1 - left, np.inf)
-    return _Way(passed, q, dead)
+    return _Trace(passed, q, dead)
 
 
 def follow(plan: Plan, q: Array, theta: Any, thetas: Any) -> Array:
-    """Positions at driver angles in any order, by motions from where the linkages stand at `theta`.
+    """Positions at driver angles in any order, by motions from positions at `theta`.
 
-    NaN behind dead positions. `thetas` has the shape (N,) or (N, K), the result (N, K, 3n).
+    NaN beyond dead positions. `thetas` has the shape (N,) or (N, K), the result (N, K, 3n).
     """
     thetas = np.asarray(thetas, dtype=float)
     thetas = np.broadcast_to(thetas if thetas.ndim == 2 else thetas[:, None], (len(thetas), len(q)))
     theta = np.broadcast_to(np.asarray(theta, dtype=float), (len(q),))
     way = _both_ways(plan, q, theta, thetas.min(axis=0), thetas.max(axis=0))
     which, angles, places = (np.concatenate(parts) for parts in zip(*way.passed, strict=True))
-    nearest = np.empty(thetas.shape, dtype=int)  # of the places passed on the way to each
+    nearest = np.empty(thetas.shape, dtype=int)  # of the positions passed on the way to each
     for k in range(len(q)):
         own = np.flatnonzero(which % len(q) == k)
         gone, aim = angles[own] - theta[k], thetas[:, k, None] - theta[k]
@@ -263,14 +262,14 @@ def follow(plan: Plan, q: Array, theta: Any, thetas: Any) -> Array:
 
 
 def reach(plan: Plan, q: Array, theta: Any) -> Array:
-    """Dead positions where the driver's motion ends, low and high, infinite where it turns; shape (2, K)."""
+    """Dead positions at the ends of the driver's motion, low and high, infinite if it turns; shape (2, K)."""
     theta = np.broadcast_to(np.asarray(theta, dtype=float), (len(q),))
     dead = _both_ways(plan, q, theta, theta - 2 * np.pi, theta + 2 * np.pi).dead.reshape(2, -1)
     turns = np.isnan(dead) & np.isfinite(q).all(axis=-1)
     return np.where(turns, [[-np.inf], [np.inf]], dead)
 
 
-def _both_ways(plan: Plan, q: Array, theta: Array, low: Array, high: Array) -> _Way:
+def _both_ways(plan: Plan, q: Array, theta: Array, low: Array, high: Array) -> _Trace:
     """Motions of a batch from `theta` to lower driver angles, then the same to higher ones."""
     twice = np.tile(np.arange(len(q)), 2)
     ends = np.concatenate([np.minimum(low, theta), np.maximum(high, theta)])
@@ -278,10 +277,10 @@ def _both_ways(plan: Plan, q: Array, theta: Array, low: Array, high: Array) -> _
 
 
 def circuit(plan: Plan, q: Array, most_step: float = 0.1, most: int = 3000) -> tuple[Array, Any]:
-    """All that each linkage of a batch reaches from a position, through dead positions too.
+    """The circuit of each linkage of a batch from a position, through dead positions.
 
-    No link drives: a tangent predicts, Newton's method corrects at right angles to it, until the motion
-    comes back to where it began. Positions of shape (N, K, 3n), NaN after that, and whether it came back.
+    Without a driver: a tangent predicts, Newton's method corrects at right angles to it, until the motion
+    returns to its start. Positions of shape (N, K, 3n), NaN after that, and whether it returned.
     """
     scale = np.ones((len(q), q.shape[-1]))
     scale[:, 0::3] = scale[:, 1::3] = plan.size[:, None]
@@ -335,7 +334,7 @@ def rates(plan: Plan, q: Array, omega: Any = 1.0, alpha: Any = 0.0, jerk: Any = 
 
 
 def _factorials(axes: int) -> Array:
-    """What coefficients of a series are multiplied by to be derivatives."""
+    """Factors from coefficients of a series to derivatives."""
     return np.array([1.0, 1, 2, 6]).reshape(-1, *([1] * axes))
 
 
@@ -381,7 +380,7 @@ def forces(
 
 
 def _act(need: Array, motion: Array, link: int, at: Any, force: Array, moment: Any) -> None:
-    """Add a force at a point of a link, and a moment, to what acts along the coordinates."""
+    """Add a force at a point of a link, and a moment, to the generalised forces."""
     arm, first = complex_of(at) * np.exp(1j * motion[0, ..., 3 * link - 4]), 3 * link - 6
     need[..., first] += force[..., 0]
     need[..., first + 1] += force[..., 1]

@@ -19,7 +19,7 @@ Point = tuple[int, Any]  # a link, and u + iv in its frame
 
 @dataclass(frozen=True)
 class Plan:
-    """What joins the bodies; the numbers in pins, slots and sides are those of points and angles."""
+    """Joints between the bodies; pins, slots and sides refer to points and angles by index."""
 
     bodies: tuple[int, ...]  # of each point
     at: Complexes  # (K, points), in the frame of its body

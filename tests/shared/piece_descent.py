@@ -1,4 +1,4 @@
-"""What becomes of known designs in the pieces of a proof, as these are halved."""
+"""Known designs traced through the pieces of a proof while these are halved."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

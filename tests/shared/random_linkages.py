@@ -1,4 +1,4 @@
-"""Batches of linkages at random, of every kind, placed and turned anywhere."""
+"""Random batches of linkages of every kind, in any position and orientation."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from grashof.problems import FourBar, InvertedSliderCrank, SixBar, SliderCrank
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.linkages.mechanisms import CLASSES
 
-KINDS: tuple[Any, ...] = tuple(CLASSES.values())  # those of one loop
-# Draws go by place: other rows come behind these.
+KINDS: tuple[Any, ...] = tuple(CLASSES.values())  # of one loop
+# Seeds depend on the index: further rows follow these.
 _FIRST = (
     "pins 2 3", "pins 3 4", "pins 2 1", "pins 4 1", "pins 2 4", "pins 3 1", "slide 4 1", "slide 3 1",
 )  # fmt: skip
@@ -22,14 +22,14 @@ _EVERY = {
     for row in MECHANISMS
     for dyad in row.dyads[1:]
 }
-# Every six-bar that there is: the links that carry C and D, and whether its second loop has a slide.
+# Every six-bar: the links that carry C and D, and whether the second loop has a slide.
 ROWS = {name: _EVERY[name] for name in dict.fromkeys((*_FIRST, *_EVERY))}
 GRID: tuple[Any, ...] = (*KINDS, *ROWS)
 TURN = np.linspace(0, 2 * np.pi, 73)
 
 
 class Moving:
-    """A batch of a kind at driver angles over a turn, by the judge: many pass through open positions."""
+    """A batch of a kind at driver angles over a turn, by the judge; many are open at some of them."""
 
     def __init__(self, kind: Any, count: int, steps: int, driver: tuple[float, ...]) -> None:
         self.rng = rng = np.random.default_rng(GRID.index(kind))
@@ -48,7 +48,7 @@ class Moving:
 
 
 def agree(found: Array, expected: Array, clear: Array, limit: float = 1e-9) -> None:
-    """To a share of the greatest of each linkage, where it is clear of dead positions."""
+    """Assert agreement to a share of each linkage's greatest value, clear of dead positions."""
     apart, size = (
         np.where(clear, np.abs(values).reshape(*clear.shape, -1).max(axis=-1), 0.0)
         for values in (found - expected, expected)
@@ -83,7 +83,7 @@ def crank_rockers(count: int, rng: np.random.Generator) -> FourBar:
 
 
 def six_bars(row: str, count: int, rng: np.random.Generator, turning: bool = True) -> SixBar:
-    """Six-bars of one of `ROWS` whose drivers turn fully; or are stopped by the second loop, many of them."""
+    """Six-bars of one of `ROWS` whose drivers turn fully; or many are stopped by the second loop."""
     (i, j), press = ROWS[row]
     first = crank_rockers(count, rng)
     size = first.r1[:, None]

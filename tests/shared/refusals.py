@@ -1,4 +1,4 @@
-"""What is refused, and the problem files that it is tried with."""
+"""Refusals, and problem files to try them with."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def problem(text: str) -> Problem:
 
 
 def message(text: str) -> str:
-    """What its file is refused with; whatever found it is not told besides."""
+    """The refusal of its file, without a chained cause."""
     with pytest.raises(ProblemError) as caught:
         problem(text)
     assert caught.value.__cause__ is None
@@ -38,12 +38,12 @@ def message(text: str) -> str:
 
 
 def rows(table: str, **texts: str) -> list[tuple[str, ...]]:
-    r"""The rows of a table with ` | ` between its cells; an indented line goes on with the row above.
+    r"""The rows of a table with ` | ` between its cells; an indented line continues the row above.
 
     In a cell, `\n` is the end of a line, `#` alone no text, and `<NAME>` the text of that name.
     """
     for name, text in texts.items():
         table = table.replace(f"<{name}>", text.replace("\n", r"\n"))
-    whole = re.sub(r"(\\n| ?)\n +", lambda end: end[1] or " ", table.strip("\n"))
-    lines = (line.split(" | ") for line in whole.splitlines())
+    joined = re.sub(r"(\\n| ?)\n +", lambda end: end[1] or " ", table.strip("\n"))
+    lines = (line.split(" | ") for line in joined.splitlines())
     return [tuple(cell.removeprefix("#").replace(r"\n", "\n") for cell in line) for line in lines]

@@ -1,4 +1,4 @@
-"""What the luggage report fits: centres of its links, as its table 7 has them."""
+"""Paths that the luggage report fits: centres of its links, from its table 7."""
 
 import numpy as np
 import numpy.typing as npt

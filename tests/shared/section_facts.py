@@ -11,8 +11,8 @@ from grashof.survey import LinkageReport, Section
 INCH = 0.0254  # m
 
 
-def facts(told: Section | LinkageReport) -> dict[str, Any]:
-    return {fact.key: fact.value for fact in told.facts}
+def facts(section: Section | LinkageReport) -> dict[str, Any]:
+    return {fact.key: fact.value for fact in section.facts}
 
 
 def in_inches(linkage: FourBar) -> FourBar:

@@ -96,7 +96,7 @@ class Pool:
 
     def ends(self, name: str, part: str = "") -> FloatArray:
         """The least and the greatest of what a field limits, of every linkage; shape (n, 2)."""
-        key = FREE.meant(LIMITS[name].quantity).key
+        key = FREE.as_required(LIMITS[name].quantity).key
         every = [
             np.concatenate([np.ravel(v) for axis, v in each.parts(key).items() if not part or axis == part])
             for each in self.known
@@ -171,7 +171,7 @@ HEAVY = {
 def is_steered(name: str) -> bool:
     """Whether the search knows what a field limits; the others are for the judge alone."""
     quantity = LIMITS[name].quantity
-    return not STEERED.isdisjoint({quantity.key, FREE.meant(quantity).key})
+    return not STEERED.isdisjoint({quantity.key, FREE.as_required(quantity).key})
 
 
 @pytest.mark.quick(

@@ -7,7 +7,7 @@ import numpy as np
 from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
 from grashof.analysis.judge.meeting.misses import as_good, misses, squares
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
-from grashof.analysis.mechanism.driver_samples import closer_at_ends
+from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task

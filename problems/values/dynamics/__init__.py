@@ -1,1 +1,1 @@
-"""What loads, drives and stresses a linkage, as stated in files."""
+"""Loads, drives and strength of a linkage, as stated in files."""

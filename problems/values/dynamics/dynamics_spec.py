@@ -1,14 +1,15 @@
-"""What the links weigh, how fast the driver turns, where gravity points, and what else acts."""
+"""Dynamics: masses of the links, speed of the driver, gravity, loads."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.checks import bounded, from_zero, numbers, positive_number
+from grashof.problems.values.checks import bounded, from_zero, numbers, pair, positive_bounded
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
@@ -19,11 +20,10 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
-from grashof.problems.values.dynamics.strength import StrengthSpec, check_strength
+from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec, check_strength
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 STEADY = 30 / np.pi  # rpm: 1 rad/s
@@ -42,8 +42,8 @@ DYNAMICS_KEYS = (
 
 
 @dataclass(frozen=True, slots=True)
-class DynamicsSpec(Stated):
-    """Masses, speed, gravity and what else acts, of a problem or of one linkage; kg, s and its length unit.
+class DynamicsSpec(TableValue):
+    """Masses, speed, gravity and loads, of a problem or of one linkage; kg, s and its length unit.
 
     Forces are in N, moments in N m, stiffness in N/m, whatever the length unit.
 
@@ -64,7 +64,7 @@ class DynamicsSpec(Stated):
         Carried at P, as a point.
     speed_rpm : float
         Of the driver; 1 rad/s by default. Of a linkage counter-clockwise; of a problem greater than
-        zero, in the sense that the task asks for.
+        zero, in the sense that the task requires.
     gravity : two floats, m/s^2
         In metres whatever the length unit; none by default.
     loads : tuple of LoadSpec
@@ -118,23 +118,16 @@ class DynamicsSpec(Stated):
 
     def __post_init__(self) -> None:
         self._check_masses()
-        for name in ("mass_per_length", "density"):
-            if (given := getattr(self, name)) is not None:
-                self._set(name, positive_number(bounded(given, f"dynamics.{name}"), f"dynamics.{name}"))
-        for name in ("masses", "inertias"):
-            self._set(name, _each(getattr(self, name), f"dynamics.{name}"))
+        each = {"masses": _each, "inertias": _each}
+        check_fields(self, "dynamics.", mass_per_length=positive_bounded, density=positive_bounded, **each)
         if self.masses and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
-        if self.centres is not None:
-            self._set("centres", _places(self.centres, "dynamics.centres"))
-        self._set("payload", from_zero(self.payload, "dynamics.payload"))
-        self._set("speed_rpm", bounded(self.speed_rpm, "dynamics.speed_rpm"))
-        self._set("gravity", numbers(self.gravity, 2, "dynamics.gravity"))
+        check_fields(self, "dynamics.", centres=_places, payload=from_zero, speed_rpm=bounded, gravity=pair)
         for name, kind in _LISTS.items():
             entries = getattr(self, name)
             if not isinstance(entries, Sequence) or not all(isinstance(each, kind) for each in entries):
                 raise wrong_value(name, entries, f"a list of {kind.__name__}")
-            self._set(name, tuple(entries))
+            set_fields(self, **{name: tuple(entries)})
 
     def _check_masses(self) -> None:
         given = [name for name in ("mass_per_length", "density") if getattr(self, name) is not None]
@@ -150,12 +143,9 @@ class DynamicsSpec(Stated):
             raise ProblemError("section is missing; dynamics.density needs it")
         check_strength(self.section, self.strength)
 
-    def _set(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
-
     @property
     def tables(self) -> dict[str, Any]:
-        """The tables of a file that state it, by their names, and lists of tables."""
+        """The tables, and lists of tables, of a file that states it, by name."""
         own = {key: getattr(self, key) for key in DYNAMICS_KEYS if getattr(self, key) is not None}
         return {
             "dynamics": own,
@@ -185,7 +175,7 @@ class DynamicsSpec(Stated):
         return self.has_masses or any(given) or self.friction is not None
 
     def too_short(self, duration: float, where: str) -> list[str]:
-        """What is wrong with loads over time in a motion of a duration (s), which `where` explains."""
+        """Errors of loads over time that do not cover a duration (s), which `where` explains."""
         return [
             f"loads[{index}] covers {load.values[0][0]:g} to {load.values[-1][0]:g} s; "
             f"it must cover 0 to {duration:.6g} s, {where}"
@@ -196,7 +186,7 @@ class DynamicsSpec(Stated):
 
     @property
     def turn_time(self) -> float:
-        """What a turn of the driver takes, s: at its mean speed, or as the motor's table has it."""
+        """Duration of a turn of the driver, s: at its mean speed, or from the motor's table."""
         if self.motor is not None and self.motor.values is not None:
             return self.motor.values[-1][0] - self.motor.values[0][0]
         return 60 / abs(self.speed_rpm) if self.speed_rpm else np.inf
@@ -207,6 +197,23 @@ class DynamicsSpec(Stated):
         return self.speed_rpm * np.pi / 30
 
 
+def reference_torque(spec: DynamicsSpec, task_size: float, metre: float) -> float:
+    """`Problem.reference_torque`, N m, from the size of the task and its unit in metres."""
+    size = task_size * metre
+    mass = (spec.mass_per_length or 0.0) * task_size + sum(spec.masses or ()) + spec.payload
+    mass += sum(weight.mass for weight in spec.counterweights)
+    if spec.density is not None and spec.section is not None:
+        mass += spec.density * max(spec.section.areas) * metre**2 * size
+    torque = mass * size * (math.hypot(*spec.gravity) + spec.omega2**2 * size)
+    torque += sum(load.greatest * (1.0 if load.is_moment else size) for load in spec.loads)
+    torque += sum(spring.stiffness for spring in spec.springs) * size**2
+    torque += sum(damper.damping for damper in spec.dampers) * spec.omega2 * size**2
+    torque += sum(spring.stiffness for spring in spec.torsion_springs)
+    if spec.friction is not None:
+        torque += max(spec.friction.moment) + max(spec.friction.viscous) * spec.omega2
+    return torque or 1.0
+
+
 def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     """Length of a unit in metres; `ProblemError` where it is none of `METRES`."""
     if length_unit not in METRES:
@@ -214,14 +221,12 @@ def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     return METRES[length_unit]
 
 
-def _each(values: Sequence[float] | None, where: str) -> tuple[float, ...] | None:
-    if values is None:
-        return None
+def _each(values: Sequence[float], where: str) -> tuple[float, ...]:
     if isinstance(values, str) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a number for each moving link")
     given = tuple(values)
     if len(given) not in _MOVING:
-        return given  # of no linkage: `misplaced` tells how many there must be
+        return given  # of no linkage: `misplaced` reports how many are needed
     return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(given))
 
 

@@ -1,6 +1,6 @@
-"""What acts on a linkage besides weight and drive: loads, springs, dampers, friction.
+"""Loads, springs, dampers, counterweights and friction of a linkage.
 
-Which links, joints and angles there are depends on the kind of linkage: `misplaced` checks that.
+`misplaced` checks that the kind of linkage has these links, joints and angles.
 """
 
 from __future__ import annotations
@@ -11,14 +11,21 @@ from numbers import Integral
 
 import numpy as np
 
-from grashof.problems.values.checks import bounded, from_zero, numbers
-from grashof.problems.values.dynamics.rows import Rows, as_rows, refuse_open, rising_rows
+from grashof.problems.values.checks import (
+    Rows,
+    as_rows,
+    bounded,
+    from_zero,
+    pair,
+    refuse_open,
+    rising_rows,
+)
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 Pair = tuple[float, float]
-TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a whole turn
+TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a full turn
 OVER = (*TURNING, "travel", "time")
 # The joints by the links that they join: of linkages of one loop, and of any; how many a linkage may have.
 JOINTS = tuple(joint.links for joint in MECHANISMS[0].every_joint)
@@ -29,7 +36,7 @@ SLIDE_KEYS = ("slide_mu", "slide_length", "slide_viscous", "slide_force")
 
 
 @dataclass(frozen=True, slots=True)
-class Place(Stated):
+class Place(TableValue):
     """A point of a link.
 
     Parameters
@@ -45,12 +52,11 @@ class Place(Stated):
     at: Pair = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        _check_link(self.link)
-        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
+        check_fields(self, link=_link, at=pair)
 
 
 @dataclass(frozen=True, slots=True)
-class LoadSpec(Stated):
+class LoadSpec(TableValue):
     """A force on a link at a point, or a moment: constant, or over driver angle, output or time.
 
     `ProblemError` unless it is one of force, moment and values, and these rise and close.
@@ -69,7 +75,7 @@ class LoadSpec(Stated):
         Instead of both: (place, fx, fy) or (place, moment), places rising, in deg, length or s. Between
         rows the load follows a curve through them that rises and falls as they do.
     over : str
-        What the places are: "theta2", "theta4", of a six-bar "theta6" (deg, a whole turn), "travel" (length:
+        The places: "theta2", "theta4", of a six-bar "theta6" (deg, a full turn), "travel" (length:
         of a slide, see `FrictionSpec`) or "time" (s from the start).
     frame : str
         Axes of the force: "global", or "link", with which it turns.
@@ -84,19 +90,14 @@ class LoadSpec(Stated):
     frame: str = "global"
 
     def __post_init__(self) -> None:
-        _check_link(self.link)
-        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
-        _one_of("frame", self.frame, ("global", "link"))
+        check_fields(self, link=_link, at=pair)
+        if self.frame not in ("global", "link"):
+            raise wrong_value("frame", self.frame, "global or link")
         given = [name for name in ("force", "moment", "values") if getattr(self, name) is not None]
         if len(given) != 1:
             what = " and ".join(given) or "nothing"
             raise ProblemError(f"force is given by {what}; it must be by one of force, moment, values, table")
-        if self.force is not None:
-            object.__setattr__(self, "force", numbers(self.force, 2, "force"))
-        if self.moment is not None:
-            object.__setattr__(self, "moment", bounded(self.moment, "moment"))
-        if self.values is not None:
-            object.__setattr__(self, "values", _rows(self.values, self.over))
+        check_fields(self, force=pair, moment=bounded, values=lambda rows, _: _rows(rows, self.over))
         for name, plain in (("over", "theta2"), ("at", (0.0, 0.0)), ("frame", "global")):
             needs = self.values is not None if name == "over" else not self.is_moment
             if getattr(self, name) != plain and not needs:
@@ -117,7 +118,7 @@ class LoadSpec(Stated):
 
 
 @dataclass(frozen=True, slots=True)
-class SpringSpec(Stated):
+class SpringSpec(TableValue):
     """A straight spring between points of two links.
 
     Parameters
@@ -125,9 +126,9 @@ class SpringSpec(Stated):
     between : pair of Place
         Its two ends.
     stiffness : float, N/m
-        Force for each metre that it is longer than its free length.
+        Force for each metre beyond its free length.
     free_length : float, length
-        Where it is slack.
+        Length at which it is slack.
     """
 
     between: tuple[Place, Place]
@@ -135,13 +136,11 @@ class SpringSpec(Stated):
     free_length: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "between", _two_places(self.between))
-        object.__setattr__(self, "stiffness", from_zero(self.stiffness, "stiffness"))
-        object.__setattr__(self, "free_length", from_zero(self.free_length, "free_length"))
+        check_fields(self, between=_two_places, stiffness=from_zero, free_length=from_zero)
 
 
 @dataclass(frozen=True, slots=True)
-class DamperSpec(Stated):
+class DamperSpec(TableValue):
     """A damper between points of two links.
 
     Parameters
@@ -156,12 +155,11 @@ class DamperSpec(Stated):
     damping: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "between", _two_places(self.between))
-        object.__setattr__(self, "damping", from_zero(self.damping, "damping"))
+        check_fields(self, between=_two_places, damping=from_zero)
 
 
 @dataclass(frozen=True, slots=True)
-class TorsionSpringSpec(Stated):
+class TorsionSpringSpec(TableValue):
     """A spring about a joint, that turns its two links towards each other.
 
     Parameters
@@ -180,18 +178,21 @@ class TorsionSpringSpec(Stated):
     free_angle_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        pair = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
-        if len(pair) == 2 and pair[0] == pair[1]:
-            raise ProblemError(f"between joins link {pair[0]} to itself; it must be two links of a joint")
+        links = tuple(self.between) if isinstance(self.between, Sequence) else (self.between,)
+        if len(links) == 2 and links[0] == links[1]:
+            raise ProblemError(f"between joins link {links[0]} to itself; it must be two links of a joint")
         free = bounded(self.free_angle_deg, "free_angle_deg")
-        turned = pair[::-1] in _ANY_JOINTS
-        object.__setattr__(self, "between", pair[::-1] if turned else pair)
-        object.__setattr__(self, "free_angle_deg", -free if turned else free)
-        object.__setattr__(self, "stiffness", from_zero(self.stiffness, "stiffness"))
+        turned = links[::-1] in _ANY_JOINTS
+        set_fields(
+            self,
+            between=links[::-1] if turned else links,
+            stiffness=from_zero(self.stiffness, "stiffness"),
+            free_angle_deg=-free if turned else free,
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class CounterweightSpec(Stated):
+class CounterweightSpec(TableValue):
     """A point mass on a link, besides its own.
 
     Parameters
@@ -209,13 +210,11 @@ class CounterweightSpec(Stated):
     at: Pair
 
     def __post_init__(self) -> None:
-        _check_link(self.link)
-        object.__setattr__(self, "mass", from_zero(self.mass, "mass"))
-        object.__setattr__(self, "at", numbers(self.at, 2, "at"))
+        check_fields(self, link=_link, mass=from_zero, at=pair)
 
 
 @dataclass(frozen=True, slots=True)
-class FrictionSpec(Stated):
+class FrictionSpec(TableValue):
     """Friction in the joints O2, A, B, O4, a number for each, or one for all; and in a slide.
 
     Of a six-bar the joints are O2, A, B, O4, C, E, D.
@@ -234,7 +233,7 @@ class FrictionSpec(Stated):
         Coefficient of friction of the slide, for the force across it: of a slider on the ground, of the
         rod of an inverted slider-crank in its block.
     slide_length : float, length
-        Of the guide, that its moment presses on at both ends; by default `slide_mu` leaves the moment out.
+        Of the guide, whose ends bear the moment; by default the friction of `slide_mu` ignores the moment.
     slide_viscous : float, N s/m
         Force for each m/s along the slide.
     slide_force : float, N
@@ -251,9 +250,8 @@ class FrictionSpec(Stated):
     slide_force: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in self.__slots__:
-            check = from_zero if name in SLIDE_KEYS else _one_or_each
-            object.__setattr__(self, name, check(getattr(self, name), name))
+        pins = ("coulomb", "pin_radius", "viscous", "moment")
+        check_fields(self, **dict.fromkeys(pins, _one_or_each), **dict.fromkeys(SLIDE_KEYS, from_zero))
         if self.slide_length and not self.slide_mu:
             raise ProblemError("slide_mu is missing; slide_length is of no use without it")
         if any(self.coulomb) != any(self.pin_radius):
@@ -261,40 +259,30 @@ class FrictionSpec(Stated):
             raise ProblemError(f"{absent} is missing; coulomb and pin_radius are needed together")
 
     @property
-    def of_slide(self) -> bool:
-        """Whether it states friction of a slide."""
-        return any(getattr(self, name) for name in SLIDE_KEYS)
-
-    @property
     def radius(self) -> tuple[float, ...]:
         """Of the friction circles: moment for each unit of a joint's force, length."""
         return tuple(np.multiply(self.coulomb, self.pin_radius).tolist())
 
 
-def _one_of(name: str, value: object, allowed: tuple[object, ...]) -> None:
-    if isinstance(value, bool) or value not in allowed:
-        named = [str(each) for each in allowed]
-        raise wrong_value(name, value, f"{', '.join(named[:-1])} or {named[-1]}")
-
-
-def _check_link(link: object) -> None:
+def _link(link: object, where: str) -> object:
     if isinstance(link, bool) or not isinstance(link, Integral):
-        raise wrong_value("link", link, "the number of a link")
+        raise wrong_value(where, link, "the number of a link")
+    return link
 
 
 def _one_or_each(given: object, name: str) -> tuple[float, ...]:
     if isinstance(given, Sequence) and not isinstance(given, str):
         if len(given) not in (1, *_COUNTS):
-            return tuple(given)  # of no linkage: `misplaced` tells what it must be
+            return tuple(given)  # of no linkage: `misplaced` reports how many are needed
         each = tuple(from_zero(value, name) for value in given)
         return each[:1] if len(each) <= len(JOINTS) and len(set(each)) == 1 else each
     return (from_zero(given, name),)  # type: ignore[arg-type]
 
 
-def _two_places(given: object) -> tuple[Place, Place]:
+def _two_places(given: object, where: str) -> tuple[Place, Place]:
     places = tuple(given) if isinstance(given, Sequence) else ()
     if len(places) != 2 or not all(isinstance(place, Place) for place in places):
-        raise wrong_value("between", given, "two places, each with its link")
+        raise wrong_value(where, given, "two places, each with its link")
     if places[0].link == places[1].link:
         raise ProblemError(
             f"between joins link {places[0].link} to itself; it must be places of two different links"

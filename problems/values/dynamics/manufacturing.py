@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import GREATEST, finite_number
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.checks import positive_bounded
+from grashof.problems.values.value_bases import check_fields, set_fields
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -42,20 +42,10 @@ class Manufacturing:
     band: float
 
     def __init__(self, length_tolerance: float, band: float | None = None) -> None:
-        tolerance = _length(length_tolerance, "manufacturing.length_tolerance")
-        object.__setattr__(self, "length_tolerance", tolerance)
-        object.__setattr__(self, "band", tolerance if band is None else _length(band, "manufacturing.band"))
+        set_fields(self, length_tolerance=length_tolerance, band=length_tolerance if band is None else band)
+        check_fields(self, "manufacturing.", length_tolerance=positive_bounded, band=positive_bounded)
 
     @property
     def deviation(self) -> float:
         """Standard deviation of each made dimension, length."""
         return self.length_tolerance / 3
-
-
-def _length(value: float, where: str) -> float:
-    length = finite_number(value, where)
-    if length <= 0:
-        raise ProblemError(f"{where} is {length:.15g}; it must be greater than zero")
-    if length > GREATEST:
-        raise ProblemError(f"{where} is {length:.15g}; it must be at most {GREATEST:g}")
-    return length

@@ -1,20 +1,19 @@
-"""What drives a linkage: how the driver's speed varies, and the gear and motor before it."""
+"""The drive of a linkage: speed profile, gear and motor."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import GREATEST, from_zero, number_within, positive_number
-from grashof.problems.values.dynamics.rows import Rows, as_rows, rising_rows
+from grashof.problems.values.checks import Rows, as_rows, from_zero, positive_bounded, rising_rows, within
 from grashof.problems.values.errors import ProblemError, wrong_value
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 PROFILES = ("constant", "trapezoid", "cycloid")
 _RAMP = 1 / 3
 
 
 @dataclass(frozen=True, slots=True)
-class MotorSpec(Stated):
+class MotorSpec(TableValue):
     """The drive of link 2.
 
     `ProblemError` for an unknown profile, numbers outside their ranges, or values that do not rise.
@@ -49,19 +48,20 @@ class MotorSpec(Stated):
     def __post_init__(self) -> None:
         if self.profile not in PROFILES:
             raise wrong_value("profile", self.profile, f"{', '.join(PROFILES)}, or the name of a CSV file")
-        object.__setattr__(self, "ramp", number_within(self.ramp, 0.01, 0.5, "ramp"))
+        check_fields(
+            self,
+            ramp=within(0.01, 0.5),
+            gear_ratio=positive_bounded,
+            gear_efficiency=within(0.01, 1.0),
+            inertia=from_zero,
+        )
         if self.ramp != _RAMP and self.profile != "trapezoid":
             raise ProblemError('ramp does not go with this profile; it needs profile = "trapezoid"')
-        ratio = number_within(positive_number(self.gear_ratio, "gear_ratio"), 0.0, GREATEST, "gear_ratio")
-        object.__setattr__(self, "gear_ratio", ratio)
-        share = number_within(self.gear_efficiency, 0.01, 1.0, "gear_efficiency")
-        object.__setattr__(self, "gear_efficiency", share)
-        object.__setattr__(self, "inertia", from_zero(self.inertia, "inertia"))
         if self.values is not None:
             if self.profile != "constant":
                 raise ProblemError("profile is given besides values; give one of them")
             table = rising_rows(self.values, 2, "[time, angle]", ("time", "angle"), least="three")
-            object.__setattr__(self, "values", as_rows(table))
+            set_fields(self, values=as_rows(table))
 
     @property
     def steady(self) -> bool:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import bounded, positive_number
-from grashof.problems.values.dynamics.rows import Rows, as_rows, refuse_open, rising_rows
+from grashof.problems.values.checks import Rows, as_rows, bounded, positive_bounded, refuse_open, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
-from grashof.problems.values.stated import Stated
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 CRANK, POSITION = "crank", "position"
 _SENSES = ("clockwise", "counter-clockwise")
@@ -16,7 +15,7 @@ _ROWS = {CRANK: (2, "[crank angle, load]"), POSITION: (3, "[position, load up, l
 
 
 @dataclass(frozen=True, slots=True)
-class PumpingUnitSpec(Stated):
+class PumpingUnitSpec(TableValue):
     """A linkage whose link 4 is the beam of a pumping unit; its `output_arm` is that of the horsehead.
 
     Crank angles are those of the API: clockwise from 12 o'clock, seen with the well to the right.
@@ -59,19 +58,15 @@ class PumpingUnitSpec(Stated):
         for name, words in (("well", _SIDES), ("crank", _SENSES), ("over", tuple(_ROWS))):
             if (given := getattr(self, name)) not in words:
                 raise wrong_value(name, given, " or ".join(words))
-        for name in ("structural_unbalance", "counterbalance", "counterbalance_phase_deg"):
-            object.__setattr__(self, name, bounded(getattr(self, name), name))
-        if self.rating is not None:
-            object.__setattr__(self, "rating", positive_number(bounded(self.rating, "rating"), "rating"))
-        if self.rod_load is not None:
-            object.__setattr__(self, "rod_load", bounded(self.rod_load, "rod_load"))
+        names = ("structural_unbalance", "counterbalance", "counterbalance_phase_deg", "rod_load")
+        check_fields(self, **dict.fromkeys(names, bounded), rating=positive_bounded)
         if self.values is None:
             if self.over != CRANK:
                 raise ProblemError("over does not go with a constant load; it needs values")
             return
         if self.rod_load is not None:
             raise ProblemError("rod_load is given besides values; give one of them")
-        object.__setattr__(self, "values", _loads(self.values, self.over))
+        set_fields(self, values=_loads(self.values, self.over))
 
     @property
     def side(self) -> int:

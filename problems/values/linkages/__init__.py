@@ -1,1 +1,1 @@
-"""Linkages as values: what they are made of, not how they move."""
+"""Linkages as values: their parts, not their motion."""

@@ -1,4 +1,4 @@
-"""A cylinder as driver: within which limits it may be, and one that a design has."""
+"""A cylinder as driver: its limits in a problem, and the cylinder of a design."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any, ClassVar
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.box import Box
-from grashof.problems.values.checks import finite_number, limits, numbers
+from grashof.problems.values.checks import finite_number, limits, pair
 from grashof.problems.values.errors import ProblemError, wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.stated import Given
+from grashof.problems.values.linkages.one_loop import FourBar
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 CARRIERS: dict[str, int] = {link.name: link.number for link in FourBar.mechanism.links[1:]}
 _WHERE = "driver.cylinder"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CylinderSpec(Given):
+class CylinderSpec(TableValue):
     """The limits of a cylinder that drives the linkage.
 
     Parameters
@@ -48,6 +48,8 @@ class CylinderSpec(Given):
 below 2: a rod is no longer than its cylinder
     """
 
+    keeps_defaults: ClassVar[bool] = True
+
     closed: Limits | None = None
     ratio_max: float = 1.6
     on: tuple[str, ...] = tuple(CARRIERS)
@@ -58,15 +60,14 @@ below 2: a rod is no longer than its cylinder
             closed = limits(self.closed, f"{_WHERE}.closed", least=0.0)
             if closed[1] <= 0:
                 raise ProblemError(f"{_WHERE}.closed is [0, 0]; its greatest length must be above zero")
-            object.__setattr__(self, "closed", closed)
+            set_fields(self, closed=closed)
         ratio = finite_number(self.ratio_max, f"{_WHERE}.ratio_max")
         if not 1 < ratio < 2:
             raise ProblemError(
                 f"{_WHERE}.ratio_max is {ratio:.15g}; it must be above 1 and below 2: "
                 "a rod is no longer than its cylinder"
             )
-        object.__setattr__(self, "ratio_max", ratio)
-        object.__setattr__(self, "on", _carriers(self.on))
+        set_fields(self, ratio_max=ratio, on=_carriers(self.on))
         if not isinstance(self.base, Box | None):
             raise wrong_value(f"{_WHERE}.base", self.base, "a Box")
 
@@ -100,9 +101,8 @@ class Cylinder:
     def __post_init__(self) -> None:
         if self.on not in CARRIERS:
             raise wrong_value("cylinder.on", self.on, f"one of {', '.join(CARRIERS)}")
-        for name in ("base", "point"):
-            object.__setattr__(self, name, numbers(getattr(self, name), 2, f"cylinder.{name}"))
-        object.__setattr__(self, "link", CARRIERS[self.on])
+        check_fields(self, "cylinder.", base=pair, point=pair)
+        set_fields(self, link=CARRIERS[self.on])
 
     @property
     def stated(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What every kind of linkage is as a value: parameters, links, lengths; all else goes through these rows."""
+"""The base of all kinds of linkages as values: parameters, links and lengths by the rows of a mechanism."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, frozen_array
-from grashof.problems.values.display import Displayed
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
+from grashof.problems.values.value_bases import Displayed, set_fields
 
 
 class Linkage(Displayed):
@@ -25,7 +24,7 @@ class Linkage(Displayed):
 
     __slots__ = ()
 
-    mechanism: Mechanism  # its kind; files, tables, drawings and plates go through the rows of it
+    mechanism: Mechanism  # its kind; files, tables, drawings and plates loop over its rows
 
     o2: FloatArray
     r2: FloatArray
@@ -49,7 +48,7 @@ class Linkage(Displayed):
             ) from None
         for row, array in arrays.items():
             full = (*batch, 2) if row.paired else batch
-            object.__setattr__(self, row.name, frozen_array(np.broadcast_to(array, full)))
+            set_fields(self, **{row.name: frozen_array(np.broadcast_to(array, full))})
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -76,7 +75,7 @@ class Linkage(Displayed):
 
     @property
     def choices(self) -> dict[str, Any]:
-        """Arguments that are no arrays and choose the kind; none of a linkage of one loop."""
+        """Arguments besides arrays, which choose the kind; empty for a linkage of one loop."""
         return {}
 
     @property
@@ -161,7 +160,7 @@ class Linkage(Displayed):
 
 
 def by_kind(linkages: Sequence[Linkage]) -> list[list[int]]:
-    """Where in a sequence the linkages of each kind are, which `Linkage.stacked` makes a batch."""
+    """Indices of the linkages of each kind in a sequence, for `Linkage.stacked`."""
     found: dict[Mechanism, list[int]] = {}
     for index, linkage in enumerate(linkages):
         found.setdefault(linkage.mechanism, []).append(index)

@@ -1,13 +1,101 @@
-"""What a kind of linkage is: a driver and dyads. Its links, joints, parameters and dimensions follow."""
+"""Kinds of linkages: a driver and dyads. Links, joints, parameters and dimensions follow."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from typing import NamedTuple
+from itertools import combinations
+from typing import Literal, NamedTuple
 
-from grashof.problems.values.linkages.linkage_parts import Link, Parameter, points_of
+import numpy as np
+import numpy.typing as npt
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.checks import MOST_TURNS
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+
+_ENDINGS = {"place": ("_x", "_y"), "station": ("_u", "_v"), "arm": ("_u", "_v"), "angle": ("_deg",)}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One of the parameters that define a linkage.
+
+    A place is x and y; a station the same of a point on a link that is the ground, as u and v; an arm u and v
+    in the frame of a link; a distance may be negative or zero; angles are in rad, in files and tables in deg.
+    """
+
+    name: str  # in Python and JSON
+    kind: Literal["place", "station", "arm", "length", "distance", "sign", "angle"]
+    column: str = ""  # what its columns in tables begin with, where that is not the name
+
+    @property
+    def paired(self) -> bool:
+        """Whether it is two numbers, on a last axis."""
+        return self.kind in ("place", "station", "arm")
+
+    @property
+    def in_length(self) -> bool:
+        """Whether its numbers are in the unit of length."""
+        return self.kind not in ("sign", "angle")
+
+    @property
+    def key(self) -> str:
+        """Its key in linkage files."""
+        return f"{self.name}_deg" if self.kind == "angle" else self.name
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Its columns in tables, one a number."""
+        return tuple((self.column or self.name) + ending for ending in _ENDINGS.get(self.kind, ("",)))
+
+    def array(self, value: npt.ArrayLike) -> FloatArray:
+        """A value as an array, checked by kind: finite, a pair, a length, a sign, at most 100 turns."""
+        try:
+            array = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            raise wrong_value(self.name, value, "a number") from None
+        if not np.isfinite(array).all():
+            raise ProblemError(f"{self.name} is {shown(value)}; all numbers must be finite")
+        if self.paired and array.shape[-1:] != (2,):
+            raise ProblemError(f"{self.name} has shape {array.shape}; it must be (..., 2)")
+        if self.kind == "length" and np.any(array <= 0):
+            raise wrong_value(self.name, value, "greater than zero")
+        if self.kind == "sign" and np.any(np.abs(array) != 1):
+            raise wrong_value(self.name, value, "+1 or -1")
+        if self.kind == "angle" and np.any(np.abs(array) > MOST_TURNS * 2 * np.pi):
+            raise wrong_value(self.name, value, f"at most {MOST_TURNS} turns")
+        return array
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A link and the points on it.
+
+    1 is the ground, 2 the driver; their lengths are r1, r2, ..., their directions theta1, theta2, ... The
+    first point is the origin of its frame, the second lies on its u-axis.
+    """
+
+    number: int
+    name: str
+    points: tuple[str, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Its points as they are written in drawings: O2, A."""
+        return tuple(point.upper() for point in self.points)
+
+    @property
+    def lines(self) -> tuple[tuple[str, str], ...]:
+        """Its points, each joined with every other one."""
+        return tuple(combinations(self.points, 2))
+
+
+def points_of(links: Sequence[Link]) -> tuple[str, ...]:
+    """All points on some links, each once."""
+    return tuple(dict.fromkeys(point for link in links for point in link.points))
 
 
 class DyadKind(StrEnum):
@@ -49,7 +137,7 @@ class Joint:
 
 
 class LoopNames(NamedTuple):
-    """What belongs to the loop of a dyad, by its names on linkages.
+    """Names, on linkages, of the parts of the loop of a dyad.
 
     The dyad and the numbers of its links; points C, D and E; the lengths of its bars, from C and from D;
     offset and direction of its slide, empty where it has none; its assembly.
@@ -100,7 +188,7 @@ class Mechanism:
 
     @cached_property
     def loops(self) -> tuple[LoopNames, ...]:
-        """Names of what each dyad adds."""
+        """Names of the parts that each dyad adds."""
         found = []
         for index, (dyad, points) in enumerate(zip(self.dyads, LOOP_POINTS, strict=False)):
             ending, links = "_2" if index else "", (2 * index + 3, 2 * index + 4)
@@ -132,7 +220,7 @@ class Mechanism:
 
     @cached_property
     def parameters(self) -> tuple[Parameter, ...]:
-        """What its linkages are given by, in the order of constructors and tables."""
+        """Parameters of its linkages, in the order of constructors and tables."""
         pivots, sizes = [Parameter("o2", "place")], [Parameter("r2", "length")]
         for loop in self.loops:
             if loop is not self.loops[0]:
@@ -160,7 +248,7 @@ class Mechanism:
 
     @cached_property
     def dimensions(self) -> tuple[str, ...]:
-        """What is made, and may come out inexactly; u and v are those of the coupler point."""
+        """Dimensions subject to tolerances; u and v are those of the coupler point."""
         offsets = (row.name for row in self.parameters if row.kind == "distance")
         arms = (column for row in self.parameters if row.name in ("c", "d") for column in row.columns)
         return (*self.lengths, *offsets, *arms, "u", "v")
@@ -183,7 +271,7 @@ class Mechanism:
 
     @cached_property
     def ground(self) -> tuple[str, ...]:
-        """Points that stand still."""
+        """Fixed points."""
         return self.links[0].points
 
     @cached_property
@@ -223,5 +311,5 @@ MECHANISMS = (
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (2, 1))), carries=5),
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (4, 1))), carries=5),
 )
-# Kinds of one loop by their words: problems may ask for these. The first is meant where none is named.
+# Kinds of one loop by their words: those that problems may name. The first is the default.
 ONE_LOOP = {row.word: row for row in MECHANISMS if len(row.dyads) == 1}

@@ -1,4 +1,4 @@
-"""The kinds of linkages: which there are, which of them has what, and which a problem asks for."""
+"""The kinds of linkages by their words, with the parameters that each has."""
 
 from __future__ import annotations
 
@@ -6,15 +6,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from grashof.problems.values.checks import each_checked, near_miss, refuse
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
-from grashof.problems.values.linkages.inverted_slider_crank import InvertedSliderCrank
+from grashof.problems.values.checks import each_checked, hint, refuse
+from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.linkage_parts import Parameter
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Parameter
+from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
-from grashof.problems.values.linkages.slider_crank import SliderCrank
 
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
 WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in linkage files and tables
@@ -30,8 +27,7 @@ DIMENSIONS: tuple[str, ...] = (
     "u",
     "v",
 )
-_ANY = f"{', '.join(list(ONE_LOOP)[:-1])} or {list(ONE_LOOP)[-1]}"
-ANY_KINDS = f"{_ANY}, or a list of these"
+ANY_KINDS = f"{listing(list(ONE_LOOP))}, or a list of these"
 
 
 # What makes them in Python, and describes their parameters; six-bars are `SixBar`.
@@ -41,10 +37,7 @@ CLASSES: dict[str, type[Linkage]] = dict(
 
 
 def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
-    """A linkage by the word for its kind, and its parameters by name, as `Linkage.stated` has them.
-
-    `ProblemError` where they make no linkage, or one of another kind.
-    """
+    """A linkage by the word for its kind and `Linkage.stated`; `ProblemError` if they do not make one."""
     linkage = CLASSES.get(word, SixBar)(**given)
     if (made := linkage.mechanism.word) != word:
         raise ProblemError(f"mechanism is {word}; links {linkage.choices['hosts']} carry C and D in a {made}")
@@ -52,13 +45,7 @@ def linkage_of(word: str, given: Mapping[str, Any]) -> Linkage:
 
 
 def kinds_text(words: Sequence[str]) -> str:
-    """Kinds in words; empty of a four-bar alone, which is meant where none is named.
-
-    Examples
-    --------
-    >>> kinds_text(["four-bar"]), kinds_text(["four-bar", "slider-crank"])
-    ('', 'four-bar or slider-crank')
-    """
+    """Kinds in words: "four-bar or slider-crank"; empty for a four-bar alone, the default."""
     return "" if list(words) == [FOUR_BAR] else " or ".join(words)
 
 
@@ -83,19 +70,13 @@ def closing_dyad(kind: str) -> DyadKind:
 
 
 def freedoms(kind: str) -> int:
-    """How many numbers describe a linkage of a kind, how the guided body sits on it apart."""
+    """The number of dimensions of a linkage of a kind, without the angle of the guided body."""
     rows = [row for row in ONE_LOOP[kind].parameters if row.kind != "sign" and row.name != "body_angle"]
     return sum(1 + row.paired for row in rows)
 
 
 def lengths_text(linkage: Linkage, digits: int = 4) -> str:
-    """The lengths of a single linkage, and the offset of its slide.
-
-    Examples
-    --------
-    >>> lengths_text(FourBar((0, 0), (4, 0), 1, 4, 3)), lengths_text(SliderCrank((0, 0), 1, 4))
-    ('r1 to r4 4, 1, 4, 3', 'r2 1, r3 4, offset 0')
-    """
+    """The lengths of a single linkage, and the offset of its slide: "r1 to r4 4, 1, 4, 3"."""
     if linkage.mechanism.word == FOUR_BAR:
         return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
     names = (
@@ -107,7 +88,7 @@ def lengths_text(linkage: Linkage, digits: int = 4) -> str:
 
 
 def without_noise(length: float, linkage: Linkage) -> float:
-    """A length of a single linkage as people read it: 0 where it is less than rounding leaves of zero.
+    """A length of a single linkage for display: 0 where it is rounding noise.
 
     Examples
     --------
@@ -118,10 +99,10 @@ def without_noise(length: float, linkage: Linkage) -> float:
     return 0.0 if abs(length) < NOISE * float(linkage.lengths.max()) else length
 
 
-def not_had(what: str, asked: Sequence[str], kinds: Sequence[str]) -> str:
-    """What is wrong where something is given that only other kinds of linkages have."""
+def not_had(what: str, given: Sequence[str], kinds: Sequence[str]) -> str:
+    """The error of a key or quantity that only other kinds of linkages have."""
     ending = "has it" if len(kinds) == 1 else "have it"
-    return f"{what} does not go with mechanism {' and '.join(asked)}; only {' and '.join(kinds)} {ending}"
+    return f"{what} does not go with mechanism {' and '.join(given)}; only {' and '.join(kinds)} {ending}"
 
 
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
@@ -136,10 +117,8 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
 
 
 def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = tuple(ONE_LOOP)) -> str:
-    """A word for a kind of linkages, checked: one of those that problems may ask for, or of others."""
+    """A word for a kind of linkages, checked: one of those of problems, or of others."""
     if isinstance(word, str) and word in among:
         return word
-    meant = near_miss(word, among) if isinstance(word, str) else None
-    if meant is not None:
-        raise ProblemError(f"{where} is {shown(word)}; did you mean {meant}?")
-    raise wrong_value(where, word, f"{', '.join(among[:-1])} or {among[-1]}")
+    known = hint(word, among, f"it must be {listing(among)}")
+    raise ProblemError(f"{where} is {shown(word)}; {known}")

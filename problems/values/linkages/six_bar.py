@@ -12,6 +12,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
+from grashof.problems.values.value_bases import set_fields
 
 _SIX_BARS = tuple(row for row in MECHANISMS if len(row.dyads) > 1)
 
@@ -122,7 +123,7 @@ class SixBar(Linkage):
             if (value is None) == (name in names):
                 with_slide = "with slide_angle_2" if slides else "without slide_angle_2"
                 raise ProblemError(f"{name} is {'missing' if value is None else 'given'} {with_slide}")
-        object.__setattr__(self, "mechanism", row)
+        set_fields(self, mechanism=row)
         self._keep(*(given[name] for name in names))
 
     @property
@@ -132,11 +133,7 @@ class SixBar(Linkage):
 
 
 def six_bar(hosts: Sequence[int], *, slides: bool = False, point_link: int = 5) -> Mechanism:
-    """The six-bar whose `hosts` carry C and D and whose `point_link` carries P.
-
-    Where it `slides`, link 6 is a slider. `ProblemError` where there is no such six-bar, or P is on none of
-    its moving links.
-    """
+    """The six-bar whose `hosts` carry C and D and whose `point_link` carries P; link 6 may be a slider."""
     rows = [row for row in _SIX_BARS if row.dyads[1].slides == slides]
     if not 2 <= point_link <= 6 or isinstance(point_link, bool):
         raise wrong_value("point_link", point_link, "the number of a moving link, 2 to 6")

@@ -1,1 +1,1 @@
-"""What may be limited, weighed and listed: quantities, requirements, objectives."""
+"""Quantities that may be limited, weighed and listed; requirements and objectives."""

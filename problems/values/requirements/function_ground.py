@@ -1,4 +1,4 @@
-"""Where the ground link of a function generator lies: at will, but for what requirements say."""
+"""Where the ground link of a function generator lies: free within the requirements."""
 
 from __future__ import annotations
 
@@ -18,19 +18,13 @@ _ROUNDING = 1e-9  # share: where pivots are given, both axes have the same lengt
 
 @dataclass(frozen=True, slots=True)
 class FunctionGround:
-    """The ground line of a function generator: O2 = (0, 0), O4 = (1, 0) unless limits say otherwise.
-
-    Examples
-    --------
-    >>> from grashof.problems import Box, Requirements
-    >>> ground = FunctionGround.of(Requirements(o2=Box((0, 0), (0, 0)), o4=Box((0, 0), (200, 300))))
-    >>> round(float(np.degrees(ground.theta1)), 9), ground.length, ground.placed(250.0)
-    (90.0, 200.0, ((0.0, 0.0), (0.0, 250.0)))
-    """
+    """The ground line of a function generator: O2 = (0, 0), O4 = (1, 0) unless limits require another."""
 
     theta1: float  # rad, direction O2->O4
-    lengths: Limits  # least and greatest r1 in this direction; the first is the greater where there is none
-    length: float  # the r1 that is usual
+    lengths: (
+        Limits  # least and greatest r1 in this direction; the first exceeds the second where none is possible
+    )
+    length: float  # the usual r1
     o2: Box  # where the pivots may lie
     o4: Box
 
@@ -71,12 +65,12 @@ class FunctionGround:
 
 
 def grounded(task: Task, wanted: Requirements) -> Task:
-    """A task with the usual length of the ground that requirements leave it, where it asks for outputs."""
+    """A function with the usual length of the ground within the requirements; any other task unchanged."""
     return task.with_ground(FunctionGround.of(wanted).length) if task.has_output.any() else task
 
 
 def _along(cosine: float, side: Limits) -> Limits:
-    """For which lengths the part of a vector along an axis lies within limits."""
+    """The lengths of a vector for which its component along an axis lies within limits."""
     if abs(cosine) < _SMALL:
         inside = side[0] <= _SMALL and side[1] >= -_SMALL
         return _FREE if inside else (np.inf, -np.inf)

@@ -1,17 +1,18 @@
-"""What makes one design better than another: weights of quantities."""
+"""The objective: weights of quantities, by which designs are ranked."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import near_miss, number_within
+from grashof.problems.values.checks import hint, number_within
 from grashof.problems.values.errors import ProblemError, shown_key
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
+from grashof.problems.values.value_bases import set_fields
 
 _HEAVIEST = 1e9
 _PLAIN = {"compactness": "size", "torque": "torque_peak"}  # goals that go by a name of their own
-# What can be made best, by the names that problem files use.
+# Possible goals, by the names that problem files use.
 GOALS: dict[str, Quantity] = {
     name: QUANTITIES[_PLAIN.get(name, name)]
     for name in (
@@ -28,7 +29,7 @@ GOALS: dict[str, Quantity] = {
 
 @dataclass(frozen=True, slots=True, init=False)
 class Objective:
-    """What makes one design better than another; weights are relative.
+    """The criterion that ranks designs; weights are relative.
 
     Parameters
     ----------
@@ -64,13 +65,12 @@ class Objective:
         for name, weight in given.items():
             where = f"objective.maximise.{shown_key(name)}"
             if name not in GOALS:
-                meant = near_miss(name, list(GOALS))
-                hint = f"did you mean {meant}?" if meant else f"the keys are {', '.join(GOALS)}"
-                raise ProblemError(f"{where} is unknown; {hint}")
+                keys = hint(name, list(GOALS), f"the keys are {', '.join(GOALS)}")
+                raise ProblemError(f"{where} is unknown; {keys}")
             weights.append((GOALS[name].key, number_within(weight, 0.0, _HEAVIEST, where)))
         if not any(weight for _, weight in weights):
             raise ProblemError("objective.maximise has no weight greater than zero; one at least is needed")
-        object.__setattr__(self, "weights", tuple(pair for pair in weights if pair[1]))
+        set_fields(self, weights=tuple(pair for pair in weights if pair[1]))
 
     @property
     def goals(self) -> dict[str, float]:

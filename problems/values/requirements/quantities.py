@@ -17,7 +17,6 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     DIMENSIONS,
@@ -26,20 +25,22 @@ from grashof.problems.values.linkages.mechanisms import (
     SLIDER_CRANK,
     having,
 )
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import set_fields
 
 
-class Over(StrEnum):
+class Scope(StrEnum):
     """Where a quantity is taken."""
 
     DESIGN = "the design"
     TARGETS = "the targets"
     TASK = "the task motion, from the first target to the last"
-    CYCLE = "the whole turn"
+    CYCLE = "the full turn"
 
 
 class Needs(Enum):
-    """What the problem has to state for a quantity to have a value."""
+    """The part of the problem on which a quantity depends."""
 
     NOTHING = "nothing"
     DYNAMICS = "dynamics"
@@ -61,22 +62,21 @@ class Quantity:
     key: str
     label: str  # heading in tables
     unit: Unit
-    over: Over = Over.DESIGN
+    over: Scope = Scope.DESIGN
     better: int = 0  # +1 where more is better, -1 where less is, 0 for neither
     needs: Needs = Needs.NOTHING
     digits: int = 0  # significant ones of the largest value in a table; 0 where it is listed in files only
-    about: str = ""  # what it is, where its label does not show it
-    listed: bool = True  # whether it is a column; what has several parts, such as a place, is not
-    words: str = ""  # what it is called in a sentence, where that is not its label
+    about: str = ""  # a description, where the label is not enough
+    listed: bool = True  # whether it is a column; a place, which has several parts, is not
+    words: str = ""  # its name in a sentence, where that is not its label
     short: str = ""  # heading where there is little room, where that is not its label
     kinds: tuple[str, ...] = tuple(ONE_LOOP)  # of linkages that have it
     named: str = ""  # its name in candidates.csv, where that is not its key
     full: str = ""  # its name in words in a list of all values, where that is not `words`
 
     def __post_init__(self) -> None:
-        for name in ("words", "short"):
-            object.__setattr__(self, name, getattr(self, name) or self.label)
-        object.__setattr__(self, "full", self.full or self.words)
+        set_fields(self, words=self.words or self.label, short=self.short or self.label)
+        set_fields(self, full=self.full or self.words)
 
     @property
     def column(self) -> str:
@@ -85,11 +85,11 @@ class Quantity:
 
     @property
     def deviates(self) -> bool:
-        """Whether it is a length or an angle by which something is missed: none at all is best."""
+        """Whether it is a deviation, a length or an angle, of which zero is best."""
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
-# What the lengths and places that a linkage is stated by are called, by their columns.
+# Names of the lengths and places that state a linkage, by column.
 _STATED = {
     "o2_x": "O2, x",
     "o2_y": "O2, y",
@@ -114,7 +114,7 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
 
 
 def _stated(kind: str, digits: int = 0) -> list[Quantity]:
-    """The columns of such parameters."""
+    """Quantities of the columns of these parameters."""
     rows = [row for row in PARAMETERS if row.kind == kind]
     return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
 
@@ -122,7 +122,7 @@ def _stated(kind: str, digits: int = 0) -> list[Quantity]:
 def _move(name: str) -> Quantity:
     about = f"how far the worst target moves per unit of change of {name}"
     return Quantity(
-        f"move_{name}", f"move by {name}", Unit.RATIO, Over.TARGETS, -1, Needs.MANUFACTURING, about=about,
+        f"move_{name}", f"move by {name}", Unit.RATIO, Scope.TARGETS, -1, Needs.MANUFACTURING, about=about,
         kinds=having(name), full=f"sensitivity to {name}",
     )  # fmt: skip
 
@@ -135,8 +135,8 @@ _WORST = "worst transmission angle over the"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
-_MISSED: dict[str, Any] = {"over": Over.TARGETS, "better": -1}
-_OVERALL: dict[str, Any] = {"over": Over.TASK, "about": "from the first target to the last"}
+_MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
+_OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": "from the first target to the last"}
 TURNING = having("o4")  # kinds whose link 4 turns
 ROCKERS = having("r4")  # those where it is a bar
 TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
@@ -151,23 +151,23 @@ MEASURED: dict[str, Quantity] = {
         *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
         *_stated("arm"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
-        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Over.TARGETS),
-        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Over.TARGETS),
+        Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Scope.TARGETS),
+        Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Scope.TARGETS),
         _length(
             "error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, full=_ALL, **_MISSED
         ),
-        _length("error_max", "largest position error", over=Over.TARGETS, better=-1),
+        _length("error_max", "largest position error", over=Scope.TARGETS, better=-1),
         _length("error_rms", "position error rms", full=f"position error{_RMS}", **_MISSED),
-        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Over.TARGETS, -1),
-        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Over.TARGETS, -1),
+        Quantity("error_sse", "sum of squared position errors", Unit.AREA, Scope.TARGETS, -1),
+        Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Scope.TARGETS, -1),
         Quantity(
             "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{_RMS}", **_MISSED,
         ),
         Quantity(
-            "transmission_min_task", "mu task", Unit.ANGLE, Over.TASK, +1, digits=3, words=f"{_WORST} task"
+            "transmission_min_task", "mu task", Unit.ANGLE, Scope.TASK, +1, digits=3, words=f"{_WORST} task"
         ),
         Quantity(
-            "transmission_min_cycle", "mu turn", Unit.ANGLE, Over.CYCLE, +1, digits=3, words=f"{_WORST} turn"
+            "transmission_min_cycle", "mu turn", Unit.ANGLE, Scope.CYCLE, +1, digits=3, words=f"{_WORST} turn"
         ),
         Quantity(
             "omega4_max", "omega4", Unit.ANGULAR_VELOCITY, better=-1, kinds=TURNING,
@@ -196,20 +196,20 @@ MEASURED: dict[str, Quantity] = {
             "coupler_fit_r2", "fit of P", Unit.RATIO, better=+1,
             full="R2 of a polynomial through the path of P", **_OVERALL,
         ),
-        _length("size", over=Over.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
-        _length("hausdorff", "Hausdorff distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
-        _length("frechet", "Fréchet distance", over=Over.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("size", over=Scope.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
+        _length("hausdorff", "Hausdorff distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
+        _length("frechet", "Fréchet distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
         *(_move(name) for name in FourBar.mechanism.dimensions),
         _length(
             "worst_move", "worst move", needs=Needs.MANUFACTURING,
             full="largest move of a target within the tolerances", **_MISSED,
         ),
         Quantity(
-            "share_within_linear", "within, linear", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING,
+            "share_within_linear", "within, linear", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING,
             full="share made within the allowed error, linearised",
         ),
         Quantity(
-            "share_within_made", "made within", Unit.SHARE, Over.TARGETS, +1, Needs.MANUFACTURING, digits=3,
+            "share_within_made", "made within", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING, digits=3,
             full="share made within the allowed error",
         ),
         *_stated("distance", digits=4),
@@ -217,19 +217,19 @@ MEASURED: dict[str, Quantity] = {
         *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
-            "cylinder_closed", "closed cylinder", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            "cylinder_closed", "closed cylinder", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
             full="cylinder, closed length",
         ),
         _length(
-            "cylinder_stroke", "cylinder stroke", over=Over.TASK, needs=Needs.CYLINDER, digits=4,
+            "cylinder_stroke", "cylinder stroke", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
             full="cylinder, stroke",
         ),
         Quantity(
-            "cylinder_angle_min", "lever angle", Unit.ANGLE, Over.TASK, +1, Needs.CYLINDER, digits=3,
+            "cylinder_angle_min", "lever angle", Unit.ANGLE, Scope.TASK, +1, Needs.CYLINDER, digits=3,
             about=_LEVER, words="worst lever angle of the cylinder", full="cylinder, worst lever angle",
         ),
         Quantity(
-            "cylinder_force_max", "cylinder force", Unit.FORCE, Over.TASK, -1, Needs.LOADED_CYLINDER,
+            "cylinder_force_max", "cylinder force", Unit.FORCE, Scope.TASK, -1, Needs.LOADED_CYLINDER,
             digits=4, words="peak force of the cylinder", full="cylinder, peak force",
         ),
     )
@@ -250,7 +250,7 @@ class Kind(Enum):
 
     @property
     def is_angle(self) -> bool:
-        """Whether it limits a direction, which counts alike by whole turns."""
+        """Whether it limits a direction, which is unique only up to full turns."""
         return self in (Kind.EQUAL, Kind.DIRECTION)
 
 
@@ -260,9 +260,9 @@ class Limit:
 
     quantity: Quantity
     kind: Kind
-    allowed: tuple[float, float]  # least and greatest number that may be asked for, as files state it
+    allowed: tuple[float, float]  # least and greatest value in files
     usual: tuple[float, float] | None = None  # limits where none are given, in sizes of the task
-    words: Mapping[str, Limits] = field(default_factory=dict)  # what each word allows
+    words: Mapping[str, Limits] = field(default_factory=dict)  # the range that each word allows
 
     @property
     def widest(self) -> str:
@@ -270,7 +270,7 @@ class Limit:
         return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
-        """What a value of the field allows, in rad where it is an angle: by axis of a box, else by ""."""
+        """The ranges that a value of the field allows, angles in rad: by axis of a box, else by ""."""
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
         if self.kind is Kind.WORD:
@@ -295,14 +295,14 @@ class Limit:
         return low if low == high else f"{low} to {high}"
 
 
-def place_of(name: str, over: Over) -> Quantity:
-    """Where a joint is."""
-    kinds = having(name) if over is Over.DESIGN else tuple(ONE_LOOP)
+def place_of(name: str, over: Scope) -> Quantity:
+    """The place of a joint."""
+    kinds = having(name) if over is Scope.DESIGN else tuple(ONE_LOOP)
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 
 def on_body(name: str) -> Quantity:
-    """Where a joint sits on the body that is guided."""
+    """The place of a joint on the guided body."""
     words = f"place of {name.upper()} on the body"
     kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
     return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
@@ -310,9 +310,9 @@ def on_body(name: str) -> Quantity:
 
 def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quantity:
     """The greatest error of an output ("max"), or its root mean square; `travels` has the keys of a slide."""
-    about, name = "output less what is wanted, over the whole range", f"structural_error_{key}"
+    about, name = "output minus the wanted output, over the full range", f"structural_error_{key}"
     words = "greatest structural error" if key == "max" else f"structural error{_RMS}"
-    label, task = f"{key} error", Over.TASK
+    label, task = f"{key} error", Scope.TASK
     if travels is None:
         return Quantity(name, label, Unit.ANGLE, task, -1, Needs.ROTATION, 3, about, words=words)
     return Quantity(

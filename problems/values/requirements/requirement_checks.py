@@ -9,15 +9,16 @@ from typing import Any, cast
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
-from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.four_bar import FourBar
+from grashof.problems.values.errors import listing, wrong_value
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
+KEPT_OUT = f"a list of {listing(MAY_KEEP_OUT, 'and')}"
 
 
-def limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str:
-    """What a field that limits a quantity may hold: a box, a pair, an angle, a number or a word."""
+def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str:
+    """A checked limit of a quantity: a box, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise wrong_value(where, value, "a Box")
@@ -37,25 +38,23 @@ def limits(value: Any, limited: Limit, where: str) -> Box | Limits | float | str
     return checks.number_within(value, low, high, where)
 
 
-def areas(values: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
     """Polygons to keep out of, corners (M, 2) each."""
     if isinstance(values, Sequence) and not len(values):
         return ()
     # Here, not above: shapely takes a while to import, and few problems have areas.
     from grashof.problems.values.areas import polygons
 
-    return polygons(values, "requirements.keep_out")
+    return polygons(values, where)
 
 
-def parts(names: Sequence[str]) -> tuple[str, ...]:
-    """What keeps out of them, each once."""
-    wanted = f"a list of {', '.join(MAY_KEEP_OUT[:-1])} and {MAY_KEEP_OUT[-1]}"
+def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
+    """The parts that keep out of areas, each once."""
     if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise wrong_value("requirements.keep_out_for", names, wanted)
+        raise wrong_value(where, names, KEPT_OUT)
     for index, name in enumerate(names):
         if name not in MAY_KEEP_OUT:
-            where = f"requirements.keep_out_for[{index}]"
-            raise wrong_value(where, name, f"one of {', '.join(MAY_KEEP_OUT)}")
+            raise wrong_value(f"{where}[{index}]", name, f"one of {', '.join(MAY_KEEP_OUT)}")
     return tuple(dict.fromkeys(names))
 
 

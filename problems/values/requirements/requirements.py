@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
-from grashof.problems.values.checks import GREATEST, number_within
-from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.checks import GREATEST, true_or_false, within
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
-from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
@@ -21,8 +21,8 @@ from grashof.problems.values.requirements.quantities import (
     Kind,
     Limit,
     Needs,
-    Over,
     Quantity,
+    Scope,
     between,
     limit,
     on_body,
@@ -31,10 +31,11 @@ from grashof.problems.values.requirements.quantities import (
 )
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import ReadOnly, check_fields
 
 
 class Rotatability(StrEnum):
-    """What the driver must be able to do."""
+    """The rotation that the driver must be capable of."""
 
     FULL_CRANK = "full-crank"
     CRANK_ROCKER = "crank-rocker"
@@ -60,9 +61,9 @@ TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("m
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Requirements(ReadOnly):
-    """What a design must satisfy besides doing the task.
+    """The conditions that a design must satisfy besides performing the task.
 
-    Lengths are in the problem's unit; None means the default, which excludes only the absurd
+    Lengths are in the problem's unit; None means the default, which excludes only absurd designs
     and is taken from the size of the task (see `resolved`).
 
     Parameters
@@ -73,7 +74,7 @@ class Requirements(ReadOnly):
     tolerance : float
         A design is exact when its largest error is at most ``tolerance * size``.
     error_factor : float, optional
-        Least squares: the objective decides among designs of up to so many times the least error found.
+        Least squares: the objective decides among designs with up to this multiple of the least error.
     rotatability : Rotatability, optional
         full-crank (the driver turns fully), crank-rocker, double-crank, or any (the driver
         covers the task). By default full-crank, of functions any.
@@ -87,7 +88,7 @@ class Requirements(ReadOnly):
     transmission_min_deg : float, deg
         Least min(mu, pi - mu) over `transmission_over`.
     transmission_over : TransmissionOver
-        task (the motion from first to last target) or cycle (the whole turn).
+        task (the motion from first to last target) or cycle (the full turn).
     link_length : tuple of float, optional
         (lo, hi) for all four links; r1, r2, r3, r4 override it for single ones.
     link_ratio_max : float
@@ -128,7 +129,7 @@ class Requirements(ReadOnly):
         (lo, hi) for the same of a function whose output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
-        steadily; of a driver that does not turn fully there is none.
+        steadily; undefined for a driver that does not turn fully.
     mechanical_advantage_min : float, optional
         Least ``|omega2 / omega4|`` over the task motion.
     cylinder_angle_min_deg : float, deg, optional
@@ -140,7 +141,7 @@ class Requirements(ReadOnly):
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}
-        What keeps out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
+        Parts that keep out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
         AP, BP), or the outline of the body; all but o2 and o4 over the motion from first to last target.
     """
 
@@ -152,7 +153,7 @@ class Requirements(ReadOnly):
     order: bool = True
     same_branch: bool = True
     transmission_min_deg: float = limit(
-        Quantity("transmission", "mu", Unit.ANGLE, Over.TASK, +1, listed=False),
+        Quantity("transmission", "mu", Unit.ANGLE, Scope.TASK, +1, listed=False),
         Kind.AT_LEAST,
         default=0.0,
         allowed=(0.0, 90.0),
@@ -176,10 +177,10 @@ class Requirements(ReadOnly):
         default=20.0,
         allowed=(1.0, 1e6),
     )
-    o2: Box | None = limit(place_of("o2", Over.DESIGN), Kind.INSIDE)
-    o4: Box | None = limit(place_of("o4", Over.DESIGN), Kind.INSIDE)
-    a: Box | None = limit(place_of("a", Over.TARGETS), Kind.INSIDE)
-    b: Box | None = limit(place_of("b", Over.TARGETS), Kind.INSIDE)
+    o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
+    o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
+    a: Box | None = limit(place_of("a", Scope.TARGETS), Kind.INSIDE)
+    b: Box | None = limit(place_of("b", Scope.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
         Kind.DIRECTION,
@@ -198,7 +199,8 @@ class Requirements(ReadOnly):
     worst_move: Limits | None = between("worst_move")
     share_within_made: Limits | None = between("share_within_made", 0.0, 1.0)
     driver_rotation_deg: Limits | None = between(
-        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Over.TARGETS, about=_TARGETS), high=360.0
+        Quantity("driver_rotation", "driver rotation", Unit.ANGLE, Scope.TARGETS, about=_TARGETS),
+        high=360.0,
     )
     driver_sense: str = limit(
         Quantity("driver_sense", "sense of the driver", Unit.RATIO, listed=False),
@@ -207,18 +209,26 @@ class Requirements(ReadOnly):
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
     output_swing_deg: Limits | None = between(
-        Quantity("output_swing", "output swing", Unit.ANGLE, Over.CYCLE, +1, about=_SWING, kinds=TURNING),
+        Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=TURNING),
         0.0,
         360.0,
     )
     stroke: Limits | None = between(
-        Quantity("stroke", "stroke", Unit.LENGTH, Over.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
+        Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
     )
     time_ratio: Limits | None = between(
-        Quantity("time_ratio", "time ratio", Unit.RATIO, Over.CYCLE, +1, about=_STROKES), 1.0, 1e6
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES), 1.0, 1e6
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Over.TASK, +1, listed=False, kinds=TURNING),
+        Quantity(
+            "mechanical_advantage",
+            _ADVANTAGE,
+            Unit.RATIO,
+            Scope.TASK,
+            +1,
+            listed=False,
+            kinds=TURNING,
+        ),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -234,25 +244,7 @@ class Requirements(ReadOnly):
     keep_out_for: tuple[str, ...] = ("o2", "o4")
 
     def __post_init__(self) -> None:
-        if not isinstance(self.exact, bool | None):
-            raise wrong_value("requirements.exact", self.exact, "true or false")
-        for name in ("order", "same_branch"):
-            if not isinstance(getattr(self, name), bool):
-                raise wrong_value(f"requirements.{name}", getattr(self, name), "true or false")
-        for name, kind in (("rotatability", Rotatability), ("transmission_over", TransmissionOver)):
-            if getattr(self, name) is None and name == "rotatability":  # the task's own
-                continue
-            object.__setattr__(self, name, check.word(kind, getattr(self, name), f"requirements.{name}"))
-        for name, (low, high) in _RANGES.items():
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, number_within(value, low, high, f"requirements.{name}"))
-        for name, limited in LIMITS.items():
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, check.limits(value, limited, f"requirements.{name}"))
-        object.__setattr__(self, "keep_out", check.areas(self.keep_out))
-        object.__setattr__(self, "keep_out_for", check.parts(self.keep_out_for))
+        check_fields(self, "requirements.", **_CHECKS)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Requirements):
@@ -278,7 +270,7 @@ class Requirements(ReadOnly):
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
 
     def contradictions(self, task: Task) -> list[str]:
-        """What these requirements and a task do not agree on, a line each."""
+        """Contradictions between these requirements and a task, a line each."""
         wrong = []
         if task.zones is not None and self.exact:
             wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
@@ -343,12 +335,12 @@ class Requirements(ReadOnly):
 
     @property
     def limited(self) -> dict[str, Limit]:
-        """What is limited, by field: the fields that are stated."""
+        """The limits that are stated, by field."""
         return {
             name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
 
-    def meant(self, quantity: Quantity) -> Quantity:
+    def as_required(self, quantity: Quantity) -> Quantity:
         """The quantity itself; of the transmission angle, the one over the motion that is required."""
         over = quantity.key == "transmission"
         return MEASURED[f"transmission_min_{self.transmission_over}"] if over else quantity
@@ -371,25 +363,33 @@ class Requirements(ReadOnly):
         return np.pi if key == "slide_angle" and self.offset is None else TURN
 
     def ranges(self, name: str) -> dict[str, Limits]:
-        """What a field allows (see `Limit.ranges`); empty where it limits nothing."""
+        """The ranges that a field allows (see `Limit.ranges`); empty where it limits nothing."""
         value = getattr(self, name) if name in LIMITS else None
         return {} if value in (None, ANYWHERE) else LIMITS[name].ranges(value)
 
 
-_RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
-
-# What the fields limit, by field.
+# The limits, by field.
 LIMITS: dict[str, Limit] = {
     field.name: field.metadata["limit"] for field in fields(Requirements) if "limit" in field.metadata
+}
+_RANGES = {"tolerance": (1e-12, 1.0), "error_factor": (1.0, 1e6), "rotatability_margin": (0.0, 0.25)}
+_CHECKS: dict[str, Callable[[Any, str], Any]] = {
+    **dict.fromkeys(("exact", "order", "same_branch"), true_or_false),
+    "rotatability": partial(check.word, Rotatability),
+    "transmission_over": partial(check.word, TransmissionOver),
+    **{name: within(*limits) for name, limits in _RANGES.items()},
+    **{name: partial(check.limits, limited) for name, limited in LIMITS.items()},
+    "keep_out": check.areas,
+    "keep_out_for": check.parts,
 }
 
 _DERIVED = (
     Quantity(
-        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Over.TASK, kinds=TURNING,
+        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=TURNING,
         about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
     ),
     Quantity(
-        "structural_error_at", "worst at", Unit.ANGLE, Over.TASK, needs=Needs.OUTPUTS,
+        "structural_error_at", "worst at", Unit.ANGLE, Scope.TASK, needs=Needs.OUTPUTS,
         about="driver rotation from the first pair to the greatest structural error",
         full="driver rotation to the greatest structural error",
     ),

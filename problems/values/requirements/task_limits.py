@@ -1,25 +1,29 @@
-"""What a kind of task, or a cylinder as driver, does not go with, a line each."""
+"""Requirements, tasks and kinds of linkages that contradict each other, a line each."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import astuple
 
-from grashof.problems.values.requirements.quantities import TRAVELLING, TURNING, Needs, Quantity
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.checks import GREATEST, LEAST
+from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 
 
-def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quantity]) -> list[str]:
-    """What is asked, by its key path, or limited though it means nothing for the task."""
+def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantity]) -> list[str]:
+    """Goals and limits, by key path, that do not apply to the task, a line each."""
     kind = task.kind
     wrong = [
-        f"{where} means nothing for a {kind}; leave it out"
-        for where, quantity in asked.items()
+        f"{where} does not apply to a {kind}; remove it"
+        for where, quantity in used.items()
         if quantity.key in task.without
     ]
     if wanted.keep_out:
         wrong += [
-            f"requirements.keep_out_for has {part}, which means nothing for a {kind}; leave it out"
+            f"requirements.keep_out_for has {part}, which does not apply to a {kind}; remove it"
             for part in wanted.keep_out_for
             if part in task.without
         ]
@@ -32,19 +36,8 @@ def without_meaning(task: Task, wanted: Requirements, asked: Mapping[str, Quanti
     return wrong
 
 
-def no_output(task: Task) -> dict[Needs, str]:
-    """What is missing where a structural error is asked for, in words."""
-    if not task.has_output.any():
-        none = f'{task.kind} asks for no output; kind = "function" does'
-        return dict.fromkeys((Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL), none)
-    return {
-        Needs.ROTATION: "function has an output that slides, not one that turns",
-        Needs.TRAVEL: "function has an output that turns, not one that slides",
-    }
-
-
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
-    """Kinds of linkages whose output does not move as a function asks for."""
+    """Kinds of linkages whose output does not move as the function requires, a line each."""
     if not task.has_output.any():
         return []
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
@@ -53,13 +46,13 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
         return []
     key = f"output{'' if task.law is None else '_range'}{unit}"
     return [
-        f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not put out; "
+        f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not generate; "
         f"it goes with {' and '.join(suited)}"
     ]
 
 
 def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
-    """What a cylinder cannot do, where one is the driver."""
+    """Contradictions between a cylinder as driver and the task or requirements, a line each."""
     wrong = []
     if task.no_cylinder:
         wrong.append(f"driver.cylinder does not go with {task.kind}, {task.no_cylinder}")
@@ -71,3 +64,47 @@ def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
             "which turns nothing fully"
         )
     return wrong
+
+
+def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
+    """Contradictions between a stroke, the kinds of linkages and the requirements, a line each."""
+    wrong = [line for kind in kinds if (line := task.impossible(kind))]
+    if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
+        wrong.append(
+            f"stroke.time_ratio is {task.time_ratio:.6g}; it must be 1 where requirements.offset is [0, 0]"
+        )
+    wrong += _too_small(task, wanted)
+    if wanted.exact is False:
+        wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
+    if wanted.rotatability is Rotatability.DOUBLE_CRANK and not {*kinds}.isdisjoint(ROCKERS):
+        wrong.append(
+            'requirements.rotatability is "double-crank", whose output does not swing; '
+            "with stroke it must be full-crank or crank-rocker"
+        )
+    return wrong
+
+
+def _too_small(task: Task, wanted: Requirements) -> list[str]:
+    """The error of a box of B that is too small for the stroke, if it is."""
+    if task.stroke is None or wanted.b is None:
+        return []
+    wide, tall = wanted.b.x[1] - wanted.b.x[0], wanted.b.y[1] - wanted.b.y[0]
+    if math.hypot(wide, tall) >= task.stroke * (1 - wanted.tolerance):
+        return []
+    return [f"requirements.b is {wide:g} by {tall:g}; it must hold the stroke, {task.stroke:g}"]
+
+
+def stated_size(wanted: Requirements) -> float:
+    """A length that limits state, for a task without a size of its own; 1 where there is none."""
+    for name in ("r1", "r4", "r3", "link_length", "r2"):
+        lengths: Limits | None = getattr(wanted, name)
+        if lengths is not None and 0 < lengths[1] < GREATEST:
+            return lengths[1]
+    if wanted.o2 is not None and wanted.o4 is not None:
+        apart = [
+            (sum(four) - sum(two)) / 2  # NaN where a box is open
+            for two, four in zip(*map(astuple, (wanted.o2, wanted.o4)), strict=True)
+        ]
+        if LEAST < (distance := math.hypot(*apart)) < GREATEST:
+            return distance
+    return 1.0

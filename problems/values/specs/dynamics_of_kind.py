@@ -1,15 +1,16 @@
-"""What of some dynamics does not go with a kind of linkage: links, joints or slides that it has not."""
+"""Dynamics that do not fit a kind of linkage: links, joints or slides that it does not have."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
+from grashof.problems.values.checks import counted, with_article
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import OVER, SLIDE_KEYS, TURNING
-from grashof.problems.values.errors import wrong_value
+from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.mechanism import Mechanism
 
-# What a slide has instead of each key of `FrictionSpec`.
+# Keys of a slide in place of those of a pin.
 _INSTEAD = {
     "coulomb": "slide_mu",
     "pin_radius": "slide_mu",
@@ -20,7 +21,7 @@ _WORDS = {3: "three", 4: "four", 5: "five", 7: "seven"}
 
 
 def misplaced(spec: DynamicsSpec, kind: Mechanism) -> list[str]:
-    """What of some dynamics does not go with a kind of linkage, a line each."""
+    """Errors of dynamics that do not fit a kind of linkage, a line each."""
     slides = (*_loads(spec, kind), *_torsion_springs(spec, kind), *_friction(spec, kind))
     return [*without_place(spec, kind), *slides]
 
@@ -35,21 +36,20 @@ def _sizes(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for name in ("masses", "inertias"):
         given = getattr(spec, name)
         if given is not None and len(given) != len(moving):
-            entries = "1 entry" if len(given) == 1 else f"{len(given)} entries"
-            yield f"dynamics.{name} has {entries}; it must have {len(moving)} numbers"
+            yield f"dynamics.{name} has {counted(len(given), 'entry')}; it must have {len(moving)} numbers"
     if spec.centres is not None and len(spec.centres) != len(moving):
-        places = f"{_WORDS[len(moving)]} places [u, v], of links {_listed(moving, 'and')}"
+        places = f"{_WORDS[len(moving)]} places [u, v], of links {listing(moving, 'and')}"
         yield str(wrong_value("dynamics.centres", spec.centres, places))
     for table, given in (("section", spec.section), ("strength", spec.strength)):
         for name, value in () if given is None else given.stated.items():
             count = len(kind.every_joint) if name == "pin_diameter" else len(moving)
-            if isinstance(value, tuple) and len(value) != count:  # such lists are of linkages of one loop
+            if isinstance(value, list) and len(value) != count:  # such lists are of linkages of one loop
                 entries = f"{table}.{name} has {len(value)} entries"
                 yield f"{entries}; it must be a number with mechanism {kind.word}"
 
 
 def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
-    """Of what acts on moving links, and between any two."""
+    """Loads and counterweights on moving links; springs and dampers between any two."""
     held = [(f"loads[{i}]", each.link, 2) for i, each in enumerate(spec.loads)]
     held += [(f"counterweights[{i}]", each.link, 2) for i, each in enumerate(spec.counterweights)]
     springs, dampers = ([each.between for each in acting] for acting in (spec.springs, spec.dampers))
@@ -59,18 +59,18 @@ def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for where, number, least in held:
         allowed = [link.number for link in kind.links if link.number >= least]
         if number not in allowed:
-            yield str(wrong_value(f"{where}.link", number, _listed(allowed, "or")))
+            yield str(wrong_value(f"{where}.link", number, listing(allowed)))
 
 
 def _angles(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     words = _over(kind)
     for index, load in enumerate(spec.loads):
         if load.over not in words:
-            yield str(wrong_value(f"loads[{index}].over", load.over, _listed(words, "or")))
+            yield str(wrong_value(f"loads[{index}].over", load.over, listing(words)))
 
 
 def _over(kind: Mechanism, but: str = "") -> list[str]:
-    """What loads may be over: angles of links that there are, and whatever is no angle."""
+    """What loads may be over: angles of existing links, travel and time."""
     angles = [f"theta{link.number}" for link in kind.links]
     return [word for word in OVER if (word in angles or word not in TURNING) and word != but]
 
@@ -80,7 +80,7 @@ def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for index, spring in enumerate(spec.torsion_springs):
         pairs = [list(joint.links) for joint in joints]
         if list(spring.between) not in pairs:
-            wanted = f"two links of a joint: {_listed(pairs, 'or')}"
+            wanted = f"two links of a joint: {listing(pairs, 'or')}"
             yield str(wrong_value(f"torsion_springs[{index}].between", list(spring.between), wanted))
     for key in _INSTEAD if spec.friction is not None else ():
         each = getattr(spec.friction, key)
@@ -92,18 +92,18 @@ def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 def _loads(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     fixed = [f"theta{second}" for first, second in kind.slides if first == 1]
     for index, load in enumerate(spec.loads):
-        where, instead = f"loads[{index}].over is '{load.over}'", _listed(_over(kind, but=load.over), "or")
+        where, instead = f"loads[{index}].over is '{load.over}'", listing(_over(kind, but=load.over))
         if load.over == "travel" and not kind.slides:
-            yield f"{where}; {_named(kind)} has no slide, so it must be {instead}"
+            yield f"{where}; {with_article(kind.word)} has no slide, so it must be {instead}"
         if load.over in fixed:
-            yield f"{where}; the slider of {_named(kind)} does not turn, so it must be {instead}"
+            yield f"{where}; the slider of {with_article(kind.word)} does not turn, so it must be {instead}"
 
 
 def _torsion_springs(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for index, spring in enumerate(spec.torsion_springs):
         if spring.between in kind.slides:
             given = f"torsion_springs[{index}].between is {list(spring.between)}"
-            yield f"{given}; {_named(kind)} has a slide there, so it must be at a pin"
+            yield f"{given}; {with_article(kind.word)} has a slide there, so it must be at a pin"
 
 
 def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
@@ -113,20 +113,12 @@ def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     if not kind.slides:
         for key in SLIDE_KEYS:
             if getattr(friction, key):
-                yield f"friction.{key} is {getattr(friction, key):g}; {_named(kind)} has no slide"
+                yield f"friction.{key} is {getattr(friction, key):g}; {with_article(kind.word)} has no slide"
         return
     slide, joint = next((i, joint) for i, joint in enumerate(kind.every_joint) if joint.slides)
     for key, instead in _INSTEAD.items():
         each = getattr(friction, key)
         if len(each) == len(kind.every_joint) and each[slide]:
             where = f"friction.{key}[{slide}] is {each[slide]:g}, in {joint.name}"
-            yield f"{where}; {_named(kind)} has a slide there, so it must be 0 ({instead} is for slides)"
-
-
-def _named(kind: Mechanism) -> str:
-    return f"{'an' if kind.word[0] in 'aeiou' else 'a'} {kind.word}"
-
-
-def _listed(words: Sequence[object], last: str) -> str:
-    *most, end = map(str, words)
-    return f"{', '.join(most)} {last} {end}"
+            why = f"{with_article(kind.word)} has a slide there"
+            yield f"{where}; {why}, so it must be 0 ({instead} is for slides)"

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from grashof.problems.values.checks import plain_text, refuse
-from grashof.problems.values.display import Displayed
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.four_bar import FourBar
 from grashof.problems.values.linkages.linkage import Linkage
+from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.specs.problem import Problem
+from grashof.problems.values.value_bases import Displayed, check_fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +49,7 @@ class LinkageSpec(Displayed):
     cylinder: Cylinder | None = None
 
     def __post_init__(self) -> None:
-        for name in ("name", "title", "source", "length_unit"):
-            plain_text(getattr(self, name), name)
+        check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), plain_text))
         if self.pumping_unit is not None and self.output_arm is None:
             raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
         if self.pumping_unit is not None and not isinstance(self.linkage, FourBar):

@@ -1,4 +1,4 @@
-"""A problem: the task, the requirements, what is best, and how hard to search."""
+"""A problem: the task, the requirements, the objective, and the effort of the search."""
 
 from __future__ import annotations
 
@@ -9,20 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.checks import (
-    counted,
-    noted,
-    number_within,
-    outline,
-    plain_text,
-    positive_number,
-    refuse,
-    whole_number,
-)
-from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres, reference_torque
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
-from grashof.problems.values.dynamics.reference_torque import reference_torque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
@@ -32,7 +22,6 @@ from grashof.problems.values.linkages.mechanisms import (
     mechanisms,
     not_had,
 )
-from grashof.problems.values.read_only import ReadOnly
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
@@ -44,10 +33,11 @@ from grashof.problems.values.requirements.requirements import (
     Requirements,
     Rotatability,
 )
-from grashof.problems.values.requirements.stroke_limits import stated_size, strokes_wrong
+from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import ReadOnly, check_fields, set_fields
 
 LEAST_TOLERANCE = 1e-4  # sizes: from here on a tolerance is a zone about each target
 NO_OBJECTIVE = (
@@ -58,7 +48,7 @@ EFFORTS = (0.2, 10_000.0)
 MOST_TARGETS = 10_000
 # Of inverted slider-cranks: with offset 0 the transmission angle is 90 deg, and size decides.
 SMALLEST = Objective(transmission=1.0, compactness=0.05)
-ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # told by link 4, which has to turn
+ROCKING = (Rotatability.CRANK_ROCKER, Rotatability.DOUBLE_CRANK)  # defined by link 4, which has to turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,11 +60,11 @@ class Search:
     starts : int
         Most Ipopt solves.
     enough : int
-        Stop between batches once so many distinct designs are verified.
+        Stop between batches once this many distinct designs are verified.
     seed : int
         Random seed.
     effort : float
-        How long to look for better designs before giving up, 0.2 to 10 000: the rounds of a search with
+        How long to look for better designs before stopping, 0.2 to 10 000: the rounds of a search with
         1 come first and unchanged.
     """
 
@@ -85,8 +75,8 @@ class Search:
 
     def __post_init__(self) -> None:
         for name, least in (("starts", 1), ("enough", 1), ("seed", 0)):
-            object.__setattr__(self, name, whole_number(getattr(self, name), least, f"search.{name}"))
-        object.__setattr__(self, "effort", number_within(self.effort, *EFFORTS, "search.effort"))
+            set_fields(self, **{name: checks.whole_number(getattr(self, name), least, f"search.{name}")})
+        check_fields(self, "search.", effort=checks.within(*EFFORTS))
 
 
 _KINDS: dict[str, Any] = {
@@ -111,7 +101,7 @@ def _named(kind: Any) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Problem(ReadOnly):
-    """All that is asked, as a problem file states it.
+    """A complete problem, as a problem file states it.
 
     Parameters
     ----------
@@ -153,20 +143,19 @@ class Problem(ReadOnly):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
         if len(self.task) > MOST_TARGETS:
             raise ProblemError(f"the task has {len(self.task)} targets; it must have at most {MOST_TARGETS}")
-        object.__setattr__(self, "requirements", self.requirements.for_task(self.task))
-        object.__setattr__(self, "task", grounded(self.task, self.requirements))
-        for name in ("name", "title", "source", "length_unit"):
-            plain_text(getattr(self, name), name)
-        object.__setattr__(self, "mechanism", mechanisms(self.mechanism))
-        object.__setattr__(self, "requirements", self._met_by_all_kinds())
+        set_fields(self, requirements=self.requirements.for_task(self.task))
+        set_fields(self, task=grounded(self.task, self.requirements))
+        check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
+        set_fields(self, mechanism=mechanisms(self.mechanism))
+        set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
         if self.dynamics is not None:
-            with noted(wrong):
+            with checks.noted(wrong):
                 metres(self.length_unit)  # refuses one that is not known
-            with noted(wrong):
-                positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
+            with checks.noted(wrong):
+                checks.positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             for word in self.mechanism:
                 wrong += misplaced(self.dynamics, ONE_LOOP[word])
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
@@ -177,21 +166,20 @@ class Problem(ReadOnly):
                 )
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
-        wrong += self._undecided()
+        wrong += self.requirements.contradictions(self.task)
+        if self.objective != Objective() and not self.by_objective:
+            wrong.append(NO_OBJECTIVE)
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
-            object.__setattr__(self, "task", self.task.sized(stated_size(self.requirements)))
-        refuse(wrong)
-        checked = tuple(
-            outline(corners, f"scene.outlines[{index}]") for index, corners in enumerate(self.outlines)
-        )
-        object.__setattr__(self, "outlines", checked)
+            set_fields(self, task=self.task.sized(stated_size(self.requirements)))
+        checks.refuse(wrong)
+        set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
 
     def _met_by_all_kinds(self) -> Requirements:
-        """Where files leave it open, targets are to be met if all kinds asked for can be expected to."""
+        """The requirements, exact by default only if all the kinds can be expected to meet every target."""
         fewest = min(freedoms(kind) for kind in self.mechanism)
         exact = self.task.exact_for(fewest)
         if self.requirements.exact is not None or exact == self.task.exact_by_default:
@@ -199,48 +187,42 @@ class Problem(ReadOnly):
         return replace(self.requirements, exact=exact)
 
     def _without_value(self) -> list[str]:
-        """What is weighed or limited though the problem does not state what it takes."""
-        asked = self._asked
-        missing = {
-            Needs.DYNAMICS: "dynamics is missing",
-            Needs.MANUFACTURING: "manufacturing is missing",
-            Needs.CLOSED: f"{self.task.kind}.closed is false; it must be true",
-            Needs.LEAST_SQUARES: "requirements.exact = false is missing",
-            Needs.ANGLES: f"{self.task.kind} has no angles",
-            Needs.CYLINDER: "driver.cylinder is missing",
-            Needs.LOADED_CYLINDER: self._unloaded,
-            **task_limits.no_output(self.task),
-        }
-        wrong = [
-            f"{missing[quantity.needs]}; {where} needs it"
-            for where, quantity in asked.items()
-            if not self.states(quantity.needs)
-        ]
-        wrong += task_limits.without_meaning(self.task, self.requirements, asked)
+        """Quantities weighed or limited without the parts of the problem that they need, a line each."""
+        used = self._weighed_or_limited
+        given = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
+        absent = [name for name, value in given.items() if value is None]
+        both = f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} missing"
+        wrong = []
+        for where, quantity in used.items():
+            if not self.states(quantity.needs):
+                without = quantity.needs in _OUTPUTS and not self.task.has_output.any()
+                line = _NO_OUTPUT if without else _NEEDED[quantity.needs][1]
+                wrong.append(f"{line.format(kind=self.task.kind, both=both)}; {where} needs it")
+        wrong += task_limits.without_meaning(self.task, self.requirements, used)
         if not self.requirements.same_branch:
             wrong += [
                 f"requirements.same_branch is false; it must be true when {where} is given"
-                for where, quantity in asked.items()
+                for where, quantity in used.items()
                 if quantity.needs in (Needs.DYNAMICS, Needs.LOADED_CYLINDER)
             ]
         return wrong
 
     @property
-    def _asked(self) -> dict[str, Quantity]:
-        """What is weighed or limited, by its key path."""
+    def _weighed_or_limited(self) -> dict[str, Quantity]:
+        """Quantities that are weighed or limited, by key path."""
         stated = self.objective.stated.items()
-        goals = {f"objective.maximise.{name}": self.meant(GOALS[name]) for name, w in stated if w}
+        goals = {f"objective.maximise.{name}": self.as_required(GOALS[name]) for name, w in stated if w}
         limited = self.requirements.limited.items()
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
 
-    def meant(self, quantity: Quantity) -> Quantity:
-        """The quantity that is meant by a name: see `Requirements.meant`; of a slide errors are lengths."""
-        meant = self.requirements.meant(quantity)
-        return QUANTITIES[TRAVEL_ERRORS.get(meant.key, meant.key)] if self.task.travels else meant
+    def as_required(self, quantity: Quantity) -> Quantity:
+        """The quantity by `Requirements.as_required`; a slide's structural errors are lengths."""
+        found = self.requirements.as_required(quantity)
+        return QUANTITIES[TRAVEL_ERRORS.get(found.key, found.key)] if self.task.travels else found
 
     def _not_of_these_kinds(self) -> list[str]:
-        """What is weighed or limited though no kind of linkage that is asked for has it."""
-        having = {where: quantity.kinds for where, quantity in self._asked.items()}
+        """Quantities weighed or limited that none of the kinds of linkage has, a line each."""
+        having = {where: quantity.kinds for where, quantity in self._weighed_or_limited.items()}
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
@@ -250,7 +232,7 @@ class Problem(ReadOnly):
         ]
 
     def for_kind(self, kind: str) -> Problem:
-        """The same for one kind of linkage alone, without the limits and goals that it has not.
+        """The same for one kind of linkage alone, without limits and goals that do not apply to it.
 
         By default inverted slider-cranks are searched for a small size, too.
 
@@ -263,8 +245,8 @@ class Problem(ReadOnly):
         True
         """
         usual = Requirements()
-        lacking = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
-        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in lacking})
+        others = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
+        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in others})
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
@@ -278,29 +260,14 @@ class Problem(ReadOnly):
         return self.requirements.period(key) if self.task.has_position.any() else TURN
 
     def states(self, needs: Needs) -> bool:
-        """Whether it states what a quantity needs to have a value."""
-        stated = _STATED.get(needs)
-        return stated is None or stated(self)
-
-    @property
-    def _unloaded(self) -> str:
-        """What a cylinder's force lacks, in words."""
-        lacks = {"driver.cylinder": self.driver, "dynamics": self.dynamics}
-        missing = [name for name, given in lacks.items() if given is None]
-        return f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} missing"
-
-    def _undecided(self) -> list[str]:
-        """What is contradictory about the task and the requirements, and about what decides."""
-        wrong = self.requirements.contradictions(self.task)
-        if self.objective != Objective() and not self.by_objective:
-            wrong.append(NO_OBJECTIVE)
-        return wrong
+        """Whether it states the parts that a quantity needs to have a value."""
+        return needs not in _NEEDED or _NEEDED[needs][0](self)
 
     @property
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
-        """What the objective weighs, with its weights; the transmission angle over the motion required."""
+        """Quantities of the objective and their weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
-        return tuple((self.meant(QUANTITIES[key]), weight) for key, weight in goals)
+        return tuple((self.as_required(QUANTITIES[key]), weight) for key, weight in goals)
 
     @property
     def by_objective(self) -> bool:
@@ -326,7 +293,7 @@ class Problem(ReadOnly):
         return np.where([task.has_position, task.has_angle], radii, np.inf)
 
     def without_zones(self, *, exact: bool | None = False) -> Problem:
-        """The same problem with no target to be missed, by least squares unless it states otherwise."""
+        """The same problem without zones, by least squares unless `exact` states otherwise."""
         task = self.task.without_zones() if self.task.zones is not None else self.task
         tight = min(self.requirements.tolerance, Requirements().tolerance)
         wanted = replace(self.requirements, exact=exact, error_factor=None, tolerance=tight)
@@ -334,10 +301,12 @@ class Problem(ReadOnly):
         return replace(self, task=task, requirements=wanted, objective=objective)
 
     def __repr__(self) -> str:
-        return f"<Problem {self.name}: {type(self.task).__name__} of {counted(len(self.task), 'target')}>"
+        return (
+            f"<Problem {self.name}: {type(self.task).__name__} of {checks.counted(len(self.task), 'target')}>"
+        )
 
     def scale(self, quantity: Quantity) -> float:
-        """What the objective counts a quantity in, so that weights are pure numbers.
+        """The unit in which the objective counts a quantity, so that weights are pure numbers.
 
         Lengths and areas in sizes of the task, angles in 90 deg, velocities by a point one size from O2 on
         a driver at the problem's speed (1 rad/s without dynamics), torques and forces in `reference_torque`,
@@ -360,10 +329,10 @@ class Problem(ReadOnly):
 
     @property
     def reference_torque(self) -> float:
-        """What the objective counts the torque in, N m; it depends on the problem alone.
+        """The torque that the objective counts torques in, N m; it depends on the problem alone.
 
         M S (g + omega2^2 S): the mass of links, payload and counterweights, held and turned at a radius
-        of the task's size S. `mass_per_length` and `density` count as one bar of length S. To it come the
+        of the task's size S. `mass_per_length` and `density` count as one bar of length S. Added are the
         greatest moments, the greatest forces at a radius of S, springs and dampers stretched by S (and
         omega2 S), or turned by 1 rad (and at omega2), and friction. 1 where nothing acts.
 
@@ -378,16 +347,30 @@ class Problem(ReadOnly):
         return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
-# Whether a problem states what quantities need to have a value; any problem what is not here.
-_STATED: dict[Needs, Callable[[Problem], bool]] = {
-    Needs.DYNAMICS: lambda problem: problem.dynamics is not None,
-    Needs.MANUFACTURING: lambda problem: problem.manufacturing is not None,
-    Needs.CLOSED: lambda problem: problem.task.closed,
-    Needs.LEAST_SQUARES: lambda problem: not problem.requirements.is_exact(problem.task),
-    Needs.ANGLES: lambda problem: bool(problem.task.has_angle.any()),
-    Needs.CYLINDER: lambda problem: problem.driver is not None,
-    Needs.LOADED_CYLINDER: lambda problem: problem.driver is not None and problem.dynamics is not None,
-    Needs.OUTPUTS: lambda problem: bool(problem.task.has_output.any()),
-    Needs.ROTATION: lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
-    Needs.TRAVEL: lambda problem: problem.task.travels,
+_NO_OUTPUT = '{kind} states no output; kind = "function" does'
+_OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
+# Whether a problem states what a quantity needs, and the error where it does not; other needs are always met.
+_NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
+    Needs.DYNAMICS: (lambda problem: problem.dynamics is not None, "dynamics is missing"),
+    Needs.MANUFACTURING: (lambda problem: problem.manufacturing is not None, "manufacturing is missing"),
+    Needs.CLOSED: (lambda problem: problem.task.closed, "{kind}.closed is false; it must be true"),
+    Needs.LEAST_SQUARES: (
+        lambda problem: not problem.requirements.is_exact(problem.task),
+        "requirements.exact = false is missing",
+    ),
+    Needs.ANGLES: (lambda problem: bool(problem.task.has_angle.any()), "{kind} has no angles"),
+    Needs.CYLINDER: (lambda problem: problem.driver is not None, "driver.cylinder is missing"),
+    Needs.LOADED_CYLINDER: (
+        lambda problem: problem.driver is not None and problem.dynamics is not None,
+        "{both}",
+    ),
+    Needs.OUTPUTS: (lambda problem: bool(problem.task.has_output.any()), _NO_OUTPUT),
+    Needs.ROTATION: (
+        lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
+        "function has an output that slides, not one that turns",
+    ),
+    Needs.TRAVEL: (
+        lambda problem: problem.task.travels,
+        "function has an output that turns, not one that slides",
+    ),
 }

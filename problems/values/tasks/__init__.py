@@ -1,1 +1,1 @@
-"""What a linkage has to do: a table of targets, stated in the words of each kind of task."""
+"""Tasks: a table of targets, stated in the terms of each kind of task."""

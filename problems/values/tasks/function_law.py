@@ -1,4 +1,4 @@
-"""Functions that a linkage may be asked to generate: named laws, and samples of any other."""
+"""Functions for a linkage to generate: named laws, and samples of any other."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
 from grashof.problems.values.checks import (
     finite_number,
+    hint,
     limits,
-    near_miss,
     number_within,
     positive_number,
 )
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.read_only import ReadOnly
+from grashof.problems.values.value_bases import ReadOnly, set_fields
 
 LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "log10": np.log10,
@@ -29,10 +29,10 @@ LAWS: dict[str, Callable[[FloatArray], FloatArray]] = {
     "reciprocal": np.reciprocal,
     "power": np.positive,  # of the exponent given besides
 }  # x of sin, cos and tan in degrees
-SAMPLED = "sampled"  # a law that has no name, such as a callable
+SAMPLED = "sampled"  # a law without a name, such as a callable
 RANGE = (0.1, 360.0)  # deg, of input and output
 SAMPLES = 1025  # of a callable, over its range
-_DENSE = 2049  # places at which a law is looked at
+_DENSE = 2049  # places at which a law is evaluated
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,13 +80,12 @@ class FunctionLaw(ReadOnly):
 
     def __post_init__(self) -> None:
         if self.name != SAMPLED and self.name not in LAWS:
-            meant = near_miss(str(self.name), list(LAWS))
-            hint = f"did you mean {meant}?" if meant else f"the laws are {', '.join(LAWS)}"
-            raise ProblemError(f"function.law {shown(self.name)} is unknown; {hint}")
+            laws = hint(str(self.name), list(LAWS), f"the laws are {', '.join(LAWS)}")
+            raise ProblemError(f"function.law {shown(self.name)} is unknown; {laws}")
         low, high = limits(self.x, "function.x")
         if low == high:
             raise ProblemError(f"function.x is [{low:g}, {high:g}]; the two must differ")
-        object.__setattr__(self, "x", (low, high))
+        set_fields(self, x=(low, high))
         if self.travels:
             positive_number(self.output_range, "function.output_range")
         for name in ("input_range", *(() if self.travels else ("output_range",))):
@@ -107,7 +106,7 @@ class FunctionLaw(ReadOnly):
         if self.exponent is not None:
             number_within(self.exponent, -100.0, 100.0, "function.exponent")
         if self.samples is not None:
-            object.__setattr__(self, "samples", frozen_array(np.asarray(self.samples, dtype=np.float64)))
+            set_fields(self, samples=frozen_array(self.samples))
         self._refuse_undefined()
 
     @classmethod
@@ -161,22 +160,16 @@ class FunctionLaw(ReadOnly):
         low, high = self.x
         ends = self.value(np.array([low, high]))
         values = self.value(low + (high - low) * np.asarray(turned) / self.input_range)
-        whole = self.value(np.linspace(low, high, _DENSE))
-        forward = np.sign(ends[1] - ends[0]) or np.sign(whole[np.argmax(np.abs(whole - ends[0]))] - ends[0])
+        dense = self.value(np.linspace(low, high, _DENSE))
+        forward = np.sign(ends[1] - ends[0]) or np.sign(dense[np.argmax(np.abs(dense - ends[0]))] - ends[0])
         # A monotone law spans its ends exactly; samples of another one are a little within its extremes.
-        spread = max(abs(ends[1] - ends[0]), float(np.ptp(whole)))
+        spread = max(abs(ends[1] - ends[0]), float(np.ptp(dense)))
         rotated: FloatArray = forward * self.output_range * (values - ends[0]) / spread
         return rotated
 
 
 def chebyshev_spacing(count: int) -> FloatArray:
-    """Chebyshev's places of so many precision points, as shares of the range.
-
-    Examples
-    --------
-    >>> chebyshev_spacing(3).round(4).tolist()
-    [0.067, 0.5, 0.933]
-    """
+    """Chebyshev's places of `count` precision points, as shares of the range: 0.067, 0.5, 0.933."""
     return 0.5 - 0.5 * np.cos((2 * np.arange(1, count + 1) - 1) * np.pi / (2 * count))
 
 
@@ -197,7 +190,7 @@ def _lobatto(count: int) -> FloatArray:
 
 
 def lobatto_with_weights(count: int) -> tuple[FloatArray, FloatArray]:
-    """So many (odd) Chebyshev-Lobatto points from 0 to 1, and the weights of their quadrature, of mean 1.
+    """An odd number of Chebyshev-Lobatto points from 0 to 1, and their quadrature weights, of mean 1.
 
     Clenshaw & Curtis (1960): exact for polynomials of degree below `count`.
     """

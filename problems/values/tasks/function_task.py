@@ -9,33 +9,78 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import (
-    finite_number,
-    near_miss,
-    positive_number,
-    whole_number,
-)
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.tasks.function_law import (
     FunctionLaw,
     chebyshev_spacing,
     lobatto_with_weights,
 )
-from grashof.problems.values.tasks.function_pairs import (
-    FEWEST,
-    INPUT,
-    MOST,
-    OUTPUT,
-    OUTPUT_DEG,
-    checked_pairs,
-    finite_numbers,
-)
+from grashof.problems.values.tasks.target_checks import deg_text
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.value_bases import set_fields
+
+INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
+FEWEST, MOST = 3, 100_000
+_LEAST_STEP = 1e-6  # rad, between two inputs
+_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
+
+
+def checked_pairs(
+    inputs: npt.ArrayLike, outputs: npt.ArrayLike, *, travels: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Inputs (N,) in rad that grow from 0, and outputs (N,) in rad, or length of a slide that travels."""
+    key = OUTPUT if travels else OUTPUT_DEG
+    turned, output = finite_numbers(inputs, INPUT), finite_numbers(outputs, key)
+    if len(turned) != len(output):
+        angles = checks.counted(len(turned), "angle")
+        others = checks.counted(len(output), "travel" if travels else "angle")
+        raise ProblemError(f"function.{INPUT} has {angles}, function.{key} {others}; it must be as many")
+    if len(turned) < FEWEST:
+        raise ProblemError(f"function has {checks.counted(len(turned), 'pair')}; it must have three or more")
+    if len(turned) > MOST:
+        raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
+    for name, first in ((INPUT, turned[0]), (key, output[0])):
+        if first != 0:
+            given = deg_text(first) if name.endswith("_deg") else f"{first:.6g}"
+            raise ProblemError(f"function.{name}[0] is {given}; it must be 0, at the first pair")
+    for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
+        raise ProblemError(
+            f"function.{INPUT}[{index}] is {deg_text(turned[index])} after {deg_text(turned[index - 1])}; "
+            "inputs must grow (the driver may turn either way all the same)"
+        )
+    _refuse_turns(turned, INPUT)
+    if travels:
+        travel = float(np.ptp(output))
+        if not travel > 0:
+            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
+        if travel > checks.GREATEST:
+            raise ProblemError(
+                f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}"
+            )
+        return turned, output
+    _refuse_turns(output, OUTPUT_DEG)
+    if np.ptp(output) < _LEAST_OUTPUT:
+        raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
+    return turned, output
+
+
+def finite_numbers(values: Any, key: str) -> FloatArray:
+    """A list of finite numbers under a key, as an array."""
+    return checks.finite_list(values, f"function.{key}", "lengths" if key == OUTPUT else "angles")
+
+
+def _refuse_turns(angles: FloatArray, key: str) -> None:
+    if np.ptp(angles) > TURN * (1 + 1e-12):
+        raise ProblemError(
+            f"function.{key} covers {deg_text(np.ptp(angles))} deg; it must be at most one turn, 360"
+        )
+
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
-LAW_PAIRS = 41  # of a law that is fitted over its whole range
+LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT = 5
 _SLIDING = 8  # freedoms of slider kinds
 
@@ -58,12 +103,12 @@ class FunctionTask(Task):
     sense : {"given", "either"}
         Either: the opposite output will do, too.
     norm : {"rms", "max"}
-        What is made least where pairs are not met exactly: the root mean square of the errors at the pairs
+        The error to minimise where pairs are not met exactly: the root mean square of the errors at the pairs
         (of a law over its range), or the structural error, greatest over the range.
     length : float, length
-        Usual length of the ground, that others are compared with; a problem takes it from its requirements.
+        Usual length of the ground, for comparison; a problem takes it from its requirements.
     law : FunctionLaw, optional
-        That the pairs are of; between pairs without one the wanted output is the cubic spline through them.
+        The law of the pairs; without one the wanted output is the cubic spline through them.
     travels : bool
         The output is the travel of a slide.
 
@@ -110,31 +155,34 @@ class FunctionTask(Task):
         turned, output = checked_pairs(inputs, outputs, travels=travels)
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
-        object.__setattr__(self, "inputs", frozen_array(turned))
-        object.__setattr__(self, "outputs", frozen_array(output))
-        object.__setattr__(self, "sense", _word(sense, SENSES, "function.sense"))
-        object.__setattr__(self, "norm", _word(norm, NORMS, "function.norm"))
-        object.__setattr__(self, "law", law)
-        object.__setattr__(self, "length", positive_number(length, "function.length"))
-        object.__setattr__(self, "travels", bool(travels))
+        set_fields(
+            self,
+            inputs=frozen_array(turned),
+            outputs=frozen_array(output),
+            sense=_word(sense, SENSES, "function.sense"),
+            norm=_word(norm, NORMS, "function.norm"),
+            law=law,
+            length=checks.positive_number(length, "function.length"),
+            travels=bool(travels),
+        )
 
     @classmethod
     def of_law(
         cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms"
     ) -> FunctionTask:
-        """The task of a law over its whole range.
+        """The task of a law over its full range.
 
         Parameters
         ----------
         law : FunctionLaw
         pairs : int, optional
-            So many, by Chebyshev spacing; by default as many as fit the whole range.
+            Number of pairs, at Chebyshev spacing; by default as many as fit the full range.
         sense, norm : str
         """
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
         else:
-            if whole_number(pairs, FEWEST, "function.pairs") > MOST:
+            if checks.whole_number(pairs, FEWEST, "function.pairs") > MOST:
                 raise ProblemError(f"function.pairs is {shown(pairs)}; it must be at most {MOST}")
             places = chebyshev_spacing(pairs)
         turned = law.input_range * places
@@ -218,7 +266,7 @@ class FunctionTask(Task):
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
         _refuse_missing(stated, "output_range", travels)
         key = "output_range" if travels else "output_range_deg"
-        ranges = [finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
+        ranges = [checks.finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
         over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
         if callable(law):
             made = FunctionLaw.of_callable(law, stated["x"], *over, travels=travels)
@@ -237,7 +285,7 @@ class FunctionTask(Task):
 
     @property
     def closed(self) -> bool:  # type: ignore[override]
-        """The range is what is asked, not a whole turn."""
+        """False: the task is a range, not a full turn."""
         return False
 
     @property
@@ -246,7 +294,7 @@ class FunctionTask(Task):
 
     @property
     def positions(self) -> FloatArray:
-        """None is asked for, shape (N, 2)."""
+        """Free, shape (N, 2)."""
         return np.full((len(self), 2), np.nan)
 
     @property
@@ -258,22 +306,19 @@ class FunctionTask(Task):
 
     @property
     def angle_length(self) -> float:
-        """Angles count as they are."""
+        """1: angles are not converted to lengths."""
         return 1.0
 
     @property
     def size(self) -> float:
-        """The whole travel of a slide; lengths of a rotation are free but for a scale.
-
-        That is r1, as limits or else (0, 0) and (1, 0) place the ground.
-        """
+        """The full travel of a slide; of a rotation, whose scale is free, the usual length of the ground."""
         if not self.travels:
             return self.length
         return float(np.ptp(self.outputs) if self.law is None else self.law.output_range)
 
     @property
     def output_unit(self) -> float:
-        """What errors of the output count in: 1 rad, or the whole travel."""
+        """The unit of output errors: 1 rad, or the full travel."""
         return self.size if self.travels else 1.0
 
     @property
@@ -287,13 +332,13 @@ class FunctionTask(Task):
 
     @property
     def returns(self) -> bool:
-        """A range is not a cycle."""
+        """False: a range is not a cycle."""
         return False
 
     def exact_for(self, freedoms: int) -> bool:
-        """Whether every pair is met: up to five, since the starts and three lengths are free.
+        """Whether every pair can be met: up to five, since the starts and three lengths are free.
 
-        Of an inverted slider-crank, whose output is a rotation too, one length less is.
+        An inverted slider-crank, whose output is also a rotation, has one free length less.
         """
         return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
 
@@ -304,7 +349,7 @@ class FunctionTask(Task):
 
 
 def _either(key: str, angles: object, travel: object) -> bool:
-    """Whether the output is given as travel; not as both."""
+    """Whether the output is given as travel; `ProblemError` if it is given as rotation, too."""
     if angles is not None and travel is not None:
         both = f"function.{key}_deg does not go with function.{key}"
         raise ProblemError(f"{both}; an output turns or slides, give one of them")
@@ -314,7 +359,7 @@ def _either(key: str, angles: object, travel: object) -> bool:
 def _word(value: str, words: tuple[str, ...], where: str) -> str:
     if value in words:
         return str(value)
-    meant = near_miss(value, words) if isinstance(value, str) else None
+    meant = checks.near_miss(value, words) if isinstance(value, str) else None
     raise wrong_value(where, value, " or ".join(words) + f" (did you mean {meant}?)" * bool(meant))
 
 

@@ -9,23 +9,18 @@ from typing import ClassVar, Literal
 import numpy as np
 import numpy.typing as npt
 
+from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
-from grashof.problems.values.checks import (
-    GREATEST,
-    LEAST,
-    counted,
-    each_checked,
-    finite_number,
-    near_miss,
-    number_array,
-    number_within,
-    outline,
-    task_size,
-)
 from grashof.problems.values.errors import ProblemError, shown, shown_key, wrong_value
+from grashof.problems.values.tasks.target_checks import (
+    LEAST_ZONE,
+    driver_timing,
+    finite_angles,
+    turn_sizes,
+    zone_sizes,
+)
 from grashof.problems.values.tasks.task import Task, some_columns
-from grashof.problems.values.tasks.timing import driver_timing, finite_angles, whole_turn
-from grashof.problems.values.zones import LEAST_ZONE, turn_sizes, zone_sizes
+from grashof.problems.values.value_bases import set_fields
 
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
@@ -114,30 +109,33 @@ class MotionTask(Task):
                 f"it must be at most {np.degrees(_MOST_TURNED):.0f} deg, beyond which digits are lost"
             )
         if len(places) < 2:
-            raise ProblemError(f"motion.poses has {counted(len(places), 'pose')}; it must have two or more")
+            raise ProblemError(
+                f"motion.poses has {checks.counted(len(places), 'pose')}; it must have two or more"
+            )
         _refuse_halves(places, turned)
         _refuse_far(places)
-        size = task_size(places[~np.isnan(places[:, 0])], "motion.poses")
+        size = checks.task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
         if angle_length is not None:
-            if finite_number(angle_length, "motion.angle_length") <= 0:
+            if checks.finite_number(angle_length, "motion.angle_length") <= 0:
                 raise ProblemError(f"motion.angle_length is {angle_length:g}; it must be greater than zero")
-            number_within(angle_length, LEAST, GREATEST, "motion.angle_length")
+            checks.number_within(angle_length, checks.LEAST, checks.GREATEST, "motion.angle_length")
         if size == 0 and angle_length is None:
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"
             )
-        object.__setattr__(self, "closed", whole_turn(closed, "motion"))
-        zone = zone_sizes(within, len(places), "motion.within", least=LEAST_ZONE * size)
-        turn_zone = turn_sizes(angle_within, len(places), in_degrees=False)
-        object.__setattr__(self, "within", zone)
-        object.__setattr__(self, "angle_within", turn_zone)
-        object.__setattr__(self, "timing", driver_timing(timing, len(places), "motion", "pose"))
-        object.__setattr__(self, "positions", frozen_array(places))
-        object.__setattr__(self, "angles", frozen_array(turned))
-        object.__setattr__(self, "weights", _weights(weights, len(places)))
-        object.__setattr__(self, "angle_length", size if angle_length is None else float(angle_length))
-        object.__setattr__(self, "body", None if body is None else outline(body, "motion.body"))
+        set_fields(
+            self,
+            closed=checks.true_or_false(closed, "motion.closed"),
+            within=zone_sizes(within, len(places), "motion.within", least=LEAST_ZONE * size),
+            angle_within=turn_sizes(angle_within, len(places), in_degrees=False),
+            timing=driver_timing(timing, len(places), "motion", "pose"),
+            positions=frozen_array(places),
+            angles=frozen_array(turned),
+            weights=_weights(weights, len(places)),
+            angle_length=size if angle_length is None else float(angle_length),
+            body=None if body is None else checks.outline(body, "motion.body"),
+        )
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> MotionTask:
         """Some of the targets, moved."""
@@ -171,7 +169,7 @@ class MotionTask(Task):
         """
         if isinstance(poses, (str, bytes, Mapping)) or not isinstance(poses, Iterable):
             raise wrong_value("motion.poses", poses, "a list of poses")
-        rows = np.array(each_checked(poses, "motion.poses", _row)).reshape(-1, 3)
+        rows = np.array(checks.each_checked(poses, "motion.poses", _row)).reshape(-1, 3)
         return cls(
             rows[:, :2],
             np.radians(rows[:, 2]),
@@ -189,11 +187,10 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
     if isinstance(pose, Mapping):
         for key in pose:
             if key not in ("x", "y", "angle"):
-                meant = near_miss(str(key), ("x", "y", "angle"))
-                hint = f"did you mean {meant}?" if meant else "the keys are x, y, angle"
-                raise ProblemError(f"{where}.{shown_key(key)} is unknown; {hint}")
+                keys = checks.hint(str(key), ("x", "y", "angle"), "the keys are x, y, angle")
+                raise ProblemError(f"{where}.{shown_key(key)} is unknown; {keys}")
         x, y, angle = (
-            finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
+            checks.finite_number(pose[key], f"{where}.{key}") if key in pose else np.nan
             for key in ("x", "y", "angle")
         )
         return x, y, angle
@@ -202,17 +199,17 @@ def _row(pose: object, where: str) -> tuple[float, float, float]:
     values = list(pose)
     if len(values) != 3:
         raise ProblemError(
-            f"{where} is {shown(values)}, {counted(len(values), 'number')}; it must be {_POSE}"
+            f"{where} is {shown(values)}, {checks.counted(len(values), 'number')}; it must be {_POSE}"
         )
     for value in values:
         if isinstance(value, float) and not np.isfinite(value):
             raise ProblemError(f"{where} is {shown(values)}; all numbers must be finite")
-    x, y, angle = (finite_number(value, f"{where}[{k}]") for k, value in enumerate(values))
+    x, y, angle = (checks.finite_number(value, f"{where}[{k}]") for k, value in enumerate(values))
     return x, y, angle
 
 
 def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
-    numbers = number_array(values, f"motion.poses has {what} {shown(values)}; they must be numbers")
+    numbers = checks.number_array(values, f"motion.poses has {what} {shown(values)}; they must be numbers")
     if np.isinf(numbers).any():
         raise ProblemError(
             f"motion.poses has {what} that are infinite; they must be finite, or NaN where free"
@@ -223,9 +220,11 @@ def _numbers(values: npt.ArrayLike, what: str) -> FloatArray:
 def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
     if values is None:
         return frozen_array(np.ones(count))
-    weights = number_array(values, f"motion.weights is {shown(values)}; it must be a list of numbers", (1,))
+    weights = checks.number_array(
+        values, f"motion.weights is {shown(values)}; it must be a list of numbers", (1,)
+    )
     if len(weights) != count:
-        raise ProblemError(f"motion.weights has {counted(len(weights), 'number')} for {count} poses")
+        raise ProblemError(f"motion.weights has {checks.counted(len(weights), 'number')} for {count} poses")
     least, most = _WEIGHTS
     for index in np.flatnonzero(~((weights >= least) & (weights <= most))):
         raise ProblemError(
@@ -235,9 +234,11 @@ def _weights(values: npt.ArrayLike | None, count: int) -> FloatArray:
 
 
 def _refuse_far(positions: FloatArray) -> None:
-    for index in np.flatnonzero((np.abs(positions) > GREATEST).any(axis=1)):
+    for index in np.flatnonzero((np.abs(positions) > checks.GREATEST).any(axis=1)):
         x, y = positions[index]
-        raise ProblemError(f"motion.poses[{index}] is at {x:g}, {y:g}; x and y must be at most {GREATEST:g}")
+        raise ProblemError(
+            f"motion.poses[{index}] is at {x:g}, {y:g}; x and y must be at most {checks.GREATEST:g}"
+        )
 
 
 def _refuse_halves(positions: FloatArray, angles: FloatArray) -> None:

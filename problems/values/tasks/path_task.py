@@ -9,11 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size
+from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size, true_or_false
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.tasks.target_checks import (
+    LEAST_ZONE,
+    driver_timing,
+    finite_angles,
+    zone_sizes,
+)
 from grashof.problems.values.tasks.task import Task, some_columns
-from grashof.problems.values.tasks.timing import driver_timing, finite_angles, whole_turn
-from grashof.problems.values.zones import LEAST_ZONE, zone_sizes
+from grashof.problems.values.value_bases import set_fields
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -69,11 +74,13 @@ class PathTask(Task):
                 f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"
             )
         size = task_size(places, "path.points")
-        object.__setattr__(self, "closed", whole_turn(closed, "path"))
-        zone = zone_sizes(within, len(places), "path.within", least=LEAST_ZONE * size)
-        object.__setattr__(self, "within", zone)
-        object.__setattr__(self, "timing", driver_timing(timing, len(places), "path", "point"))
-        object.__setattr__(self, "points", places)
+        set_fields(
+            self,
+            closed=true_or_false(closed, "path.closed"),
+            within=zone_sizes(within, len(places), "path.within", least=LEAST_ZONE * size),
+            timing=driver_timing(timing, len(places), "path", "point"),
+            points=places,
+        )
 
     @classmethod
     def from_degrees(

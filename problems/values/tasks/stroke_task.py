@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.checks import finite_number, noted, refuse, size_number
+from grashof.problems.values.checks import finite_number, noted, refuse, size_number, with_article
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import DyadKind
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, INVERTED, closing_dyad
+from grashof.problems.values.linkages.mechanisms import INVERTED, closing_dyad
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
+from grashof.problems.values.value_bases import set_fields
 
 LEAST_SWING = 1e-3  # rad
 # Of an offset slider-crank. Up to 3 there are some in theory, whose transmission angle is below
@@ -69,14 +69,16 @@ class StrokeTask(Task):
         kept: dict[str, Any] = {"timing": None, "closed": True, "within": None, "reference": 1.0}
         wrong: list[str] = []
         with noted(wrong):
-            _one_of_the_two(swing, stroke)
+            if (swing is None) == (stroke is None):
+                both = "both swing_deg and" if stroke is not None else "neither swing_deg nor"
+                either = "it must be one of the two: swing_deg for a rocker, stroke for a slide"
+                raise ProblemError(f"stroke has {both} stroke; {either}")
             kept["swing"] = None if swing is None else _swing(swing)
             kept["stroke"] = None if stroke is None else size_number(stroke, "stroke.stroke")
         with noted(wrong):
             kept["time_ratio"] = _ratio(time_ratio)
         refuse(wrong)
-        for name, value in kept.items():
-            object.__setattr__(self, name, value)
+        set_fields(self, **kept)
 
     @classmethod
     def from_degrees(
@@ -99,7 +101,7 @@ class StrokeTask(Task):
 
     @property
     def size(self) -> float:
-        """The stroke of a slide; otherwise what its limits make it (`sized`), or 1."""
+        """The stroke of a slide; otherwise a length from the requirements (`sized`), or 1."""
         return self.reference if self.stroke is None else self.stroke
 
     @property
@@ -109,17 +111,17 @@ class StrokeTask(Task):
 
     @property
     def scale_free(self) -> bool:
-        """Whether linkages of any size do it."""
+        """Whether linkages of any size perform it."""
         return self.stroke is None
 
     @property
     def limits_size(self) -> bool:
-        """Not that of a slide: the longer its rod, the better, as far as limits go."""
+        """False for a slide, whose rod is better the longer it is, within limits."""
         return self.stroke is None
 
     @property
     def returns(self) -> bool:
-        """No: the last limit position is the other one."""
+        """False: the last target is the other limit position."""
         return False
 
     @property
@@ -135,77 +137,39 @@ class StrokeTask(Task):
     def sized(self, reference: float) -> Self:
         """The same with another length that counts as the size where the scale is free."""
         made = replace(self)
-        object.__setattr__(made, "reference", reference)
+        set_fields(made, reference=reference)
         return made
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> StrokeTask:  # noqa: ARG002
-        """The same: neither limit position is one without the other."""
+        """The task itself: neither limit position exists without the other."""
         return self
 
     def impossible(self, mechanism: str) -> str:
-        """Why a kind of linkage cannot do it, in one line; empty where it may.
+        """Why a kind of linkage cannot perform it, in one line; empty if it may.
 
         Examples
         --------
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
-        return _IMPOSSIBLE[closing_dyad(mechanism)](self)
-
-
-def _for_rocker(task: StrokeTask) -> str:
-    if task.swing is None:
-        return _no_slide(FOUR_BAR)
-    # Beyond, limit positions on one assembly need a driver that does not turn fully.
-    most = (3 * np.pi + task.swing) / (np.pi - task.swing)
-    return _too_slow(task, most, f"a crank-rocker that swings by {np.degrees(task.swing):.6g} deg")
-
-
-def _for_slide(task: StrokeTask) -> str:
-    if task.stroke is None:
-        return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
-    return _too_slow(task, MOST_SLIDE_RATIO, "a slider-crank, whose crank would not turn fully")
-
-
-def _for_block(task: StrokeTask) -> str:
-    if task.swing is None:
-        return _no_slide(INVERTED)
-    # In both limit positions the crank stands square to the rod.
-    ratio = (np.pi + task.swing) / (np.pi - task.swing)
-    if abs(task.time_ratio - ratio) <= _SAME_RATIO * ratio:
-        return ""
-    swing = f"swings by {np.degrees(task.swing):.6g} deg"
-    return (
-        f"stroke.time_ratio is {task.time_ratio:.6g}; it must be {ratio:.8g} for an {INVERTED} that {swing}, "
-        "(180 + swing) / (180 - swing)"
-    )
-
-
-def _no_slide(word: str) -> str:
-    article = "an" if word[0] in "aeiou" else "a"
-    return f"stroke.stroke is of a slide; {article} {word} has a swing, stroke.swing_deg"
-
-
-def _too_slow(task: StrokeTask, most: float, whose: str) -> str:
-    if task.time_ratio < most:
-        return ""
-    return f"stroke.time_ratio is {task.time_ratio:.6g}; it must be less than {most:.6g} for {whose}"
-
-
-# Why a kind of linkage cannot do a stroke, or nothing where it may.
-_IMPOSSIBLE: Mapping[DyadKind, Callable[[StrokeTask], str]] = {
-    DyadKind.RRR: _for_rocker,
-    DyadKind.RRP: _for_slide,
-    DyadKind.RPR: _for_block,
-}
-
-
-def _one_of_the_two(swing: float | None, stroke: float | None) -> None:
-    either = "it must be one of the two: swing_deg for a rocker, stroke for a slide"
-    if swing is not None and stroke is not None:
-        raise ProblemError(f"stroke has both swing_deg and stroke; {either}")
-    if swing is None and stroke is None:
-        raise ProblemError(f"stroke has neither swing_deg nor stroke; {either}")
+        given, dyad = f"stroke.time_ratio is {self.time_ratio:.6g}; it must be", closing_dyad(mechanism)
+        if dyad is DyadKind.RRP:
+            if self.stroke is None:
+                return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
+            most, whose = MOST_SLIDE_RATIO, "a slider-crank, whose crank would not turn fully"
+        else:
+            if self.swing is None:
+                return f"stroke.stroke is of a slide; {with_article(mechanism)} has a swing, stroke.swing_deg"
+            swings = f"swings by {np.degrees(self.swing):.6g} deg"
+            if dyad is DyadKind.RPR:
+                # In both limit positions the crank is perpendicular to the rod.
+                ratio = (np.pi + self.swing) / (np.pi - self.swing)
+                wanted = f"{ratio:.8g} for an {INVERTED} that {swings}, (180 + swing) / (180 - swing)"
+                same = abs(self.time_ratio - ratio) <= _SAME_RATIO * ratio
+                return "" if same else f"{given} {wanted}"
+            # Beyond, limit positions on one assembly need a driver that does not turn fully.
+            most, whose = (3 * np.pi + self.swing) / (np.pi - self.swing), f"a crank-rocker that {swings}"
+        return "" if self.time_ratio < most else f"{given} less than {most:.6g} for {whose}"
 
 
 def _swing(swing: float) -> float:

@@ -1,24 +1,27 @@
-"""Tasks: what a linkage is asked to do, one table of targets however they are stated."""
+"""Tasks: the table of targets that a linkage has to meet, however they are stated."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.extent import span
-from grashof.problems.values.tasks.outputs import Outputs
+from grashof.problems.values.tasks.function_law import FunctionLaw
+from grashof.problems.values.units import Unit
+from grashof.problems.values.value_bases import ReadOnly
 
 _SAME = 1e-12  # sizes, rad
 USUAL_MARGIN = 1e-3  # of full rotation
 _Row = TypeVar("_Row")
 
 
-class Task(Outputs):
+class Task(ReadOnly, ABC):
     """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
@@ -31,8 +34,8 @@ class Task(Outputs):
     kind: ClassVar[str]  # its table in problem files
     target: ClassVar[str]  # what a target is called in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
-    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that mean nothing for it
-    no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty where one can
+    without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that do not apply to it
+    no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty if it can
     in_degrees: ClassVar[tuple[str, ...]] = ("angle_within", "timing")  # fields that files have in degrees
 
     timing: FloatArray | None
@@ -86,12 +89,12 @@ class Task(Outputs):
 
     @property
     def error_unit(self) -> float:
-        """What errors of designs are counted in."""
+        """The unit of errors of designs."""
         return self.size
 
     @property
     def scale_free(self) -> bool:
-        """Whether linkages of any size do it, so that the size is no measure of theirs."""
+        """Whether linkages of any size perform the task, so that its size does not limit theirs."""
         return False
 
     @property
@@ -145,12 +148,12 @@ class Task(Outputs):
 
     @property
     def usual_margin(self) -> float:
-        """Of full rotation, where requirements do not state one."""
+        """Margin of full rotation where requirements do not state one."""
         return USUAL_MARGIN
 
     @property
     def limits_size(self) -> bool:
-        """Whether nobody builds linkages many times its size; functions have none to compare with."""
+        """Whether its size limits that of linkages; a function has none to compare with."""
         return not self.has_output.any()
 
     @property
@@ -198,12 +201,12 @@ class Task(Outputs):
         return self.exact_for(9)
 
     def exact_for(self, freedoms: int) -> bool:
-        """Whether linkages with so many free dimensions that meet every target can be expected.
+        """Whether linkages with this many free dimensions can be expected to meet every target.
 
         As long as the equations, two for a position and one for an angle, are not more than the
         unknowns: nine of a four-bar, eight of slider kinds, how the body sits on its coupler, and a
         driver angle for every target, or one where they are timed. So for four-bars up to nine points,
-        five timed ones, five whole poses (Burmester), three timed ones.
+        five timed ones, five complete poses (Burmester), three timed ones.
         """
         equations = 2 * np.count_nonzero(self.has_position) + np.count_nonzero(self.has_angle)
         unknowns = freedoms + self.has_angle.any() + (1 if self.is_timed else len(self))
@@ -212,13 +215,137 @@ class Task(Outputs):
     def __len__(self) -> int:
         return len(self.positions)
 
+    @property
+    def travels(self) -> bool:
+        """Whether the output is the travel of a slide."""
+        return False
+
+    @property
+    def sense(self) -> str:
+        """Whether the opposite output is accepted, too: "given" or "either"."""
+        return "given"
+
+    @property
+    def norm(self) -> str:
+        """The error to minimise where outputs are not met exactly: "rms" or "max"."""
+        return "rms"
+
+    @property
+    def law(self) -> FunctionLaw | None:
+        """The law of the outputs; without one the cubic spline through them is wanted."""
+        return None
+
+    @property
+    def swing(self) -> float | None:
+        """Swing of link 4 between its limit positions, rad; None unless the task states it."""
+        return None
+
+    @property
+    def stroke(self) -> float | None:
+        """Stroke of a slide between its limit positions, length; None unless the task states it."""
+        return None
+
+    @property
+    def time_ratio(self) -> float:
+        """Time of the slow stroke over that of the quick one; NaN where free."""
+        return float("nan")
+
+    @property
+    def at_limits(self) -> bool:
+        """Whether the targets are the limit positions of the output."""
+        return not np.isnan(self.time_ratio)
+
+    def impossible(self, mechanism: str) -> str:  # noqa: ARG002
+        """Why a kind of linkage cannot perform it, in one line; empty if it may."""
+        return ""
+
+    @property
+    def output_unit(self) -> float:
+        """The unit of output errors: 1 rad, or a travel."""
+        return 1.0
+
+    @property
+    def counted_in(self) -> Unit:
+        """The unit of outputs and their errors in files and tables."""
+        return Unit.LENGTH if self.travels else Unit.ANGLE
+
+    @property
+    def output_words(self) -> str:
+        """The name of the output in a sentence."""
+        return "travel of the slide" if self.travels else "output rotation"
+
+    @property
+    def error_field(self) -> str:
+        """The field of `Requirements` that limits the structural error."""
+        return "structural_error_max" if self.travels else "structural_error_max_deg"
+
+    def shown(self, output: float, length_unit: str) -> str:
+        """An output or its error, with its unit, as people read it.
+
+        Examples
+        --------
+        >>> from grashof.problems import FunctionTask
+        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
+        '0.25 mm'
+        """
+        unit = length_unit if self.travels else self.counted_in
+        return f"{self.counted_in.shown * output:.3g} {unit}".strip()
+
+    @property
+    def fits_range(self) -> bool:
+        """Whether the targets sample the full range of a law, from its first x to its last."""
+        return self.law is not None and abs(self.driver_turns[-1] - self.law.input_range) < 1e-9
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last driver rotation of the range, from the first target, rad."""
+        if self.law is None:
+            return 0.0, float(self.driver_turns[-1])
+        before = float(self._before)
+        return 0.0 - before, self.law.input_range - before
+
+    @property
+    def beyond(self) -> tuple[float, float]:
+        """Driver rotation within the range before the first target and after the last, rad."""
+        if self.law is None:
+            return 0.0, 0.0
+        low, high = self.span
+        return 0.0 - low, max(0.0, high - float(self.driver_turns[-1]))
+
+    @property
+    def _before(self) -> float:
+        """Driver rotation from the beginning of a law to the first target."""
+        if self.law is None or self.fits_range:
+            return 0.0
+        # Chebyshev's spacing is symmetric.
+        return (self.law.input_range - float(self.driver_turns[-1])) / 2
+
+    def output(self, turned: npt.ArrayLike) -> FloatArray:
+        """Wanted output at driver rotations from the first target: of the law, or the cubic spline.
+
+        Examples
+        --------
+        >>> from grashof.problems import FunctionTask
+        >>> task = FunctionTask([0, 1, 2, 3], [0, 0.1, 0.8, 2.7])
+        >>> round(float(task.output(1.5)), 9)
+        0.3375
+        """
+        at = np.asarray(turned, dtype=np.float64)
+        if self.law is None:
+            from scipy.interpolate import CubicSpline  # here: few problems need it
+
+            found: FloatArray = CubicSpline(self.driver_turns, self.outputs)(at)
+            return found
+        before = self._before
+        return self.law.output(at + before) - self.law.output(np.array(before))
+
 
 def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
-    """What some of the targets have in columns, by name; None where a task has no such column."""
+    """Columns of some of the targets, by name; None where the task has no such column."""
     columns = {name: getattr(task, name) for name in names}
     return {name: None if column is None else column[index] for name, column in columns.items()}
 
 
 def row_of(table: Mapping[type, _Row], task: Task) -> _Row:
-    """The row of a table that is for the kind of a task, or for the nearest class that it is made from."""
+    """The row of a table for the type of a task, or for its nearest base class."""
     return next(table[kind] for kind in type(task).__mro__ if kind in table)

@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.analysis import Position, solve_position
+from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.analysis.mechanism.position import places
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage_parts import Link
-from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.linkages.mechanism import Link, Mechanism
 
 # Of links 2, 3, ...; links of one role look alike in all drawings.
 ROLES = ("driver", "coupler", "output", "coupler-2", "output-2")

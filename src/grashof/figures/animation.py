@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.text import Annotation, Text
 
 from grashof.analysis import Position, solve_position
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.figures.linkage import figure_of, new_axes, plane
 from grashof.figures.parts import (
     BODY,

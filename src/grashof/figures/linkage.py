@@ -253,7 +253,7 @@ def _along(result: Result, key: str) -> tuple[FloatArray, str]:
         raise ProblemError(
             f"{key!r} is not a quantity of designs{f'; did you mean {meant}?' if meant else ''}"
         )
-    quantity = result.problem.meant(QUANTITIES[key])
+    quantity = result.problem.as_required(QUANTITIES[key])
     values = [candidate.values[quantity.key] * quantity.unit.shown for candidate in result.candidates]
     return np.array(values), with_unit(quantity.words, quantity.unit.of(result.problem.length_unit))
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from grashof.problems import Problem, ProblemError, catalogue, load_with_text
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_of, problem_text
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.files.toml_file import document_of
 from grashof.problems.values.checks import readable
 from grashof.problems.values.errors import wrong_value
 

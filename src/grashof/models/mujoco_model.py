@@ -12,7 +12,7 @@ import numpy as np
 from grashof.drawing.scene import Scene
 from grashof.models.model import Model, add
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage_parts import Link
+from grashof.problems.values.linkages.mechanism import Link
 
 STEPS = 50_000  # in a turn of the driver: the loop then stays closed to a millionth of a radian
 _LIGHT = 1e-4  # of the heaviest link, for links without mass, which MuJoCo refuses

@@ -21,7 +21,7 @@ from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
-from grashof.problems.values.requirements.quantities import Over, Quantity
+from grashof.problems.values.requirements.quantities import Quantity, Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
@@ -180,7 +180,7 @@ def _decided_by(problem: Problem) -> list[Quantity]:
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
     if problem.task.has_output.any():
         names = ("structural_error_max", "structural_error_rms")
-        error = [problem.meant(QUANTITIES[name]).key for name in names]
+        error = [problem.as_required(QUANTITIES[name]).key for name in names]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
     made = [name for name in (*LENGTHS, "offset") if set(having(name)) & set(problem.mechanism)]
     keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *made
@@ -257,7 +257,7 @@ def _place(place: FloatArray | None, size: float) -> str:
 
 
 def _cell(quantity: Quantity, candidate: Candidate, digits: int) -> str:
-    if quantity.over is Over.CYCLE and not candidate.verdict.full_rotation:
+    if quantity.over is Scope.CYCLE and not candidate.verdict.full_rotation:
         return "-"
     if candidate.linkage.mechanism.word not in quantity.kinds:
         return "-"

@@ -23,7 +23,7 @@ from grashof.analysis import (
     transmission_angle,
 )
 from grashof.analysis.mechanism.position import solve_position
-from grashof.analysis.mechanism.second_loop import cut, lifted
+from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
@@ -170,7 +170,7 @@ def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:
 
 def inner_dead_positions(linkage: Linkage, low: float, high: float) -> FloatArray:
     """Driver angles between two at which a second loop is dead and closes again, shape (K,), rad."""
-    return lifted(cut(linkage).touched, low, high) if len(linkage.mechanism.dyads) > 1 else np.zeros(0)
+    return recurring(cut(linkage).touched, low, high) if len(linkage.mechanism.dyads) > 1 else np.zeros(0)
 
 
 def least_quality(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:

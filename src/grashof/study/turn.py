@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from grashof.analysis import Extremes, Kinematics, driver_samples, even_motion, extremes_of, solve_kinematics
-from grashof.analysis.mechanism.means import mean_in_time
+from grashof.analysis.mechanism.driver_law import mean_in_time
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.study import LinkageStudy

@@ -16,7 +16,7 @@ from grashof.analysis import (
     transmission_extremes,
 )
 from grashof.analysis.mechanism.even_motion import EvenMotion
-from grashof.analysis.mechanism.extremes import counted_on, dense_places, refined
+from grashof.analysis.mechanism.extremes import dense_samples, refined, unwrapped
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import AssemblyError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -66,7 +66,7 @@ class _Samples:
 
     @classmethod
     def between(cls, sweep: Sweep, start: float, end: float) -> _Samples:
-        motion, at = even_motion(sweep.spec.linkage, start, end), dense_places(0.0, 1.0, sweep.turns)
+        motion, at = even_motion(sweep.spec.linkage, start, end), dense_samples(0.0, 1.0, sweep.turns)
         return cls(sweep, motion, at, sweep.state(motion.theta2(at)))
 
     def curve(self, quantity: Quantity, share: FloatArray) -> FloatArray:
@@ -81,7 +81,7 @@ class _Samples:
         AssemblyError where it has no value.
         """
         turns, period = self.sweep.turns, quantity.period
-        values = counted_on(self.state.theta2, values, period)
+        values = unwrapped(self.state.theta2, values, period)
         if period is not None and turns and abs(values[-1] - values[0]) > period / 2:
             return None
         if not quantity.never_negative:
@@ -219,7 +219,7 @@ def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
     for stretch in law.stretches(theta2):
         along = law.at_place(stretch).theta2
         inside = (along >= part.low + inset) & (along <= part.high - inset)
-        values = counted_on(along[inside], curve(stretch[inside]), None)
+        values = unwrapped(along[inside], curve(stretch[inside]), None)
         found.append(refined(curve, stretch[inside], values))
     least, most = min(found, key=lambda each: each.low), max(found, key=lambda each: each.high)
     at_low, at_high = law.at_place(np.array([least.at_low, most.at_high])).theta2.tolist()

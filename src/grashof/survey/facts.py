@@ -24,7 +24,7 @@ from grashof.analysis import (
     triple_rocker_kind,
     worst_transmission_cycle,
 )
-from grashof.analysis.mechanism.means import mean_in_time
+from grashof.analysis.mechanism.driver_law import mean_in_time
 from grashof.analysis.numerics.quadrature import held
 from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray

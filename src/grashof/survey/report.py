@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position, system_centre
-from grashof.analysis.numerics.smooth_polygon import smooth_polygon
+from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.sections import sections_of

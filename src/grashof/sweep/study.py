@@ -11,8 +11,8 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, field_validator
 
 from grashof.problems import ProblemError, catalogue, problem_text
+from grashof.problems.files.on_disk import document_of, exists, file_text, looks_like_path
 from grashof.problems.files.tables import Table, Text, listed, stated
-from grashof.problems.files.toml_file import document_of, exists, file_text, looks_like_path
 from grashof.problems.values.checks import (
     finite_number,
     located,

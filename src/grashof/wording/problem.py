@@ -87,7 +87,7 @@ def summary(problem: Problem) -> list[str]:
 def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
     """What a field of the requirements limits, and how."""
     limited = wanted.limited[name]
-    quantity = wanted.meant(limited.quantity)
+    quantity = wanted.as_required(limited.quantity)
     sides = {part: limited.range_text(limits) for part, limits in wanted.ranges(name).items()}
     unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
     limits = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems import LinkageSpec, Problem, ProblemError
-from grashof.problems.values.requirements.quantities import Over
+from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.caution import caution
@@ -50,7 +50,7 @@ def verdict_lines(candidate: Candidate, name: str) -> list[str]:
     lines.append(f"  {verdict.grashof_class}; driver {'turns fully' if verdict.full_rotation else 'swings'}")
     for key in _KEYS:
         quantity = QUANTITIES[key]
-        if quantity.over is Over.CYCLE and not verdict.full_rotation:
+        if quantity.over is Scope.CYCLE and not verdict.full_rotation:
             continue
         if candidate.linkage.mechanism.word in quantity.kinds and np.isfinite(value := candidate.values[key]):
             unit = quantity.unit.of(problem.length_unit)

@@ -14,11 +14,11 @@ import numpy as np
 import shapely
 
 from grashof.analysis import solve_position
-from grashof.analysis.mechanism.extremes import dense_places, refined
+from grashof.analysis.mechanism.extremes import dense_samples, refined
 from grashof.drawing.scene import Scene, Slide
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage_parts import Link
+from grashof.problems.values.linkages.mechanism import Link
 from grashof.workshop.plates import Plate, PlateSizes, plate_of
 
 # Widths; a longer link is a slip in the unit, not a plate.
@@ -74,7 +74,7 @@ def _travel(linkage: Linkage, slide: Slide, ranges: Iterable[tuple[float, float]
 
     ends = []
     for low, high in ranges:
-        theta2 = dense_places(low, high, closed=False)
+        theta2 = dense_samples(low, high, closed=False)
         values = travel(theta2)
         closes = np.isfinite(values)  # not at a dead position that rounding opens
         found = refined(travel, theta2[closes], values[closes])

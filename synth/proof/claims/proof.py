@@ -127,4 +127,4 @@ def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) 
 
 def quantity_of(problem: Problem) -> Quantity:
     """The transmission angle that a problem is about."""
-    return problem.requirements.meant(QUANTITIES["transmission"])
+    return problem.requirements.as_required(QUANTITIES["transmission"])

@@ -12,14 +12,12 @@ from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_p
 from grashof.analysis.curves.curvature import curvature, cusps
 from grashof.analysis.curves.line_and_circle import best_circle
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("assembly", [1, -1])
 def test_it_is_that_of_the_circle_through_three_neighbours(seed: int, assembly: int) -> None:
     rng = np.random.default_rng(seed)
@@ -66,9 +64,8 @@ def with_cusp(linkage: FourBar, theta2: float) -> FourBar:
     return replace(linkage, coupler_point=(arm.real, arm.imag))
 
 
-@pytest.mark.quick("double-crank", "non-Grashof")
-@pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
-@settings(max_examples=8)
+@pytest.mark.parametrize("kind", [GrashofClass.DOUBLE_CRANK, GrashofClass.NON_GRASHOF])
+@settings(max_examples=4)
 @given(data=st.data())
 def test_planted_cusps_are_found(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))
@@ -107,7 +104,7 @@ def test_tolerance_is_a_share_of_the_speed_of_a() -> None:
     assert cusps(blunt, tolerance=1e-3) == pytest.approx([1.0], abs=1e-3)
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     linkage = FourBar((0, 0), (4, 0), 1, 4, 3)
     with pytest.raises(ProblemError, match="one end"):
         cusps(linkage, 0.0)

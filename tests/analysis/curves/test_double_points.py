@@ -1,18 +1,17 @@
-"""Double points in closed form against crossings of the sampled curve, and against geometry."""
+"""Double points in closed form, compared with crossings of the sampled curve and with geometry."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, solve_position
-from grashof.analysis.curves.double_points import DoublePoints, all_double_points, double_points
+from grashof.analysis.curves.curvature import DoublePoints, all_double_points, double_points
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
@@ -42,28 +41,24 @@ def assert_double(linkage: FourBar, found: DoublePoints) -> None:
         np.testing.assert_allclose(p, [point, point], rtol=0, atol=3e-12 * size)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_one_turn_has_those_of_the_sampled_curve(seed: int) -> None:
-    linkage = random_full_crank(np.random.default_rng(1000 + seed))
-    theta2 = 0.1 + np.linspace(0, 2 * np.pi, 1201)
-    sampled = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
-    found = double_points(linkage, theta2[0], theta2[-1])
-    assert_double(linkage, found)
-    assert len(found) == len(sampled)
-    for pair in sampled:
-        assert np.abs(found.theta2 - pair).max(axis=1).min() < 2e-2
-
-
-def test_the_sampled_curves_above_have_double_points() -> None:
-    linkages = [random_full_crank(np.random.default_rng(1000 + seed)) for seed in range(40)]
-    counts = [len(double_points(linkage)) for linkage in linkages]
+def test_one_turn_has_those_of_the_sampled_curve() -> None:
+    counts = []
+    for seed in range(12):
+        linkage = random_full_crank(np.random.default_rng(1000 + seed))
+        theta2 = 0.1 + np.linspace(0, 2 * np.pi, 1201)
+        sampled = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
+        found = double_points(linkage, theta2[0], theta2[-1])
+        assert_double(linkage, found)
+        assert len(found) == len(sampled)
+        counts.append(len(found))
+        for pair in sampled:
+            assert np.abs(found.theta2 - pair).max(axis=1).min() < 2e-2
     assert min(counts) == 0
-    assert max(counts) >= 1
-    assert sum(counts) >= 5
+    assert sum(counts) >= 3
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(data=st.data())
 def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))
@@ -78,16 +73,18 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
             hits = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
             seam = np.abs(hits - [low, high]).max(axis=1) < 1e-6  # where a closed curve ends
             sampled.append(hits[~seam])
-    for pair in np.concatenate(sampled):  # a small loop may hide between samples, no crossing may be missed
+    for pair in np.concatenate(
+        sampled
+    ):  # small loops may hide between samples, but no sampled crossing is missed
         p = solve_position(linkage, pair).p.mean(axis=0)
         assert len(found)
         assert np.hypot(*(found.points - p).T).min() < 2e-2 * linkage.lengths.max()
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(data=st.data())
-def test_o2_o4_is_seen_from_them_as_a_b_from_p(
+def test_o2_o4_subtends_the_angle_of_a_b_at_p(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject
 ) -> None:
     linkage = data.draw(four_bars(kind))
@@ -95,28 +92,12 @@ def test_o2_o4_is_seen_from_them_as_a_b_from_p(
     assert_double(linkage, every)
     assert len(every) <= 3
     w = complex(*linkage.coupler_point)
+    assume(min(abs(w), abs(w - linkage.r3)) > 1e-6 * linkage.r3)  # beside A or B the angle at P has no digits
     for point in every.points @ [1, 1j]:
         seen = (point - complex(*linkage.o4)) / (point - complex(*linkage.o2))
         coupler = (w - linkage.r3) / w
         turn = seen / coupler  # real: the angles are equal up to half a turn
         assert abs(turn.imag) < 1e-7 * abs(turn)
-
-
-def test_watt_by_hand() -> None:
-    """P halfway on AB of a symmetric linkage crosses the middle of the ground."""
-    watt = FourBar(o2=(0, 0), o4=(4, 0), r2=2.5, r3=2, r4=2.5, coupler_point=(1, 0))
-    every = all_double_points(watt)
-    np.testing.assert_allclose(every.points, [[2, 0]], atol=1e-14)
-    # |A - (2, 0)| = 1 and |A| = 2.5 there.
-    angle = np.arccos((2.5**2 + 2**2 - 1) / (2 * 2.5 * 2))
-    np.testing.assert_allclose(every.theta2, [[-angle, angle]], atol=1e-13)
-
-
-def test_a_double_point_in_o4_by_hand() -> None:
-    linkage = FourBar(o2=(0, 0), o4=(2, 0), r2=1, r3=2.5, r4=2.5, coupler_point=(1, -2))
-    found = double_points(linkage)
-    np.testing.assert_allclose(found.points, [[2, 0]], atol=1e-14)
-    np.testing.assert_allclose(found.theta2, [[-np.pi / 2, np.pi / 2]], atol=1e-13)
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -147,7 +128,7 @@ def test_arcs_have_none() -> None:
     assert len(all_double_points(FourBar((0, 0), (10, 0), 1, 2, 3, coupler_point=(1, 1)))) == 0
 
 
-@settings(max_examples=30)
+@settings(max_examples=6)
 @given(turn=st.floats(-3, 3), scale=st.floats(0.01, 100), shift=st.floats(-5, 5))
 def test_they_move_with_the_linkage(turn: float, scale: float, shift: float) -> None:
     plain = FourBar((0, 0), (4, 0), 2, 4, 3, coupler_point=(2, -3))

@@ -17,24 +17,7 @@ def output_angle(state: Kinematics) -> npt.NDArray[np.float64]:
     return state.theta4
 
 
-def test_dwells_are_the_longest_runs_of_a_sweep() -> None:
-    tolerance = np.radians(1)
-    for linkage in (CRANK_ROCKER, CRANK_ROCKER[None][0]):
-        found = dwell(linkage, output_angle, tolerance, period=TURN)
-        assert found.high - found.low == pytest.approx(tolerance)
-        inside = solve_kinematics(linkage, np.linspace(found.start, found.end, 5001)).theta4
-        assert np.ptp(inside) <= tolerance * (1 + 1e-9)
-        sweep = np.unwrap(solve_kinematics(linkage, np.radians(np.arange(0, 720, 0.05))).theta4)
-        longest = 0
-        for first in range(0, 7200, 2):
-            near = sweep[first : first + 2000]
-            spread = np.maximum.accumulate(near) - np.minimum.accumulate(near)
-            longest = max(longest, int(np.argmax(spread > tolerance)) - 1)
-        assert np.degrees(found.duration) == pytest.approx(longest * 0.05, abs=0.2)
-        assert np.degrees(found.duration) >= longest * 0.05 - 1e-9
-
-
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_no_run_of_a_very_fine_sweep_is_longer(seed: int) -> None:
     linkage, tolerance = random_full_crank(np.random.default_rng(seed)), np.radians(2)
     found = dwell(linkage, output_angle, tolerance, period=TURN)
@@ -66,7 +49,7 @@ def test_the_longest_of_many_runs_across_an_edge_is_found() -> None:
     assert found.duration >= longest
 
 
-def test_what_never_leaves_the_band_dwells_all_the_time() -> None:
+def test_a_constant_dwells_throughout() -> None:
     found = dwell(CRANK_ROCKER, lambda state: np.hypot(*state.a.position.T), 1e-6)
     assert found.duration == pytest.approx(TURN)
 
@@ -86,6 +69,6 @@ def test_a_rocking_driver_may_dwell_at_its_end() -> None:
     assert found.duration == pytest.approx(0.25, abs=1e-9)
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="tolerance"):
         dwell(CRANK_ROCKER, output_angle, 0.0)

@@ -1,25 +1,16 @@
-"""Polynomials through a path: exact ones recovered, the luggage report's figures, the R2 of a motion."""
+"""Polynomials through a path: exact ones recovered, the R2 of a motion."""
 
 import warnings
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from report_tracks import ELEVEN, centre, theta2_of
 
 from grashof.analysis import driver_ranges, solve_position
-from grashof.analysis.curves.fit import (
-    NotAFunctionWarning,
-    coupler_fit_r2,
-    fit_polynomial,
-    greatest_error,
-    regression,
-)
+from grashof.analysis.curves.fit import NotAFunctionWarning, coupler_fit_r2, fit_polynomial, regression
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 
 @given(st.integers(1, 4), st.floats(-10, 10), st.floats(0.5, 10), st.integers(0, 2**16))
@@ -38,16 +29,6 @@ def test_polynomials_are_recovered(degree: int, low: float, width: float, seed: 
     np.testing.assert_allclose(fit(between), expected, rtol=0, atol=1e-11 * size)
     again = np.stack([np.polynomial.Polynomial(c)(between) for c in fit.powers.T], axis=-1)
     np.testing.assert_allclose(again, expected, rtol=0, atol=1e-8 * size)
-
-
-def test_powers_are_those_of_polyfit() -> None:
-    t, y = np.array([74.0, 80, 91, 100, 130, 133]), np.array([1.0, -1, 2, 0, 1, 3])
-    for degree in range(1, 5):
-        fit = fit_polynomial(t, y, degree)
-        np.testing.assert_allclose(fit.powers[::-1], np.polyfit(t - 0.0, y, degree), rtol=1e-6)
-        spread = ((y - y.mean()) ** 2).sum()
-        assert fit.r2 == pytest.approx(1 - ((y - fit(t)) ** 2).sum() / spread, abs=1e-12)
-        assert fit.error_max == pytest.approx(np.abs(y - fit(t)).max())
 
 
 def test_r2_of_both_coordinates_does_not_depend_on_the_frame() -> None:
@@ -70,7 +51,7 @@ def test_equal_values_have_no_r2() -> None:
 @pytest.mark.parametrize(
     "x", [[0, 1, 2, 1.5, 3], [0, 1, 1, 2, 3], [3, 2, 2.5, 1, 0]], ids=["turns back", "stands", "falling"]
 )
-def test_a_warning_tells_that_y_is_no_function_of_x(x: list[float]) -> None:
+def test_a_warning_states_that_y_is_not_a_function_of_x(x: list[float]) -> None:
     with pytest.warns(NotAFunctionWarning, match="not a function of x") as caught:
         regression(np.column_stack([x, np.arange(5.0)]), 1)
     assert caught[0].filename == __file__
@@ -82,7 +63,7 @@ def test_no_warning_where_y_is_a_function_of_x(sense: int) -> None:
     assert regression(np.column_stack([x, x**3]), 3).powers == pytest.approx([0, 0, 0, 1])
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     for arguments, message in [
         (([0, 1], [0, 1], 2), "2 different parameters; degree 2 needs 3"),
         (([0, 0, 0, 1], [0, 1, 2, 3], 2), "2 different parameters"),
@@ -97,31 +78,7 @@ def test_bad_input_is_named() -> None:
         coupler_fit_r2(FourBar((0, 0), (4, 0), 1, 4, 3), 0, 1, degree=31)
 
 
-def test_regression_of_the_report_is_reproduced(golden: dict[str, Any]) -> None:
-    """R2 of y(x), links 2, 3, 4: to 2e-7, 1.1e-4 and 2e-6; that of link 3 is not known more closely."""
-    printed = golden["report_figures"]["motion"]["R2_y_of_x_deg1_4"]
-    slopes = golden["report_figures"]["motion"]["linear_coefs_hard_coded"]
-    for link, within in ((2, 2e-7), (3, 1.1e-4), (4, 2e-6)):
-        track = centre(link, theta2_of(ELEVEN))
-        with pytest.warns(NotAFunctionWarning):
-            fits = [regression(track, degree) for degree in range(1, 5)]
-        np.testing.assert_allclose([fit.r2 for fit in fits], printed[str(link)], rtol=0, atol=within)
-        assert fits[0].powers[1] == pytest.approx(slopes[str(link)][0], abs=3e-4)
-
-
-def test_both_coordinates_against_the_driver_angle_fit_the_tracks_of_the_report() -> None:
-    """Degree 4 errs by 0.0031, 0.0103 and 0.0098, over a fine grid; the report's link 3: 0.0098."""
-    fine = np.linspace(0, 30, 601)
-    errors = []
-    for link in (2, 3, 4):
-        fit = fit_polynomial(ELEVEN, centre(link, theta2_of(ELEVEN)), 4)
-        assert fit.r2 > 0.9999
-        errors.append(greatest_error(fit, fine, centre(link, theta2_of(fine))))
-    np.testing.assert_allclose(errors, [0.0031, 0.0103, 0.0098], atol=5e-5)
-
-
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("degree", [1, 4, 7])
+@pytest.mark.parametrize(("seed", "degree"), [(0, 1), (1, 4), (2, 7)])
 def test_r2_of_a_motion_is_the_limit_of_many_samples(seed: int, degree: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
@@ -135,10 +92,9 @@ def test_r2_of_a_motion_is_the_limit_of_many_samples(seed: int, degree: int) -> 
     assert misses[1] < 0.26 * misses[0] + 1e-13
 
 
-@pytest.mark.parametrize("degree", [4, 8])
-@pytest.mark.parametrize("r4", [2.501, 2.5 + 1e-5, 2.499, 2.5])
+@pytest.mark.parametrize(("r4", "degree"), [(2.501, 4), (2.5 + 1e-5, 8), (2.499, 4), (2.5, 4)])
 def test_r2_near_a_change_point(r4: float, degree: int) -> None:
-    """Against panels that close up towards the ground line, and the dead positions where there are some."""
+    """Compared with panels that are denser towards the ground line and any dead positions."""
     linkage = FourBar((0, 0), (4, 0), 2, 4.5, r4, (2, 1))
     low, high = driver_ranges(linkage)[0]
     edges = np.concatenate(

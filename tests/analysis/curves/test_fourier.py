@@ -9,8 +9,7 @@ from scipy.integrate import quad_vec
 from grashof.analysis import solve_position
 from grashof.analysis.curves.fourier import coupler_fourier, coupler_harmonics, fourier_series
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.problems import FourBar, ProblemError
 
 
 @given(count=st.integers(3, 24), seed=st.integers(0, 2**16))
@@ -50,16 +49,7 @@ def test_known_harmonics_are_found() -> None:
     np.testing.assert_allclose(series.content, power / power.sum(), atol=1e-14)
 
 
-def test_the_crank_pin_has_one_harmonic() -> None:
-    crank_rocker = FourBar(o2=(1, 2), o4=(5, 2), r2=1.5, r3=4, r4=3.2)
-    series = coupler_fourier(crank_rocker, samples=32)
-    kept = dict(zip(series.harmonics.tolist(), series.coefficients, strict=True))
-    assert (kept[0], kept[1]) == (pytest.approx(1 + 2j), pytest.approx(1.5))
-    np.testing.assert_allclose(series.error_max[1:], 0, atol=1e-14)
-    np.testing.assert_allclose(series.content, [1] + [0] * 15, atol=1e-14)
-
-
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
@@ -71,13 +61,13 @@ def test_a_coupler_curve_is_reconstructed_between_its_samples(seed: int) -> None
 
 
 NEARLY_DEAD = FourBar((0, 0), (4, 0), 2, 4.5, 2.501, (2, 1))
-CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(5)]
+CRANKS = [random_full_crank(np.random.default_rng(seed)) for seed in range(3)]
 
 
-@pytest.mark.quick("linkage0", "linkage2", "linkage3", "linkage5")
+@pytest.mark.quick("linkage0", "linkage3")
 @pytest.mark.parametrize("linkage", [NEARLY_DEAD, *CRANKS])
 def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None:
-    """However close it comes to a change point: against adaptive quadrature and a dense search."""
+    """Near a change point too: compared with adaptive quadrature and a dense search."""
     first = coupler_harmonics(linkage, top=4)
     theta1, harmonics = float(linkage.theta1), np.arange(-4, 5)
 
@@ -85,10 +75,10 @@ def test_first_harmonics_are_those_of_the_curve_itself(linkage: FourBar) -> None
         z = complex(*(solve_position(linkage, theta2).p - linkage.o2))
         return np.append(z * np.exp(-1j * harmonics * theta2), abs(z) ** 2) / (2 * np.pi)
 
-    whole = quad_vec(
+    integral = quad_vec(
         moments, theta1, theta1 + 2 * np.pi, epsabs=1e-12, epsrel=1e-12, points=[theta1 + np.pi]
     )[0]
-    expected, square = whole[:-1], whole[-1].real
+    expected, square = integral[:-1], integral[-1].real
     size = np.sqrt(square)
     shifted = expected + np.where(harmonics == 0, complex(*linkage.o2), 0.0)
     np.testing.assert_allclose(first.coefficients, shifted, rtol=0, atol=1e-11 * size)
@@ -112,7 +102,7 @@ def test_first_harmonics_of_the_crank_pin() -> None:
     assert first.error_max.tolist() == [pytest.approx(1.5), 0, 0, 0, 0, 0]
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="top is 0"):
         coupler_harmonics(NEARLY_DEAD, top=0)
     with pytest.raises(ProblemError, match="does not turn fully"):

@@ -6,14 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.analysis import solve_position
-from grashof.analysis.curves.line_and_circle import (
-    along_path,
-    best_circle,
-    best_line,
-    circularity,
-)
-from grashof.problems import FourBar
-from grashof.problems.values.errors import ProblemError
+from grashof.analysis.curves.line_and_circle import along_path, best_circle, best_line, circularity
+from grashof.problems import FourBar, ProblemError
 
 ANGLES = st.floats(-np.pi, np.pi)
 
@@ -60,7 +54,7 @@ def test_a_circle_is_recovered_from_any_arc(start: float, arc: float, radius: fl
     assert circle.deviation_max < 1e-14 * (3 + radius) * 10
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_no_other_circle_is_nearer(seed: int) -> None:
     rng = np.random.default_rng(seed)
     angle = rng.uniform(0, rng.uniform(0.5, 6), 40)
@@ -72,21 +66,12 @@ def test_no_other_circle_is_nearer(seed: int) -> None:
         return float(np.sqrt(((distance - circle.radius - dr) ** 2).mean()))
 
     assert rms(0, 0, 0) == pytest.approx(circle.deviation_rms)
+    assert circle.error_share == pytest.approx(circle.deviation_max / circle.radius)
     h = 1e-4
     slope = [(rms(*(h * axis)) - rms(*(-h * axis))) / (2 * h) for axis in np.eye(3)]
     np.testing.assert_allclose(slope, 0, atol=1e-6)
     for axis in np.eye(3):
         assert min(rms(*(0.1 * axis)), rms(*(-0.1 * axis))) > circle.deviation_rms
-
-
-def test_the_circle_of_four_points_by_hand() -> None:
-    """Symmetric about y: the radius is the mean of 3.1 - c, 3 + c and twice sqrt(9 + c^2)."""
-    circle = best_circle([[3, 0], [0, 3.1], [-3, 0], [0, -3]])
-    c = circle.centre[1]
-    distances = np.array([3.1 - c, 3 + c, np.hypot(3, c), np.hypot(3, c)])
-    assert circle.radius == pytest.approx(distances.mean())
-    assert circle.deviation_max == pytest.approx(abs(distances - distances.mean()).max())
-    assert circle.error_share == pytest.approx(circle.deviation_max / circle.radius)
 
 
 def test_the_arcs_of_the_pivots() -> None:
@@ -105,7 +90,7 @@ def test_points_along_a_path_are_equally_far_apart() -> None:
     np.testing.assert_allclose(points[[0, -1]], solve_position(linkage, [0.2, 5.0]).p, atol=1e-14)
 
 
-def test_bad_input_is_named() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="all one"):
         best_line([[1, 1], [1, 1]])
     for points in ([[0, 0], [1, 1]], [[0, 0], [1, 1], [2, 2]], [[0.1, 0.3], [1.1, 0.6], [2.1, 0.9]]):

@@ -16,7 +16,7 @@ from grashof.problems.values.dynamics.load_specs import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 CARD = ((0, 0.3, -9), (90, 0.4, -20), (180, -0.1, -20), (250, 0, -11), (360, 0.3, -9))

@@ -26,7 +26,7 @@ from grashof.problems.values.dynamics.load_specs import (
     SpringSpec,
     TorsionSpringSpec,
 )
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 mujoco: Any = pytest.importorskip("mujoco")

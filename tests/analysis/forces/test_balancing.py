@@ -22,7 +22,7 @@ from grashof.analysis import (
     solve_kinematics,
     uniform_bars,
 )
-from grashof.analysis.mechanism.means import mean_over
+from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.problems import AssemblyError, FourBar, ProblemError
 
 CHECKED = settings(max_examples=25)

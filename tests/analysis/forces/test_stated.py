@@ -27,7 +27,7 @@ from grashof.problems.values.dynamics.load_specs import (
     SpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 CARD = ((0, -9), (90, -20), (180, -20), (250, -11), (360, -9))

@@ -1,42 +1,117 @@
-"""Instant centres against what they are for: velocities."""
+"""Instant centres, centrodes that roll on each other, circles of points without curvature or acceleration."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.integrate import quad
 
-from grashof.analysis import GrashofClass, driver_ranges, instant_centres, solve_kinematics
+from grashof.analysis import (
+    GrashofClass,
+    centrodes,
+    coupler_circles,
+    curvature,
+    driver_ranges,
+    instant_centres,
+    solve_kinematics,
+    solve_position,
+)
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
 CHECKED = settings(max_examples=25)
+JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 
-@pytest.mark.parametrize("kind", [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT])
+def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
+    """The linkage with P at the point of the coupler that lies at a place."""
+    state = solve_position(linkage, theta2)
+    arm = complex(*(place - state.a)) * np.exp(-1j * state.theta3)
+    return replace(linkage, coupler_point=(arm.real, arm.imag))
+
+
+@pytest.mark.slow
 @given(data=st.data())
 @CHECKED
-def test_velocities_follow_from_the_centres(
-    four_bars: Drawer, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
+def test_points_of_the_circles(four_bars: Drawer, data: st.DataObject) -> None:
+    linkage = data.draw(four_bars(data.draw(st.sampled_from(sorted(FOUR_BAR_CLASSES)))))
     low, high = driver_ranges(linkage)[0]
-    theta2 = np.linspace(low, high, 31)[2:-2]
-    centres, state = instant_centres(linkage, theta2), solve_kinematics(linkage, theta2)
-    # The coupler turns about I13: v_P is at right angles to I13-P and omega3 times as long.
-    arm = state.p.position - centres.i13
-    near = np.abs(arm).max(axis=-1) < 1e4 * linkage.r1
-    turned = state.omega3[:, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=-1)
-    velocity = state.p.velocity[near]
-    np.testing.assert_allclose(turned[near], velocity, atol=1e-8 * np.abs(velocity).max(initial=1))
-    # Driver and output have the same velocity at I24.
-    from_o2, from_o4 = centres.i24 - centres.i12, centres.i24 - centres.i14
-    near = np.abs(from_o2).max(axis=-1) < 1e4 * linkage.r1
-    np.testing.assert_allclose(
-        (state.omega4[:, None] * from_o4)[near], from_o2[near], rtol=1e-7, atol=1e-8 * linkage.r1
-    )
+    theta2 = float(low + (high - low) * data.draw(st.floats(0.02, 0.97)))
+    stands = solve_position(linkage, theta2)
+    if not abs(np.sin(stands.theta4 - stands.theta3)) > 0.01:
+        return
+    state, found = solve_kinematics(linkage, theta2), coupler_circles(linkage, theta2)
+    if not abs(state.omega3) > 0.01:
+        return
+    if not (1e-3 < found.inflection_diameter < 1e3 * float(linkage.r1) and abs(state.alpha3) > 0.01):
+        return
+    np.testing.assert_allclose(found.pole, instant_centres(linkage, theta2).i13, rtol=1e-7, atol=1e-7)
+    angle = data.draw(st.floats(0.3, 6.0))
+    way = np.array([np.cos(angle), np.sin(angle)])
+    on_circle = carrying(linkage, theta2, found.inflection + found.inflection_diameter / 2 * way)
+    p = solve_kinematics(on_circle, theta2).p
+    across = p.velocity[0] * p.acceleration[1] - p.velocity[1] * p.acceleration[0]
+    assert abs(across) < 1e-7 * float(p.speed) * (np.hypot(*p.acceleration) + p.speed)
+    even = carrying(linkage, theta2, found.bresse + found.bresse_diameter / 2 * way)
+    p = solve_kinematics(even, theta2).p
+    assert abs(p.velocity @ p.acceleration) < 1e-7 * float(p.speed) * (np.hypot(*p.acceleration) + p.speed)
+    still = solve_kinematics(carrying(linkage, theta2, found.acceleration_pole), theta2).p
+    scale = float(state.omega3**2 + abs(state.alpha3)) * (found.inflection_diameter + float(linkage.r2))
+    assert np.abs(still.acceleration).max() < 1e-7 * scale
+
+
+def test_a_path_on_the_inflection_circle_has_no_curvature() -> None:
+    for theta2 in (0.4, 2.0, 5.0):
+        found = coupler_circles(JACK, theta2)
+        for angle in np.linspace(0.2, 6, 7):
+            way = found.inflection_diameter / 2 * np.array([np.cos(angle), np.sin(angle)])
+            p = carrying(JACK, theta2, found.inflection + way)
+            assert abs(curvature(p, theta2)) * JACK.r2 < 1e-9
+
+
+def test_euler_and_savary() -> None:
+    """A turns about O2, B about O4, any point about the centre of its path: PX^2 = XC . XJ on its ray."""
+    theta2 = 1.1
+    state, found = solve_kinematics(JACK, theta2), coupler_circles(JACK, theta2)
+    diameter = 2 * (found.inflection - found.pole)
+    for point, centre in ((state.a.position, JACK.o2), (state.b.position, JACK.o4)):
+        ray = point - found.pole
+        unit = ray / np.hypot(*ray)
+        inflection = found.pole + (diameter @ unit) * unit
+        along_j, along_c = (inflection - point) @ unit, (centre - point) @ unit
+        assert ray @ ray == pytest.approx(along_j * along_c, rel=1e-12)
+
+
+@pytest.mark.parametrize(("start", "end"), [(1.3, 2.6), (5.0, 6.0)])
+def test_the_moving_centrode_rolls_on_the_fixed_one(start: float, end: float) -> None:
+    step = 1e-5
+
+    def speed(theta2: float, name: str) -> float:
+        ahead, behind = (getattr(centrodes(JACK, theta2 + s), name) for s in (step, -step))
+        return float(np.hypot(*(ahead - behind)) / (2 * step))
+
+    lengths = [quad(speed, start, end, args=(name,), epsrel=1e-9)[0] for name in ("fixed", "moving")]
+    assert lengths[0] == pytest.approx(lengths[1], rel=1e-8)
+    assert lengths[0] > 0.5
+
+
+def test_centrodes_of_a_crossed_parallelogram_are_ellipses() -> None:
+    crossed = FourBar(o2=(0, 0), o4=(2, 0), r2=3, r3=2, r4=3, assembly=-1)
+    found = centrodes(crossed, np.linspace(0.3, 2.9, 20))
+    for track in (found.fixed, found.moving):
+        foci = np.hypot(*track.T) + np.hypot(*(track - (2, 0)).T)
+        np.testing.assert_allclose(foci, 3, rtol=1e-12)
+
+
+def test_a_coupler_that_does_not_turn_has_its_pole_at_infinity() -> None:
+    parallelogram = FourBar(o2=(0, 0), o4=(3, 0), r2=2, r3=3, r4=2)
+    found = coupler_circles(parallelogram, [0.5, 1.0])
+    assert not np.isfinite(found.pole).any()
+    assert not np.isfinite(centrodes(parallelogram, [0.5, 1.0]).fixed).all(axis=-1).any()
 
 
 def test_parallel_lines_meet_nowhere() -> None:

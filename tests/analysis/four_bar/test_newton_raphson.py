@@ -11,7 +11,7 @@ from grashof.analysis import GrashofClass, driver_ranges, newton_position, solve
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=25)
+CHECKED = settings(max_examples=8)
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 

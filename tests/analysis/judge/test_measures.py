@@ -25,7 +25,7 @@ from grashof.problems import (
     Requirements,
     TransmissionOver,
 )
-from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Over
+from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 
@@ -170,7 +170,7 @@ def limiting(key: str, low: float, high: float) -> Any:
     return SimpleNamespace(
         limited={key: limit},
         ranges=lambda name: {"": (low, high)},
-        meant=lambda quantity: quantity,
+        as_required=lambda quantity: quantity,
         same_branch=True,
     )
 
@@ -218,6 +218,6 @@ def test_without_a_motion_only_the_branch_is_named() -> None:
 @pytest.mark.parametrize("over", TransmissionOver)
 def test_the_transmission_is_that_over_the_motion_required(over: TransmissionOver) -> None:
     wanted = Requirements(transmission_over=over)
-    meant = wanted.meant(LIMITS["transmission_min_deg"].quantity)
+    meant = wanted.as_required(LIMITS["transmission_min_deg"].quantity)
     assert meant.key == f"transmission_min_{over}"
-    assert meant.over is {"task": Over.TASK, "cycle": Over.CYCLE}[over]
+    assert meant.over is {"task": Scope.TASK, "cycle": Scope.CYCLE}[over]

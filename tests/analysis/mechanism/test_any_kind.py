@@ -1,19 +1,22 @@
-"""Every kind of linkage against Newton's method on the equations of its loop."""
+"""Linkages of every class: limit and dead positions, even motions, figures of complete motions."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import (
     GrashofClass,
     driver_ranges,
+    extremes,
     full_rotation,
     grashof_class,
+    instant_centres,
     output_stroke,
     rotatability,
     solve_kinematics,
@@ -22,12 +25,14 @@ from grashof.analysis import (
     worst_transmission,
     worst_transmission_cycle,
 )
-from grashof.analysis.curves.coupler_curve import coupler_curve, coupler_motion
+from grashof.analysis.curves.coupler_curve import coupler_curve
+from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.extremes import reach_box, transmission_extremes
 from grashof.analysis.mechanism.mobility import dead_ends
 from grashof.analysis.mechanism.sensitivity import turn_sensitivity
 from grashof.analysis.mechanism.transmission import quality
-from grashof.problems import DeadPositionWarning, FourBar, SliderCrank
+from grashof.problems import DeadPositionWarning, InvertedSliderCrank, SliderCrank
 
 SWINGING = [
     GrashofClass.DOUBLE_ROCKER,
@@ -37,7 +42,9 @@ SWINGING = [
     GrashofClass.INVERTED_SLIDER_ROCKER,
 ]
 CLASSES = [kind for kind in GrashofClass if kind is not GrashofClass.CHANGE_POINT]
-few, fewer = settings(max_examples=12), settings(max_examples=5)
+SLIDING = CLASSES[-5:]
+MOVING = [GrashofClass.NON_GRASHOF, *SLIDING]  # tests of their own cover other four-bars
+few = settings(max_examples=6)
 
 
 def inside(linkage, share):
@@ -46,18 +53,8 @@ def inside(linkage, share):
     return float(low + (high - low) * share)
 
 
-def unknowns(linkage, state):
-    """What the second opinion solves for: theta3, and theta4 or a length."""
-    if isinstance(linkage, FourBar):
-        return np.array([state.theta3, state.theta4])
-    if isinstance(linkage, SliderCrank):
-        slide = np.array([np.cos(linkage.slide_angle), np.sin(linkage.slide_angle)])
-        return np.array([state.theta3, (state.b - linkage.o2) @ slide])
-    return np.array([state.theta3, (state.b - state.a) @ [np.cos(state.theta3), np.sin(state.theta3)]])
-
-
 @pytest.mark.parametrize("kind", CLASSES)
-def test_the_class_is_the_one_drawn(linkages, kind) -> None:
+def test_the_class_is_that_of_the_strategy(linkages, kind) -> None:
     @few
     @given(linkages(kind))
     def check(linkage) -> None:
@@ -71,119 +68,8 @@ def test_the_class_is_the_one_drawn(linkages, kind) -> None:
     check()
 
 
-@pytest.mark.quick("crank-rocker", "rocker-crank", "slider-rocker", "inverted slider-rocker")
 @pytest.mark.parametrize("kind", CLASSES)
-def test_positions_are_those_of_the_loop_equations(linkages, second_opinion, kind) -> None:
-    @few
-    @given(linkages(kind), st.floats(0.02, 0.98), st.sampled_from([-1, 1]))
-    def check(linkage, share, assembly) -> None:
-        theta2 = inside(linkage, share)
-        state = solve_position(linkage, theta2, assembly)
-        other = second_opinion(linkage)
-        found = other.at(theta2, assembly)
-        ours = unknowns(linkage, state)
-        away = (ours - found + np.pi) % (2 * np.pi) - np.pi if isinstance(linkage, FourBar) else ours - found
-        away[0] = (away[0] + np.pi) % (2 * np.pi) - np.pi
-        size = float(linkage.lengths.sum())
-        sine = float(other.sine(found))
-        assert np.abs(away / [1, 1 if isinstance(linkage, FourBar) else size]).max() < 1e-12 / abs(sine)
-        assert state.margins[0] == pytest.approx(sine, abs=1e-11)
-        assert np.sin(transmission_angle(linkage, theta2)) == pytest.approx(abs(sine), abs=1e-9)
-
-    check()
-
-
-@pytest.mark.parametrize("kind", CLASSES)
-def test_points_move_as_their_places_do(linkages, kind) -> None:
-    """B and P, and points of link 4, against central differences of places."""
-
-    @few
-    @given(linkages(kind), st.floats(0.15, 0.85))
-    def check(linkage, share) -> None:
-        theta2 = inside(linkage, share)
-        mu = transmission_angle(linkage, theta2)
-        assume(0.2 < mu < np.pi - 0.2)
-        step = 1e-3
-        around = theta2 + step * np.arange(-4, 5)
-        weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
-        state, places = solve_kinematics(linkage, theta2), solve_position(linkage, around)
-        size = float(linkage.lengths.sum())
-        moving = coupler_motion(linkage, theta2)
-        assert (moving.omega, moving.alpha) == pytest.approx((state.omega3, state.alpha3), rel=1e-9)
-        motions = {"a": state.a, "b": state.b, "p": state.p}
-        for point, motion in motions.items():
-            track = getattr(places, point)
-            assert np.allclose(motion.position, track[4], rtol=0, atol=1e-10 * size)
-            assert np.allclose(motion.velocity, weights @ track, rtol=1e-6, atol=1e-6 * size)
-        many = solve_kinematics(linkage, around)
-        for link in (2, 3, 4):
-            found, track = (
-                state.point(link, (0.3 * size, -0.2 * size)),
-                many.point(link, (0.3 * size, -0.2 * size)),
-            )
-            assert np.allclose(found.velocity, weights @ track.position, rtol=1e-6, atol=1e-6 * size)
-            assert np.allclose(found.acceleration, weights @ track.velocity, rtol=1e-5, atol=1e-5 * size)
-            assert np.allclose(found.jerk, weights @ track.acceleration, rtol=1e-4, atol=1e-3 * size)
-
-    check()
-
-
-@pytest.mark.quick("double-crank", "Whitworth")
-@pytest.mark.parametrize("kind", CLASSES)
-def test_the_loop_closes_within_the_ranges_alone(linkages, second_opinion, kind) -> None:
-    @fewer
-    @given(linkages(kind))
-    def check(linkage) -> None:
-        ranges = driver_ranges(linkage)
-        other = second_opinion(linkage)
-        turns = bool(full_rotation(linkage))
-        assert turns == (np.nan_to_num(ranges[:, 1] - ranges[:, 0]).sum() > 2 * np.pi - 1e-9)
-        for theta2 in np.linspace(-np.pi, np.pi, 7) + 0.01:
-            closes = bool((((theta2 - ranges[:, 0]) % (2 * np.pi)) < ranges[:, 1] - ranges[:, 0]).any())
-            near = np.abs((ranges - theta2 + np.pi) % (2 * np.pi) - np.pi)
-            if not turns and np.nanmin(near) < 1e-3:
-                continue
-            assert closes == np.isfinite(other.at(float(theta2), 1)).all()
-            assert closes == np.isfinite(solve_position(linkage, theta2).theta3)
-        for low, high in ranges[np.isfinite(ranges[:, 0])] if not turns else []:
-            # The determinant goes to zero at either end, as the root of the way to it.
-            for end, sense in ((low, 1), (high, -1)):
-                state = solve_position(linkage, end + sense * 1e-8)
-                assert abs(other.sine(unknowns(linkage, state))) < 1e-2
-            ends = np.array(dead_ends(linkage, low, high))
-            assert (solve_position(linkage, ends).margins[0] == 0).all()
-            assert np.abs(ends - [low, high]).max() < 1e-11
-
-    check()
-
-
-@pytest.mark.quick("non-Grashof")
-@pytest.mark.parametrize("kind", CLASSES)
-def test_the_worst_transmission_is_that_of_dense_positions(linkages, second_opinion, kind) -> None:
-    @fewer
-    @given(linkages(kind), st.floats(0.02, 0.98), st.floats(0.02, 0.98))
-    def check(linkage, first, last) -> None:
-        start, end = inside(linkage, first), inside(linkage, last)
-        fine = np.linspace(start, end, 2001)
-        state = solve_position(linkage, fine)
-        other = second_opinion(linkage)
-        columns = zip(state.theta3, state.theta4, state.a, state.b, strict=True)
-        every = [
-            abs(other.sine(unknowns(linkage, SimpleNamespace(theta3=theta3, theta4=theta4, a=a, b=b))))
-            for theta3, theta4, a, b in columns
-        ]  # fmt: skip
-        worst = np.sin(worst_transmission(linkage, start, end))
-        assert worst <= min(every) + 1e-9
-        assert worst == pytest.approx(min(every), abs=2e-3)
-        if full_rotation(linkage):
-            around = quality(transmission_angle(linkage, np.linspace(0, 2 * np.pi, 4001)))
-            assert worst_transmission_cycle(linkage) == pytest.approx(around.min(), abs=1e-3)
-
-    check()
-
-
-@pytest.mark.parametrize("kind", CLASSES)
-def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
+def test_the_output_is_at_rest_in_limit_positions(linkages, kind) -> None:
     @few
     @given(linkages(kind))
     def check(linkage) -> None:
@@ -197,13 +83,13 @@ def test_limit_positions_are_where_the_output_rests(linkages, kind) -> None:
             size = float(linkage.lengths.sum()) if isinstance(linkage, SliderCrank) else 1.0
             assert abs(rest) < 1e-6 * size
         if full_rotation(linkage):
-            fine = solve_position(linkage, np.linspace(0, 2 * np.pi, 20001))
+            fine = solve_position(linkage, np.linspace(0, 2 * np.pi, 5001))
             if isinstance(linkage, SliderCrank):
                 travel = solve_kinematics(linkage, fine.theta2).slide.travel
-                assert stroke.chord == pytest.approx(np.ptp(travel), rel=1e-5)
+                assert stroke.chord == pytest.approx(np.ptp(travel), rel=1e-4)
             swing = np.ptp(np.unwrap(fine.theta4))
             if kind in (GrashofClass.CRANK_ROCKER, GrashofClass.CRANK_SHAPER):
-                assert stroke.swing == pytest.approx(swing, rel=1e-5)
+                assert stroke.swing == pytest.approx(swing, rel=1e-4)
             if kind is GrashofClass.WHITWORTH:
                 assert swing == pytest.approx(2 * np.pi, abs=1e-9)
                 assert np.isnan(stroke.theta2).all()
@@ -219,7 +105,7 @@ def test_coupler_rates_grow_without_digits_lost_near_dead_positions(linkages, ki
         assume(not full_rotation(linkage))
         theta2 = driver_ranges(linkage)[0][end] + (1 - 2 * end) * 10**exponent
         state = solve_kinematics(linkage, theta2)
-        # theta3 goes as the root of the way to the end: rate = 1/2 (theta3 - theta3 end) / way, nearly.
+        # theta3 varies with the root of the distance from the end.
         assert np.isfinite([state.omega3, state.alpha3, state.jerk3]).all()
         p, rate, _ = coupler_curve(linkage, theta2)
         assert np.isfinite([p, rate]).all()
@@ -229,7 +115,7 @@ def test_coupler_rates_grow_without_digits_lost_near_dead_positions(linkages, ki
 
 
 @pytest.mark.parametrize("kind", SWINGING)
-def test_rates_in_a_dead_position_have_the_signs_they_grow_with(linkages, kind) -> None:
+def test_infinite_rates_of_dead_positions_have_the_sign_nearby(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]))
     def check(linkage, end, omega2) -> None:
@@ -251,8 +137,7 @@ def test_rates_in_a_dead_position_have_the_signs_they_grow_with(linkages, kind) 
     check()
 
 
-@pytest.mark.quick("crank-rocker", "rocker-crank", "slider-rocker", "inverted slider-rocker")
-@pytest.mark.parametrize("kind", CLASSES)
+@pytest.mark.parametrize("kind", SLIDING)
 def test_even_motion_has_neither_jumps_nor_crowds(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.floats(0, 0.4), st.floats(0.6, 1))
@@ -272,7 +157,7 @@ def test_even_motion_has_neither_jumps_nor_crowds(linkages, kind) -> None:
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> None:
+def test_turns_by_dimensions_are_differences_of_positions(linkages, kind) -> None:
     @few
     @given(linkages(kind), st.floats(0.2, 0.8))
     def check(linkage, share) -> None:
@@ -291,5 +176,124 @@ def test_dimensions_turn_the_links_as_linkages_made_so_show(linkages, kind) -> N
             ]
             slope = ((apart[0] - apart[1] + np.pi) % (2 * np.pi) - np.pi) / (2 * step)
             assert found == pytest.approx(slope, rel=1e-5, abs=1e-4 / float(linkage.lengths.sum()))
+
+    check()
+
+
+def motion_of(linkage):
+    """Ends of a motion: a turn, or a range of the driver."""
+    low, high = driver_ranges(linkage)[0]
+    return (0.3, 0.3 + 2 * np.pi) if full_rotation(linkage) else (float(low), float(high))
+
+
+def dense(start, end, count=5001):
+    """Driver angles, closer towards the ends."""
+    return start + (end - start) * (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+
+
+@pytest.mark.parametrize("kind", MOVING)
+def test_extremes_and_boxes_are_those_of_dense_samples(linkages, kind) -> None:
+    @few
+    @given(linkages(kind))
+    def check(linkage) -> None:
+        start, end = motion_of(linkage)
+        start, end = start + 1e-3 * (end - start), end - 1e-3 * (end - start)
+        size = float(linkage.lengths.sum())
+        fine = dense(start, end)
+        state = solve_position(linkage, fine)
+        found = extremes(linkage, lambda state: state.p.position[:, 0], start=start, end=end)
+        closed = np.isfinite(state.p[:, 0])
+        assert closed[1:-1].all()
+        assert found.low == pytest.approx(state.p[closed, 0].min(), abs=1e-5 * size)
+        assert found.high == pytest.approx(state.p[closed, 0].max(), abs=1e-5 * size)
+        pivots = [getattr(linkage, name)[None] for name in linkage.mechanism.ground]
+        every = np.concatenate([state.a[closed], state.b[closed], state.p[closed], *pivots])
+        box = reach_box(linkage, start, end)
+        assert np.allclose(box, [every.min(axis=0), every.max(axis=0)], rtol=0, atol=1e-5 * size)
+        mu = transmission_angle(linkage, fine[closed])
+        ends = transmission_extremes(linkage, start, end)
+        assert (ends.low, ends.high) == pytest.approx((mu.min(), mu.max()), abs=2e-3)
+        assert ends.low <= mu.min() + 1e-9
+        assert ends.high >= mu.max() - 1e-9
+
+    check()
+
+
+@pytest.mark.parametrize("kind", MOVING)
+def test_means_are_those_of_another_quadrature(linkages, kind) -> None:
+    @settings(max_examples=1)
+    @given(linkages(kind))
+    def check(linkage) -> None:
+        start, end = motion_of(linkage)
+
+        def curve(theta2):
+            return np.nan_to_num(np.cos(solve_position(linkage, theta2).theta3))
+
+        def part(low, high):
+            return scipy.integrate.quad(lambda theta2: float(curve(theta2)), low, high, limit=100)[0]
+
+        mean, error = mean_over(linkage, curve, start, end)
+        parts = [part(*ends) for ends in pairwise(np.linspace(start, end, 9))]
+        assert error < 1e-8
+        assert float(mean) == pytest.approx(sum(parts) / (end - start), abs=1e-7)
+
+    check()
+
+
+@pytest.mark.parametrize("kind", MOVING)
+def test_links_have_one_velocity_in_their_instant_centre(linkages, kind) -> None:
+    @few
+    @given(linkages(kind), st.floats(0.2, 0.8))
+    def check(linkage, share) -> None:
+        low, high = driver_ranges(linkage)[0]
+        theta2 = float(low + (high - low) * share)
+        state, centres = solve_kinematics(linkage, theta2), instant_centres(linkage, theta2)
+        size = float(linkage.lengths.sum())
+
+        def velocity(link, place):
+            arm = complex(*(place - state.point(link, (0, 0)).position))
+            turned = arm * 1j * state.angular(link)[1]
+            return state.point(link, (0, 0)).velocity + np.array([turned.real, turned.imag])
+
+        if np.isfinite(centres.i13).all() and np.abs(centres.i13).max() < 1e4 * size:
+            assert np.abs(velocity(3, centres.i13)).max() < 1e-7 * size
+        if np.isfinite(centres.i24).all() and np.abs(centres.i24).max() < 1e4 * size:
+            two, four = velocity(2, centres.i24), velocity(4, centres.i24)
+            assert np.abs(two - four).max() < 1e-7 * (size + np.abs(two).max())
+        assert np.isnan(centres.i14).all() == isinstance(linkage, SliderCrank)
+        assert np.isnan(centres.i34).all() == isinstance(linkage, InvertedSliderCrank)
+
+    check()
+
+
+# Functions of linkages alone, and functions of driver angles too.
+OF_LINKAGES = (
+    driver_ranges, full_rotation, rotatability, worst_transmission_cycle,
+    *(lambda linkage, name=name: getattr(output_stroke(linkage), name)
+      for name in ("theta2", "theta4", "swing", "chord", "time_ratio")),
+)  # fmt: skip
+AT_ANGLES = (
+    *(lambda linkage, theta2, name=name: getattr(solve_position(linkage, theta2), name)
+      for name in ("theta2", "theta3", "theta4", "a", "b", "p")),
+    *(lambda linkage, theta2, name=name: getattr(solve_kinematics(linkage, theta2, 1 + theta2, 0.3), name)
+      for name in ("omega3", "omega4", "alpha3", "alpha4", "jerk3", "jerk4")),
+    lambda linkage, theta2: solve_kinematics(linkage, theta2, 1.5, 0.3).p.jerk,
+    transmission_angle,
+    lambda linkage, theta2: worst_transmission(linkage, theta2, theta2[::-1] + 0.4),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", [*MOVING[:2], GrashofClass.CRANK_SHAPER])
+def test_a_batch_is_its_linkages_one_by_one(linkages, kind) -> None:
+    @settings(max_examples=3)
+    @given(linkages(kind), linkages(kind))
+    def check(one, other) -> None:
+        batch = type(one)(*(np.stack(pair) for pair in zip(one.parameters, other.parameters, strict=True)))
+        theta2 = np.linspace(-3, 3, 7)
+        for row, linkage in enumerate((one, other)):
+            for of in OF_LINKAGES:
+                assert np.array_equal(of(batch)[row], of(linkage), equal_nan=True)
+            for of in AT_ANGLES:
+                assert np.array_equal(of(batch[:, None], theta2)[row], of(linkage, theta2), equal_nan=True)
 
     check()

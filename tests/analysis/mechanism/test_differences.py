@@ -1,4 +1,4 @@
-"""Central differences: their order, their step, and the report against analytic values."""
+"""Central differences: their order and step, and the comparison with analytic values."""
 
 from typing import Any
 
@@ -50,7 +50,7 @@ def test_vectors_are_differentiated_by_component() -> None:
     np.testing.assert_allclose(found[2:-2], [[0, 2]] * 3, atol=1e-11)
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_refused() -> None:
     with pytest.raises(ProblemError, match="not equally spaced"):
         central_differences([0, 1, 3], [0, 1, 3])
     with pytest.raises(ProblemError, match="accuracy 3"):

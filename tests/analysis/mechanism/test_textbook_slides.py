@@ -1,4 +1,4 @@
-"""Figures of slider-cranks that textbooks have, and what follows from their triangles."""
+"""Textbook figures of slider-cranks, and consequences of their triangles."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_the_acceleration_of_a_piston_has_the_textbook_harmonics() -> None:
     terms = np.fft.rfft(-state.slide.acceleration / (2 * omega2**2)).real / 32
     a2, a4 = ratio + ratio**3 / 4 + 15 * ratio**5 / 128, ratio**3 / 4 + 3 * ratio**5 / 16
     assert terms[1:6] == pytest.approx([1, a2, 0, -a4, 0], abs=1e-7)
-    across = np.abs(state.point(4, (0.5, -0.3)).acceleration[:, 1])  # no part of the slider leaves its way
+    across = np.abs(state.point(4, (0.5, -0.3)).acceleration[:, 1])  # the slider stays on its line
     assert across.max() < 1e-10
 
 
@@ -63,7 +63,7 @@ def test_an_offset_slider_crank_has_the_stroke_of_its_two_triangles() -> None:
     assert np.cos(worst_transmission_cycle(linkage)) == pytest.approx(cosine, rel=1e-14)
 
 
-def test_rotatability_of_slides_is_the_room_they_leave() -> None:
+def test_rotatability_of_slides_is_their_clearance() -> None:
     assert rotatability(SliderCrank(o2=(0, 0), r2=2, r3=7, offset=3)) == pytest.approx([2 / 12, 8 / 12])
     inverted = InvertedSliderCrank(o2=(0, 0), o4=(0, 5), r2=2, offset=-1)
     assert rotatability(inverted) == pytest.approx([1, 2 / 8])

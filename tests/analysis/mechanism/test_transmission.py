@@ -1,4 +1,4 @@
-"""Transmission angles: against published figures, and worst values against fine sweeps."""
+"""Transmission angles compared with published figures, worst values with fine sweeps."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,7 @@ from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=20)
+CHECKED = settings(max_examples=8)
 TURN = 2 * np.pi
 Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
 Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
@@ -23,7 +23,7 @@ Sweep = Callable[[FourBar, float, float], tuple[float, float]]
 
 @pytest.fixture(scope="module")
 def least_of_sweep(close_loop: Brute) -> Sweep:
-    """Least min(mu, pi - mu) of a fine sweep (0 where the loop is open), and how far it may lie above."""
+    """Least min(mu, pi - mu) of a fine sweep, 0 where the loop is open, and the error of that."""
 
     def sweep(linkage: FourBar, start: float, end: float) -> tuple[float, float]:
         a, b, _ = close_loop(linkage, np.linspace(start, end, 20001), 1)
@@ -70,22 +70,6 @@ def test_worst_over_the_turn_of_the_reference_figures(
     )
 
 
-def test_bag_mechanism_at_its_poses(golden: dict[str, Any], golden_linkages: dict[str, FourBar]) -> None:
-    given, linkage = golden["bag_mechanism_exact"], golden_linkages["bag"]
-    beta = [0.0, *map(float, given["beta_deg"])]
-    angles = np.radians(float(given["theta2_pose1_deg"]) + np.array(beta))
-    expected = np.array(given["mu_at_poses_deg"], dtype=np.float64)
-    np.testing.assert_allclose(np.degrees(transmission_angle(linkage, angles)), expected, rtol=1e-12)
-    assert np.degrees(worst_transmission(linkage, angles[0], angles[-1])) == pytest.approx(
-        float(given["mu_at_poses_deg"][0]), rel=1e-12
-    )
-
-
-def test_quality_is_the_angle_to_the_nearer_dead_position() -> None:
-    np.testing.assert_allclose(quality(np.radians([0, 30, 90, 150, 180])), np.radians([0, 30, 90, 30, 0]))
-    assert quality(np.nan) == 0
-
-
 @pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
 @given(data=st.data())
 @CHECKED
@@ -129,8 +113,7 @@ def test_worst_over_the_turn_is_the_least_of_a_sweep(
         assert worst_transmission(linkage, start, start + span) == pytest.approx(worst, rel=1e-12)
 
 
-@pytest.mark.parametrize("theta1", [0.0, 0.7, -2.9])
-@pytest.mark.parametrize("assembly", [1, -1])
+@pytest.mark.parametrize(("theta1", "assembly"), [(0.0, 1), (-2.9, -1)])
 def test_extremes_inside_an_interval_are_found(theta1: float, assembly: int) -> None:
     o4 = 4 * np.array([np.cos(theta1), np.sin(theta1)])
     linkage = FourBar(o2=(0, 0), o4=o4, r2=1, r3=3, r4=2.6, assembly=assembly)
@@ -140,8 +123,8 @@ def test_extremes_inside_an_interval_are_found(theta1: float, assembly: int) -> 
     def worst(start: float, end: float) -> float:
         return float(worst_transmission(linkage, theta1 + start, theta1 + end))
 
-    for whole in (-2, -1, 0, 1, 2):
-        turns = whole * TURN
+    for count in (-2, -1, 0, 1, 2):
+        turns = count * TURN
         assert worst(turns - 0.3, turns + 0.4) == pytest.approx(folded, rel=1e-12)
         assert worst(turns + 0.4, turns - 0.3) == pytest.approx(folded, rel=1e-12)
         assert worst(turns + 3, turns + 3.3) == pytest.approx(stretched, rel=1e-12)

@@ -1,4 +1,4 @@
-"""Formulas in blocks give what they give whole."""
+"""Formulas by blocks give the same values as in one call."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from grashof.analysis.numerics.blockwise import in_blocks
         [(0, 5), (5,)],
     ],
 )
-def test_blocks_give_what_the_whole_gives(shapes: list[tuple[int, ...]]) -> None:
+def test_blocks_give_the_values_of_one_call(shapes: list[tuple[int, ...]]) -> None:
     rng = np.random.default_rng(1)
     first, second = (np.asarray(rng.normal(size=shape)) for shape in shapes)
     found = in_blocks(lambda x, y: (x + y, x * y), (first, second), 2)

@@ -1,4 +1,4 @@
-"""Motions of one unknown: closed forms, jumps, stiff damping, events, and where there is no motion."""
+"""Motions of one unknown: closed forms, jumps, stiff damping, events, and no motion at all."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def test_the_period_of_a_pendulum() -> None:
 
 
 def test_an_acceleration_that_depends_on_itself() -> None:
-    """x" = -x + 0.3 x", as a guess put in again and again."""
+    """x" = -x + 0.3 x", with the guess iterated."""
     path = integrate_motion(lambda t, x, v, a: -x + 0.3 * a, 0.0, 10.0, 1.0, 0.0)
     time = TIME[TIME <= 10]
     np.testing.assert_allclose(path.at(time)[0], np.cos(time / np.sqrt(0.7)), atol=1e-11)

@@ -1,4 +1,4 @@
-"""Least peaks: Chebyshev's, and those that no other parameters beat."""
+"""Least peaks: Chebyshev's, and a kinked curve."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def over(start: float, end: float) -> object:
 
 
 @pytest.mark.parametrize("degree", [2, 3, 4, 5])
-def test_a_power_less_lower_ones_leaves_chebyshevs_peak(degree: int) -> None:
+def test_lower_powers_leave_chebyshevs_peak(degree: int) -> None:
     found = least_peak(
         lambda t: t**degree, lambda t: t[:, None] ** np.arange(degree), -1.0, 1.0, over(-1.0, 1.0)
     )

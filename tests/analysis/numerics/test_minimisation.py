@@ -20,7 +20,7 @@ def parabolas(bottom: FloatArray, weight: FloatArray):
     return model
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(
     st.lists(st.tuples(st.floats(-4, 4), st.floats(0.1, 10)), min_size=2, max_size=7),
     st.sampled_from([OPEN, 3.0, 1.0]),
@@ -52,7 +52,7 @@ def test_single_valleys(low: float) -> None:
     np.testing.assert_allclose(value, np.maximum(low - bottom, 0) ** 2, atol=1e-15)
 
 
-def test_near_the_end_of_a_range_square_roots_are_no_hindrance() -> None:
+def test_square_roots_near_the_end_of_a_range_converge() -> None:
     """(sqrt(t) - 0.001)^2 has its valley at 1e-6, its slope infinite at 0."""
 
     def model(t: FloatArray) -> Model:
@@ -65,7 +65,7 @@ def test_near_the_end_of_a_range_square_roots_are_no_hindrance() -> None:
     assert value[0] < 1e-20
 
 
-def test_an_angle_that_must_not_move_does_not_and_holds_the_others_back() -> None:
+def test_a_fixed_angle_limits_the_others() -> None:
     bottom, weight = np.array([[0.0, -1.0, 2.0]]), np.ones((1, 3))
     bounds = np.array([[0.5, 0.5, 0.5]]), np.array([[0.5, OPEN, OPEN]])
     ends = np.full((1, 3), -OPEN), np.full((1, 3), OPEN)

@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from grashof.analysis.numerics.peaks import greatest, own, peaks
+from grashof.analysis.numerics.peaks import greatest, peaks
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def test_a_kink_and_an_end_may_be_the_highest() -> None:
     np.testing.assert_allclose(places, [0.7654321, 2, 0], atol=1e-5)
 
 
-def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
+def test_curves_are_never_evaluated_beyond_their_ends() -> None:
     rng = np.random.default_rng(0)
     beyond = 0
     for _ in range(200):
@@ -43,7 +43,7 @@ def test_curves_are_never_asked_for_places_beyond_their_ends() -> None:
     assert beyond
 
 
-def test_what_is_not_a_number_is_infinite_in_its_own_curve_alone() -> None:
+def test_nan_counts_as_infinite_in_its_own_curve_alone() -> None:
     def curves(x: Floats) -> Floats:
         with np.errstate(divide="ignore"):
             return np.stack([np.where(x == 1.0, np.nan, x), np.cos(x), 1 / (x - 1.0) ** 2])
@@ -60,25 +60,19 @@ def test_the_highest_of_several_stretches() -> None:
     np.testing.assert_allclose(places, [1, 2])
 
 
-@pytest.mark.parametrize("count", [2, 3, 4])
-def test_few_samples_are_enough_for_a_line(count: int) -> None:
-    values, places = peaks(lambda x: np.stack([3 * x]), [np.linspace(1, 2, count)])
-    assert (values[0], places[0]) == (6, 2)
-
-
-def test_many_curves_each_looked_at_in_its_own_places() -> None:
-    """Asked for once at the same places for all, then for each at its own."""
-    centres, asked = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
+def test_many_curves_are_refined_at_their_own_places() -> None:
+    """Evaluated once at common places, then for each curve at its own."""
+    centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
 
     def curves(x: Floats) -> Floats:
-        asked.append(x.shape)
+        evaluated.append(x.shape)
         return np.cos(x - centres[:, None])
 
     values, places = greatest(curves, np.linspace(0, 3, 31))
     np.testing.assert_allclose(values, 1, rtol=1e-15)
     np.testing.assert_allclose(places, centres, atol=1e-7)
-    assert asked[0] == (1, 31)
-    assert {shape[0] for shape in asked[1:]} == {40}
+    assert evaluated[0] == (1, 31)
+    assert {shape[0] for shape in evaluated[1:]} == {40}
 
 
 @pytest.mark.parametrize("rounds", [2, 5, 9])
@@ -87,14 +81,8 @@ def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
     assert abs(places[0] - 0.7654321) <= 2 * (2 / 49) / 8**rounds + 1e-15
 
 
-def test_values_of_curves_at_their_own_places() -> None:
-    table = np.arange(18.0).reshape(3, 3, 2)
-    np.testing.assert_array_equal(own(table), [[0, 1], [8, 9], [16, 17]])
-    np.testing.assert_array_equal(own(table[:, :1]), table[:, 0])
-
-
-def test_rows_that_repeat_their_last_place_are_as_without() -> None:
-    """Three maxima, the last end among them, which must not take the place of the others."""
+def test_rows_that_repeat_their_last_place_are_unchanged() -> None:
+    """Three maxima, one at the end, which must not displace the others."""
 
     def curves(x: Floats) -> Floats:
         return np.stack([np.sin(3 * x) + x, np.cos(5 * x)])

@@ -1,4 +1,4 @@
-"""Integrals with a known value: smooth, narrow, with kinks, jumps and poles, and those that there are not."""
+"""Integrals with a known value: smooth, narrow, with kinks, jumps and poles, and divergent ones."""
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ def test_kinks_and_jumps_wherever_they_lie(at: float) -> None:
 
 @pytest.mark.parametrize("h", [1e-2, 1e-3, 1e-6])
 def test_a_narrow_peak(h: float) -> None:
-    """1 / ((x - 0.3)^2 + h^2) has an arctangent for integral."""
+    """1 / ((x - 0.3)^2 + h^2) has an arctangent as integral."""
     found = integrate(lambda x: 1 / ((x - 0.3) ** 2 + h**2), [0.0, 1.0])
     exact = (np.arctan(0.7 / h) + np.arctan(0.3 / h)) / h
     assert abs(found.total - exact) <= max(found.error, 1e-14 * exact)
@@ -36,8 +36,8 @@ def test_a_table_of_loads() -> None:
     assert found.error < 1e-10
 
 
-def test_what_has_no_integral_is_not_given_one() -> None:
-    """1 / x grows by the same with each halving, 1 / sqrt(x) by less and less."""
+def test_divergent_integrals_are_detected() -> None:
+    """1 / x grows equally with each halving, 1 / sqrt(x) less and less."""
     found = integrate(lambda x: np.stack([1 / x, x**-1.5, 1 / np.sqrt(x)]), [0.0, 1.0])
     assert np.isinf(found.error[:2]).all()
     assert abs(found.total[2] - 2) <= found.error[2] < 1e-7
@@ -46,7 +46,7 @@ def test_what_has_no_integral_is_not_given_one() -> None:
     assert np.isnan(held(float(nowhere.total), float(nowhere.error)))
 
 
-def test_backwards_is_less() -> None:
+def test_reversed_edges_change_the_sign() -> None:
     there, back = (integrate(np.cos, ends) for ends in ([0.0, 0.2, 1.0], [1.0, 0.2, 0.0]))
     assert there.total == pytest.approx(np.sin(1), abs=1e-15)
     assert back.total == pytest.approx(-np.sin(1), abs=1e-15)
@@ -54,7 +54,7 @@ def test_backwards_is_less() -> None:
 
 
 @given(st.lists(INSIDE, min_size=1, max_size=20))
-def test_integrals_up_to_places_within(places: list[float]) -> None:
+def test_integrals_up_to_places_between(places: list[float]) -> None:
     def curves(x: Floats) -> Floats:
         return np.stack([np.cos(5 * x), np.abs(x - 0.4)])
 
@@ -68,7 +68,7 @@ def test_nodes_and_weights_are_exact_for_polynomials() -> None:
     assert weight @ place**31 == pytest.approx((2.0**32 - 1) / 32, rel=1e-13)
 
 
-def test_digits_that_hold() -> None:
+def test_rounding_to_certain_digits() -> None:
     assert held(123.456789, 0.004) == 123.46
     assert held(123.456789, 0.006) == 123.5
     assert held(-98765.0, 300.0) == -99000.0

@@ -1,4 +1,4 @@
-"""Derivatives of functions of time: against those worked out by hand, and between functions."""
+"""Derivatives of functions of time, compared with those worked out by hand and between functions."""
 
 import math
 from collections.abc import Callable
@@ -76,7 +76,7 @@ def test_constants_splines_and_polynomials() -> None:
     np.testing.assert_allclose(derivatives(cube, 2.0), [49, 62, 54, 24])
 
 
-def test_what_cannot_be_differentiated_is_said() -> None:
+def test_other_functions_are_refused() -> None:
     for function in (
         lambda t: math.sin(t),
         lambda t: np.arctan2(t, 1),

@@ -20,8 +20,8 @@ from grashof.live.requests import beginning
 from grashof.live.server import HEADERS, HOST, Live, application
 from grashof.live.solvers import Solvers
 from grashof.problems import problem_text
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.files.toml_file import document_of
 
 DOCUMENT = document_of(problem_text("luggage"), "luggage.toml")
 

@@ -20,7 +20,7 @@ from grashof.live.requests import job_of as job_from
 from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
-from grashof.problems.files.toml_file import document_of
+from grashof.problems.files.on_disk import document_of
 from grashof.synth import Result
 
 Run = Callable[[Coroutine[Any, Any, Any]], Any]

@@ -21,7 +21,7 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.study.asked import ON_REQUEST
 from grashof.study.section import Section
 from grashof.study.sweep import Sweep

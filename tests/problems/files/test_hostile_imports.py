@@ -7,6 +7,7 @@ import random
 from collections.abc import Callable
 from io import BytesIO, StringIO
 from pathlib import Path
+from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import ezdxf
@@ -16,10 +17,9 @@ from refusals import refusal
 
 from grashof import load
 from grashof.problems import ProblemError
-from grashof.problems.files import toml_file
-from grashof.problems.files.drawing_files import outlines_of
-from grashof.problems.files.dxf_lines import dxf_drawing
-from grashof.problems.files.foreign import Budget
+from grashof.problems.files import on_disk
+from grashof.problems.files.dxf_lines import Budget, dxf_drawing
+from grashof.problems.files.named_files import outlines_of
 from grashof.problems.files.spreadsheet import rows_of
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{}</svg>'
@@ -27,7 +27,7 @@ LINE = '<path d="M 0 0 L 3 4"/>'
 
 
 def refused(folder: Path, name: str, content: bytes | str) -> str:
-    """What is said of a file; one line."""
+    """The one line with which a file is refused."""
     (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     read = rows_of if name.endswith(("xlsx", "csv")) else lambda *at: outlines_of(*at, "")
     line = refusal(read, name, folder)
@@ -77,10 +77,7 @@ def outlines_of_text(folder: Path, text: str) -> list[list[list[float]]]:
     "drawn",
     [
         '<path d="T 1 1"/>',
-        '<path d="1 2 3"/>',
-        '<path d="M nan 1 L 1 1"/>',
         '<path d="M 1e999 0 L 1 1"/>',
-        '<g transform="matrix(1 2 3)"><path d="M 0 0 L 1 1"/></g>',
         '<g transform="rotate(1e400)"><path d="M 0 0 L 1 1"/></g>',
         '<rect width="x" height="1"/>',
         '<path d="A 1"/>',
@@ -149,15 +146,20 @@ def test_dxf_blocks_that_expand(tmp_path: Path, work: Callable[[], int]) -> None
     assert [line.tolist() for line in lines] == [[[5, 0], [6, 1]], [[5, 10], [6, 11]]]
 
 
-@pytest.mark.parametrize("number", [float("nan"), float("inf"), 1e300])
-def test_dxf_numbers_are_checked_before_curves_are_divided(tmp_path: Path, number: float) -> None:
-    for change in (
-        lambda document: document.modelspace().add_circle((0, 0), number),
-        lambda document: document.modelspace().add_line((0, number), (1, 1)),
-        lambda document: document.modelspace().add_lwpolyline([(0, 0), (1, 0, 0, 0, number), (2, 1)]),
-        lambda document: document.modelspace().add_ellipse((0, 0), (1, 0), 0.5, 0, number),
-    ):
-        refused(tmp_path, "a.dxf", dxf(change))
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda space: space.add_circle((0, 0), 1e300),
+        lambda space: space.add_line((0, float("nan")), (1, 1)),
+        lambda space: space.add_lwpolyline([(0, 0), (1, 0, 0, 0, float("inf")), (2, 1)]),
+        lambda space: space.add_ellipse((0, 0), (1, 0), 0.5, 0, 1e300),
+    ],
+    ids=["circle", "line", "bulge", "ellipse"],
+)
+def test_dxf_numbers_are_checked_before_curves_are_divided(
+    tmp_path: Path, change: Callable[[Any], object]
+) -> None:
+    refused(tmp_path, "a.dxf", dxf(lambda document: change(document.modelspace())))
 
 
 def workbook(change: Callable[[openpyxl.worksheet.worksheet.Worksheet], object]) -> bytes:
@@ -178,7 +180,7 @@ def test_workbooks_with_a_cell_far_away(tmp_path: Path) -> None:
 def test_a_workbook_that_unpacks_to_more_than_it_should(tmp_path: Path) -> None:
     stream = BytesIO(workbook(lambda sheet: sheet.append(["x", "y"])))
     with ZipFile(stream, "a", ZIP_DEFLATED) as parts:
-        parts.writestr("xl/filling.xml", b" " * 2**25)
+        parts.writestr("xl/filling.xml", b" " * (on_disk.MOST_BYTES + 1))
     assert "bytes when it is unpacked" in refused(tmp_path, "a.xlsx", stream.getvalue())
 
 
@@ -234,7 +236,7 @@ def _repacked(content: bytes, rng: random.Random) -> bytes:
 def test_tables_of_text(tmp_path: Path) -> None:
     assert "field larger than field limit" in refused(tmp_path, "a.csv", f"x,y\n1,{'2' * 200_000}\n")
     assert refused(tmp_path, "a.csv", "\n" * 30_000) == "has more than 20000 lines; it must have at most that"
-    assert toml_file.MOST_BYTES < 10**7
+    assert on_disk.MOST_BYTES < 10**7
     assert "bytes; a CSV file must have at most that" in refused(tmp_path, "a.csv", "1,2\n" * 2_000_000)
 
 
@@ -252,14 +254,8 @@ def test_pipes_and_devices_are_not_read(tmp_path: Path) -> None:
             outlines_of("a.svg", tmp_path, "")
 
 
-@pytest.mark.slow
 def test_lists_are_as_long_as_tables_at_most(tmp_path: Path) -> None:
     path = tmp_path / "long.toml"
-    for count, wrong in ((10_001, True), (10_000, False)):
-        points = ", ".join(f"[{k}, {k % 7}]" for k in range(count))
-        path.write_text(f'kind = "path"\n[path]\npoints = [{points}]\n')
-        if wrong:
-            with pytest.raises(ProblemError, match="it must be a list of at most 10000 entries"):
-                load(path)
-        else:
-            assert len(load(path).task) == count
+    path.write_text(f'kind = "path"\n[path]\npoints = {[[0, 0]] * 10_001}\n')
+    with pytest.raises(ProblemError, match="it must be a list of at most 10000 entries"):
+        load(path)

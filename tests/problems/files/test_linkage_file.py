@@ -1,4 +1,4 @@
-"""Linkage files: the catalogue, what a file may say, and what is refused by name."""
+"""Linkage files: the catalogue, valid files, and errors by name."""
 
 from __future__ import annotations
 
@@ -93,11 +93,6 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN + "speed_rpm = 3", "speed_rpm is unknown; did you mean dynamics.speed_rpm?"),
         (PLAIN + "[dynamics]\nspeed = 3", "dynamics.speed is unknown; did you mean speed_rpm?"),
         (PLAIN + "[dynamics]\npayload = 3", "length_unit is ''; it must be one of mm"),
-        (PLAIN + "[dynamics]\nmasses = [1, 2, 3]", "dynamics.inertias is missing"),
-        (PLAIN + "[dynamics]\nmasses = [1, 2]\ninertias = [1, 2, 3]", "masses has 2 entries; it must have 3"),
-        (PLAIN + "[dynamics]\npayload = -1", "dynamics.payload is -1; it must be a number from zero"),
-        (PLAIN + "[dynamics]\ngravity = [0, nan]", "dynamics.gravity[1] is nan"),
-        (PLAIN + "[dynamics]\nspeed_rpm = inf", "dynamics.speed_rpm is inf"),
         (PLAIN + "dynamics = 3", "dynamics is 3; it must be a table"),
         (PLAIN + "r1 = 4", "r1 is given besides o4"),
         (PLAIN + "assembly = 2", "assembly is 2; it must be +1 or -1"),
@@ -105,19 +100,17 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN + "body_angle_deg = nan", "body_angle_deg is nan"),
         (PLAIN + "body_angle_deg = 36001", "body_angle_deg is 36001; it must be from -36000 to 36000"),
         (PLAIN.replace("r2 = 1", "r2 = -1"), "r2 is -1.0; it must be greater than zero"),
-        (PLAIN.replace("r2 = 1", "r2 = 'x'"), "r2 is 'x'; it must be a number"),
         (PLAIN.replace("r2 = 1\n", ""), "r2 is missing"),
         (PLAIN.replace("o4 = [4, 0]\n", ""), "o4 is missing; give it, or r1"),
         (PLAIN.replace("o4 = [4, 0]", "r1 = 0"), "r1 is 0; it must be greater than zero"),
         (PLAIN.replace("[4, 0]", "[0, 0]"), "o4 is where o2 is"),
         (PLAIN.replace("[4, 0]", "[4, 0, 0]"), "it must be [x, y]"),
         (PLAIN.replace("[4, 0]", "[1e300, 0]"), "o4 is 1e+300; it must be from -1e+20 to 1e+20"),
-        (PLAIN.replace("[4, 0]", "[inf, 0]"), "all numbers must be finite"),
         ("r2 = ", "is not TOML"),
         ("kind = 'motion'", "is a problem; solve it, then name a design: mine-designs/candidates.json#1"),
     ],
 )  # fmt: skip
-def test_what_a_file_may_not_say(tmp_path: Path, text: str, message: str) -> None:
+def test_bad_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
     answer = refusal(load_linkage, written(tmp_path, text))
     assert message in answer
     assert answer.startswith(str(tmp_path))
@@ -134,7 +127,7 @@ def test_speed_and_gravity_need_no_masses(tmp_path: Path) -> None:
         assert spec.dynamics == expected
 
 
-def test_a_name_that_is_none() -> None:
+def test_unknown_names() -> None:
     for name, message in [
         ("pumpjak", "did you mean pumpjack?"),
         (
@@ -198,7 +191,7 @@ def test_a_design_of_a_list(tmp_path: Path) -> None:
 
 
 def edited(**changes: Any) -> str:
-    """The list with its design, or what stands beside the designs, changed by hand."""
+    """The list with its design, or an entry beside the designs, changed by hand."""
     content = json.loads(listed())
     for key, value in changes.items():
         (content if key in ("title", "length_unit", "dynamics") else content["designs"][0])[key] = value
@@ -209,7 +202,6 @@ def edited(**changes: Any) -> str:
     ("changes", "message"),
     [
         ({"direction": 0}, "#3: direction is 0; it must be +1 or -1"),
-        ({"direction": 2}, "#3: direction is 2; it must be +1 or -1"),
         ({"direction": "x"}, "#3: direction is 'x'; it must be +1 or -1"),
         ({"dynamics": 5}, "#3: dynamics is 5; it must be a table"),
         ({"dynamics": {"masse": [1, 1, 1]}}, "#3: dynamics.masse is unknown; did you mean masses?"),
@@ -220,9 +212,7 @@ def edited(**changes: Any) -> str:
         ),
         ({"length_unit": None}, "#3: length_unit is"),
         ({"rank": float("inf")}, "is not a list of designs"),
-        ({"rank": -1}, "is not a list of designs"),
         ({"rank": 1.5}, "is not a list of designs"),
-        ({"rank": True}, "is not a list of designs"),
         ({"rank": 10**40}, "is not a list of designs"),
         ({"linkage": 5}, "states no linkage"),
     ],
@@ -241,10 +231,9 @@ TARGETS = {"id": "x", "theta2": [0.1, 0.2], "assembly": [1, 1], "position_error"
 @pytest.mark.parametrize(
     "changes",
     [
-        {"theta2": []}, {"theta2": [0.1]}, {"theta2": [0.1, float("inf")]}, {"theta2": [0.1, 1e300]},
-        {"assembly": [1, 0]}, {"assembly": [1, float("inf")]}, {"assembly": [1]}, {"assembly": None},
-        {"position_error": []}, {"position_error": [10**400, None]}, {"position_error": [0.0, float("nan")]},
-        {"position_error": "12"}, {"angle_error": [0.1, "x"]}, {"angle_error": [0.1]}, {"angle_error": None},
+        {"theta2": []}, {"theta2": [0.1]}, {"theta2": [0.1, 1e300]}, {"assembly": [1, 0]}, {"assembly": None},
+        {"position_error": [10**400, None]}, {"position_error": [0.0, float("nan")]},
+        {"angle_error": [0.1, "x"]}, {"angle_error": [0.1]},
     ],
 )  # fmt: skip
 def test_targets_edited_by_hand(tmp_path: Path, changes: dict[str, Any]) -> None:
@@ -256,12 +245,6 @@ def test_targets_edited_by_hand(tmp_path: Path, changes: dict[str, Any]) -> None
         load_design(path, "3")
 
 
-def test_a_title_that_no_file_can_hold(tmp_path: Path) -> None:
-    path = tmp_path / "candidates.json"
-    path.write_text(edited(title="\ud800 1"))
-    assert load_linkage_spec(f"{path}#3").title == "? 1: design 3"
-
-
 def test_a_file_name_that_is_not_text(tmp_path: Path) -> None:
     path = tmp_path / os.fsdecode(b"caf\xe9.toml")
     try:
@@ -271,7 +254,7 @@ def test_a_file_name_that_is_not_text(tmp_path: Path) -> None:
     assert load_linkage_spec(path).name == "caf?"
 
 
-def test_all_errors_are_told_a_line_each(tmp_path: Path) -> None:
+def test_all_errors_are_reported_a_line_each(tmp_path: Path) -> None:
     text = "o2 = [1, 2, 3]\no4 = [1e30, 0]\nr2 = -1\nr3 = 0\nr4 = 'x'\ncoupler = 2\noutput_arm = -1\n"
     path = written(tmp_path, text)
     assert refusal(load_linkage, path).splitlines() == [
@@ -300,7 +283,8 @@ def test_a_design_of_a_list_knows_its_problem(tmp_path: Path) -> None:
     assert problem is not None
     assert isinstance(problem.task, MotionTask)
     assert (problem.name, problem.task.body is not None) == ("p", True)
-    assert load_linkage_spec(f"{path}#3") == load_linkage_spec(f"{path}#3")
+    path.write_text(edited(title="\ud800 1"))  # no file can hold it
+    assert load_linkage_spec(f"{path}#3").title == "? 1: design 3"
 
 
 @pytest.mark.parametrize(
@@ -315,14 +299,14 @@ def test_a_design_of_a_list_knows_its_problem(tmp_path: Path) -> None:
 def test_a_list_of_another_version_is_refused_in_one_line(tmp_path: Path, text: str, said: str) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(listed().replace("{", f'{{"grashof": "9.8", "problem_toml": {text}, ', 1))
-    told = refusal(load_linkage_spec, f"{path}#3")
+    text = refusal(load_linkage_spec, f"{path}#3")
     begin = f"{path}: was written by grashof 9.8, and grashof {version('grashof')} cannot read its problem: "
-    assert told.startswith(begin + said)
-    assert "\n" not in told
+    assert text.startswith(begin + said)
+    assert "\n" not in text
 
 
-@pytest.mark.parametrize("writer", ["9\n9" * 50, 5, None, "x" * 5000, "\x1b[31m", "\u2028", "é"])
-def test_whatever_wrote_a_list_is_told_in_one_line(tmp_path: Path, writer: Any) -> None:
+@pytest.mark.parametrize("writer", ["9\n9" * 50, 5, "x" * 5000, "\x1b[31m"])
+def test_any_writer_of_a_list_is_reported_in_one_line(tmp_path: Path, writer: Any) -> None:
     path = tmp_path / "candidates.json"
     path.write_text(json.dumps(json.loads(listed()) | {"grashof": writer, "problem_toml": 5}))
     said = refusal(load_linkage_spec, f"{path}#3").removeprefix(str(path))

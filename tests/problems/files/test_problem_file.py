@@ -22,13 +22,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def refused(problem: str | os.PathLike[str]) -> str:
-    told = refusal(load, problem)
-    assert "\n" not in told
-    return told
+    said = refusal(load, problem)
+    assert "\n" not in said
+    return said
 
 
 @pytest.mark.parametrize("name", catalogue())
-def test_every_problem_of_the_catalogue_loads_and_says_what_it_is(name: str) -> None:
+def test_every_problem_of_the_catalogue_loads_with_title_and_source(name: str) -> None:
     problem = load(name)
     assert problem.name == name
     assert problem.title
@@ -44,7 +44,7 @@ def test_the_catalogue_is_sorted_and_is_the_folder() -> None:
     assert "luggage" in catalogue()
 
 
-def test_the_luggage_problem_is_the_one_asked_for() -> None:
+def test_the_luggage_problem_is_that_of_the_report() -> None:
     luggage = load("luggage")
     assert luggage.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
     assert luggage.requirements.rotatability is Rotatability.FULL_CRANK
@@ -102,13 +102,10 @@ NOWHERE = "there is no such file;"
     ("name", "said"),
     [
         ("lugage", f"'lugage' {NEITHER} did you mean luggage?"),
-        ("zzzz", f"'zzzz' {NEITHER} the catalogue has {', '.join(catalogue())}"),
         ("", f"'' {NEITHER} *"),
         ("lugage.toml", f"lugage.toml: {NOWHERE} did you mean luggage?"),
-        ("./zzzz.toml", f"zzzz.toml: {NOWHERE} the catalogue*"),
         ("no/such/folder", f"no/such/folder: {NOWHERE} *"),
         ("sub", "sub: is a folder; it must be a problem file"),
-        ("odd.toml", "odd.toml: is a folder; it must be a problem file"),
         ("mine.toml/luggage.toml", "mine.toml/luggage.toml: *"),
         ("latin.toml", "latin.toml: is not UTF-8 text, at byte 12"),
         ("a\0b.toml", r"'a\x00b.toml': cannot be read: embedded null*"),
@@ -117,16 +114,15 @@ NOWHERE = "there is no such file;"
     ],
     ids=lambda text: text[:30],
 )
-def test_what_is_no_problem_file_is_said(folder: Path, name: str, said: str) -> None:
+def test_names_of_other_files_are_refused(folder: Path, name: str, said: str) -> None:
     (folder / "sub").mkdir()
-    (folder / "odd.toml").mkdir()
     (folder / "mine.toml").write_text(GOOD, encoding="utf-8")
     (folder / "latin.toml").write_bytes('title = "Gelände"'.encode("latin-1"))
     assert fnmatchcase(refused(name).replace(os.sep, "/"), said.replace("luggage?", "luggage[?]"))
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root reads everything")
-def test_file_without_leave_to_read(folder: Path) -> None:
+def test_a_file_without_permission(folder: Path) -> None:
     path = folder / "locked.toml"
     path.write_text(GOOD, encoding="utf-8")
     path.chmod(0)
@@ -137,9 +133,7 @@ def test_file_without_leave_to_read(folder: Path) -> None:
     ("text", "expected"),
     [
         ('kind = "motion"\nposes = [1,,2]', "is not TOML: Invalid value (at line 2, column 12)"),
-        ("kind = motion", "is not TOML: Invalid value (at line 1, column 8)"),
         ("a = 1\na = 2\n", "is not TOML: a key or table is given twice (at line 2, column 6)"),
-        ("seed = " + "9" * 5000, "is not TOML: Exceeds the limit"),
         ("a = " + "[" * 100_000, "is not TOML: "),
     ],
 )
@@ -155,7 +149,7 @@ def test_errors_inside_a_file_begin_with_its_name(folder: Path) -> None:
     assert refused("empty.toml") == "empty.toml: kind is missing"
 
 
-def test_importing_the_package_does_not_load_what_only_files_need() -> None:
+def test_importing_the_package_loads_no_libraries_for_files() -> None:
     code = "import sys, grashof.problems; print(sorted({'pydantic', 'casadi', 'shapely'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

@@ -1,4 +1,4 @@
-"""Kinds of linkages in problem files: which are asked for, and what belongs to which."""
+"""Kinds of linkages in problem files, and the limits and goals of each."""
 
 import tomllib
 from dataclasses import replace
@@ -11,8 +11,7 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import having
-from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.requirements import QUANTITIES
 
 POINTS = "[path]\npoints = [[0, 0], [1, 0], [2, 1], [3, 0]]\n"
 TASK = PathTask([[0, 0], [1, 0], [2, 1], [3, 0]])
@@ -29,41 +28,36 @@ def message(mechanism: str, requirements: str = "") -> str:
 
 
 @pytest.mark.parametrize(
-    ("given", "meant"),
+    ("given", "expected"),
     [
         ("", ("four-bar",)),
-        ('"four-bar"', ("four-bar",)),
-        ('"slider-crank"', ("slider-crank",)),
         ('["inverted-slider-crank"]', ("inverted-slider-crank",)),
         ('["slider-crank", "four-bar"]', ("slider-crank", "four-bar")),
     ],
 )
-def test_the_kinds_that_are_asked_for_come_back(given: str, meant: tuple[str, ...]) -> None:
-    asked = problem(given)
-    assert asked.mechanism == meant
-    again = problem_of(problem_toml(asked), "here", "test")
-    assert again.mechanism == meant
+def test_kinds_come_back(given: str, expected: tuple[str, ...]) -> None:
+    made = problem(given)
+    assert made.mechanism == expected
+    again = problem_of(problem_toml(made), "here", "test")
+    assert again.mechanism == expected
 
 
-def test_a_problem_for_four_bars_is_written_as_ever() -> None:
+def test_four_bars_are_not_written() -> None:
     assert "mechanism" not in problem_toml(Problem(task=TASK))
 
 
 NO_KINDS = """
 "slider-crnk" | mechanism is 'slider-crnk'; did you mean slider-crank?
-"Slider-Crank" | mechanism is 'Slider-Crank'; did you mean slider-crank?
 ["four-bar", "foubar"] | mechanism[1] is 'foubar'; did you mean four-bar?
 "wheel" | mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank
 ["four-bar", "four-bar"] | mechanism has four-bar 2 times
 [] | mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
-4 | mechanism is 4; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
 [4] | mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank
-[["four-bar"]] | mechanism[0] is ['four-bar']; it must be four-bar, slider-crank or inverted-slider-crank
 """
 
 
 @pytest.mark.parametrize(("given", "line"), rows(NO_KINDS))
-def test_what_is_no_kind_is_refused_in_one_line(given: str, line: str) -> None:
+def test_unknown_kinds_are_refused_in_one_line(given: str, line: str) -> None:
     assert message(given) == line
 
 
@@ -86,32 +80,11 @@ def test_requirements_that_no_kind_has_are_refused(given: str, requirements: str
 
 
 def test_a_mixed_list_may_limit_what_one_of_its_kinds_has() -> None:
-    asked = problem(
+    made = problem(
         '["four-bar", "slider-crank"]', "r4 = [1, 2]\noffset = [-1, 1]\nstroke = [2, 3]\nslide_angle_deg = 20"
     )
-    assert (asked.requirements.r4, asked.requirements.offset) == ((1, 2), (-1, 1))
-    assert (asked.requirements.stroke, asked.requirements.slide_angle_deg) == ((2, 3), 20)
-
-
-def test_goals_that_no_kind_has_are_refused() -> None:
-    with pytest.raises(
-        ProblemError, match=r"objective.maximise.output_swing does not go with mechanism slider-crank"
-    ):
-        problem_from(
-            tomllib.loads(
-                f'kind = "path"\nmechanism = "slider-crank"\n{POINTS}[objective]\nmaximise = "output_swing"'
-            ),
-            "test",
-        )
-
-
-@pytest.mark.parametrize("name", LIMITS)
-def test_kinds_that_have_a_limit_are_known(name: str) -> None:
-    kinds = LIMITS[name].quantity.kinds
-    assert set(kinds) <= set(ONE_LOOP)
-    for column in (name, f"{name}_x"):
-        if having(column):
-            assert kinds == having(column)
+    assert (made.requirements.r4, made.requirements.offset) == ((1, 2), (-1, 1))
+    assert (made.requirements.stroke, made.requirements.slide_angle_deg) == ((2, 3), 20)
 
 
 def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
@@ -122,7 +95,7 @@ def test_every_column_of_a_linkage_is_a_quantity_of_its_kind() -> None:
         assert all(word in listed[name].kinds for name in columns)
 
 
-def test_python_may_say_it_with_a_word() -> None:
+def test_a_kind_may_be_a_single_word_in_python() -> None:
     assert Problem(task=TASK, mechanism="slider-crank").mechanism == ("slider-crank",)  # type: ignore[arg-type]
     with pytest.raises(ProblemError, match=r"requirements.offset does not go with mechanism four-bar"):
         Problem(task=TASK, requirements=Requirements(offset=(0, 1)))

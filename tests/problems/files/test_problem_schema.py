@@ -7,8 +7,6 @@ import tomllib
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from refusals import MOTION, POSES, message, problem, rows
 
 from grashof.problems import (
@@ -74,7 +72,7 @@ seed = 4
 effort = 2.5
 """
 
-# Limits of what takes masses, tolerances or a whole turn.
+# Limits that need masses, tolerances or a full turn.
 EVERY_LIMIT = f"""{MOTION}
 closed = true
 [requirements]
@@ -185,8 +183,8 @@ def test_the_examples_above_use_every_requirement() -> None:
     assert used == fields - function
 
 
-def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:
-    plain = problem(MOTION)
+def test_absent_keys_have_the_defaults_of_the_value_types() -> None:
+    plain = problem(MOTION + "[scene]\n[requirements]\n[objective]\n[search]\n")
     assert plain.requirements == Requirements()
     assert plain.objective == Objective()
     assert plain.search == Search()
@@ -196,45 +194,15 @@ def test_what_is_not_said_has_the_defaults_of_the_value_types() -> None:
     assert plain.task.angle_length == plain.task.size == pytest.approx(math.sqrt(32))
 
 
-def test_empty_tables_change_nothing() -> None:
-    text = MOTION + "[scene]\n[requirements]\n[objective]\n[search]\n"
-    assert problem(text).requirements == Requirements()
-    assert problem(text).objective == Objective()
-
-
-@pytest.mark.parametrize("count", [2, 3, 7])
-def test_other_numbers_of_poses_load(count: int) -> None:
-    poses = [[n, n * n, 10 * n] for n in range(count)]
-    assert len(problem(f'kind = "motion"\n[motion]\nposes = {poses}').task) == count
-
-
-@given(
-    st.lists(
-        st.tuples(*[st.floats(-1e6, 1e6) | st.integers(-1000, 1000)] * 3),
-        min_size=2,
-        max_size=6,
-        unique_by=lambda pose: (float(pose[0]), float(pose[1])),
-    )
-)
-def test_poses_come_through_unchanged(poses: list[tuple[float, float, float]]) -> None:
-    text = f'kind = "motion"\n[motion]\nposes = {[list(pose) for pose in poses]}'
-    task = problem(text).task
-    assert task.positions.tolist() == [[x, y] for x, y, _ in poses]
-    assert task.angles.tolist() == np.radians([angle for _, _, angle in poses]).tolist()
-
-
 DRIVEN = 'length_unit = "m"\n{}\n[objective]\nmaximise = {}\n[dynamics]\nmass_per_length = 2\n'
 
 
 @pytest.mark.parametrize(
     ("maximise", "expected"),
     [
-        ("'transmission'", Objective(1, 0)),
         ("'compactness'", Objective(0, 1)),
         ("{ compactness = 3 }", Objective(0, 3)),
-        ("{ transmission = 0.5 }", Objective(0.5, 0)),
         ("'torque'", Objective(0, 0, 1)),
-        ("{ transmission = 1, torque = 0.1 }", Objective(1, 0, 0.1)),
         ("{ torque = 2, compactness = 1 }", Objective(0, 1, 2)),
     ],
 )
@@ -242,13 +210,9 @@ def test_objective(maximise: str, expected: Objective) -> None:
     assert problem_from(tomllib.loads(DRIVEN.format(MOTION, maximise)), "test").objective == expected
 
 
-@pytest.mark.parametrize("maximise", ["'torque'", "{ transmission = 1, torque = 0.1 }"])
-def test_the_torque_as_an_objective_needs_masses(maximise: str) -> None:
+def test_the_torque_as_an_objective_needs_masses_and_a_motion() -> None:
     expected = "dynamics is missing; objective.maximise.torque needs it"
-    assert message(f"{MOTION}[objective]\nmaximise = {maximise}") == expected
-
-
-def test_the_torque_as_an_objective_needs_a_motion() -> None:
+    assert message(f"{MOTION}[objective]\nmaximise = 'torque'") == expected
     text = DRIVEN.format(MOTION, "'torque'") + "[requirements]\nsame_branch = false"
     with pytest.raises(ProblemError, match=r"requirements\.same_branch is false; it must be true when"):
         problem_from(tomllib.loads(text), "test")
@@ -282,21 +246,16 @@ def test_a_cylinder_is_read_with_all_its_keys() -> None:
 BAD_CYLINDERS = """
 closed = [9, 3] | driver.cylinder.closed is [9, 3]: lo exceeds hi; it must be [lo, hi] with lo <= hi
 closed = [0, 0] | driver.cylinder.closed is [0, 0]; its greatest length must be above zero
-closed = [nan, 1] | driver.cylinder.closed[0] is nan; it must be a finite number
 ratio_max = 2.5 |
     driver.cylinder.ratio_max is 2.5; it must be above 1 and below 2: a rod is no longer than its cylinder
-ratio_max = 1 |
-    driver.cylinder.ratio_max is 1; it must be above 1 and below 2: a rod is no longer than its cylinder
 on = [] | driver.cylinder.on is []; it must be a list of some of driver, coupler, output
 on = ["ground"] | driver.cylinder.on[0] is 'ground'; it must be one of driver, coupler, output
 base = { x = [3, 1] } | driver.cylinder.base.x is [3, 1]; it must be [lo, hi] with lo <= hi
-bore = 3 | driver.cylinder.bore is unknown; the keys are closed, ratio_max, on, base
-base = { xx = [3, 1] } | driver.cylinder.base.xx is unknown; did you mean x?
 """
 
 
 @pytest.mark.parametrize(("text", "line"), rows(BAD_CYLINDERS))
-def test_cylinders_that_cannot_be_are_refused_in_a_line(text: str, line: str) -> None:
+def test_impossible_cylinders_are_refused_in_a_line(text: str, line: str) -> None:
     assert message(f"{MOTION}[driver]\ncylinder = {{ {text} }}\n") == line
 
 
@@ -313,7 +272,7 @@ closed = true\n<DRIVEN> | motion.closed is true; it must be false with driver.cy
 
 
 @pytest.mark.parametrize(("text", "said"), rows(NOT_BY_CYLINDERS, DRIVEN="[driver]\ncylinder = {}\n"))
-def test_what_a_cylinder_cannot_do_is_refused_in_a_line(text: str, said: str) -> None:
+def test_impossible_tasks_of_a_cylinder_are_refused_in_a_line(text: str, said: str) -> None:
     assert message(MOTION + text) == said
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from refusals import MOTION, PATH, POSES, message, problem, refusal, rows
 
-from grashof.problems import MotionTask, PathTask, Problem, ProblemError, StrokeTask, load
+from grashof.problems import MotionTask, PathTask, Problem, ProblemError, StrokeTask
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 
@@ -24,17 +24,8 @@ def test_every_key_of_a_path_reaches_its_field() -> None:
     assert (plain.timing, plain.closed) == (None, False)
 
 
-@pytest.mark.parametrize(("given", "expected"), [("true", True), ("false", False), (None, None)])
-@pytest.mark.parametrize("head", [MOTION, PATH])
-def test_exact_is_true_false_or_left_to_the_task(head: str, given: str | None, expected: bool | None) -> None:
-    text = head + ("" if given is None else f"[requirements]\nexact = {given}")
-    assert problem(text).requirements.exact is expected
-
-
 PATHS = r"""
-<PATH>timing = [0, 1, 2] | path.timing is unknown; did you mean timing_deg?
 <PATH>poses = 3 | path.poses is unknown; did you mean motion.poses?
-<PATH>closed = 1 | path.closed is 1; it must be true or false
 <PATH>timing_deg = 20 | path.timing_deg is 20; it must be a list of angles
 <PATH>timing_deg = [0, '20', 40] | path.timing_deg[1] is '20'; it must be a number
 kind = "path" | path is missing
@@ -45,8 +36,6 @@ kind = "path"\n[motion]\n<POSES> | motion does not belong to kind = "path"
 kind = "path"\n[paht]\npoints = [[1, 2]] | paht is unknown; did you mean path?
 kind = "path"\n[path]\npoints = 5 |
     path.points is 5; it must be a list of points [x, y], or a .csv or .xlsx file
-kind = "path"\n[path]\npoints = [5] | path.points[0] is 5; it must be a point [x, y]
-kind = "path"\n[path]\npoints = [[1, 2], [3, "4"]] | path.points[1][1] is '4'; it must be a number
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4, 5], [6, 7]] |
     path.points[1] is [3.0, 4.0, 5.0], 3 numbers; it must be a point [x, y]
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4]] | path.points has 2 points; it must have three or more
@@ -64,8 +53,9 @@ KEEP_OUT = r"""
     requirements.keep_out[1] has no area: its corners lie on a straight line
 [[[0, 0], [2, 2], [2, 0], [0, 2]]] |
     requirements.keep_out[0] crosses or touches itself at (1, 1); it must be a simple polygon
+[[[0, 0], [2, 0], [2, 2], [1, 0], [0, 2]]] |
+    requirements.keep_out[0] crosses or touches itself at (1, 0); it must be a simple polygon
 [[[0, 0], [1, nan], [1, 1]]] | requirements.keep_out[0][1] is [1.0, nan]; all numbers must be finite
-[[[0, 0], [1, 'a'], [1, 1]]] | requirements.keep_out[0][1][1] is 'a'; it must be a number
 [[[0, 0], [1, 1]], [[0, 0], [2, 0], [1, 1]], [[0, 0], [1, 0], [2, 0]]] |
     requirements.keep_out[0] has 2 distinct corners; it must have three or more\n
     requirements.keep_out[2] has no area: its corners lie on a straight line
@@ -102,15 +92,10 @@ NUMBER_OR_LIST = "it must be a number, or a list of one for each target"
 BAD_ZONES = r"""
 within = '6' | motion.within is '6'; <NUMBER_OR_LIST>
 within = true | motion.within is true; <NUMBER_OR_LIST>
-within = { x = 1 } | motion.within is a table; <NUMBER_OR_LIST>
 within = [1, 2] | motion.within has 2 numbers for 4 targets;
-within = [] | motion.within has 0 numbers for 4 targets;
 within = [1, true, 1, 1] | motion.within[1] is true; it must be a number
 within = [1, [1], 1, 1] | motion.within[1] is [1]; it must be a number
 within = 0 | motion.within is 0; it must be
-within = -1 | motion.within is -1; it must be
-within = nan | motion.within is nan; it must be
-within = inf | motion.within is inf; it must be
 within = 1e300 | motion.within is 1e+300; it must be
 within = [1, 1, 1, 1e-13] | motion.within[3] is 1e-13; it must be
 angle_within_deg = 181 | motion.angle_within_deg is 181; it must be from 1e-10 to 180
@@ -121,7 +106,6 @@ within = 1\n[requirements]\nerror_factor = 2 |
 [requirements]\nerror_factor = 2 | requirements.error_factor needs least squares, exact = false
 [requirements]\nerror_factor = 0.9 | requirements.error_factor is 0.9; it must be from 1 to 1e+06
 [search]\neffort = 0.1 | search.effort is 0.1; it must be from 0.2 to 10000
-[search]\neffort = inf | search.effort is inf; it must be a finite number
 [requirements]\nexact = false\n[objective]\nmaximise = 'transmission' |
     objective is of no effect in least squares;
 """
@@ -129,15 +113,15 @@ within = 1\n[requirements]\nerror_factor = 2 |
 
 @pytest.mark.parametrize(("text", "said"), rows(BAD_ZONES, NUMBER_OR_LIST=NUMBER_OR_LIST))
 def test_bad_zones_are_one_line(text: str, said: str) -> None:
-    told = message(MOTION + text)
-    assert told.startswith(said)
-    assert "\n" not in told
+    found = message(MOTION + text)
+    assert found.startswith(said)
+    assert "\n" not in found
 
 
-def test_zones_of_a_path_are_told_beside_other_errors() -> None:
-    told = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
-    assert told[0] == "path.points has 2 points; it must have three or more"
-    assert told[1].startswith("path.within[2] is -3; it must be ")
+def test_zones_of_a_path_are_reported_with_other_errors() -> None:
+    found = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
+    assert found[0] == "path.points has 2 points; it must have three or more"
+    assert found[1].startswith("path.within[2] is -3; it must be ")
 
 
 def stated(**stroke: Any) -> Problem:
@@ -154,14 +138,9 @@ def test_a_stroke_is_read() -> None:
     ("stroke", "messages"),
     [
         ({"swing_deg": 200, "time_ratio": 0.5}, ["stroke.swing_deg is 200; ", "stroke.time_ratio is 0.5; "]),
-        ({"swing_deg": 80, "stroke": 1, "time_ratio": 1.1}, ["stroke has both swing_deg and stroke; "]),
-        ({"time_ratio": 1.1}, ["stroke has neither swing_deg nor stroke; "]),
         ({"swing_deg": 80}, ["stroke.time_ratio is missing"]),
-        ({"swing_deg": 80, "time_ratio": 7}, ["stroke.time_ratio is 7; it must be less than 6.2 "]),
         ({"stroke": 100, "time_ratio": 1.2}, ["stroke.stroke is of a slide; a four-bar has a swing"]),
-        ({"swing": 80, "time_ratio": 1.2}, ["stroke.swing is unknown; did you mean swing_deg?"]),
         ({"swing_deg": "wide", "time_ratio": 1.2}, ["stroke.swing_deg is 'wide'; it must be a number"]),
-        ({"swing_deg": 80, "time_ratio": True}, ["stroke.time_ratio is True; it must be a number"]),
     ],
 )
 def test_each_error_is_a_line(stroke: dict[str, Any], messages: list[str]) -> None:
@@ -184,15 +163,9 @@ def test_other_tables_do_not_belong() -> None:
         problem_from({"kind": "stroke"}, "none")
 
 
-@pytest.mark.parametrize("swing", [80.0, 0.1 + 0.2, 33.3, 179.99])
+@pytest.mark.parametrize("swing", [0.1 + 0.2, 179.99])
 def test_written_and_read_again_it_is_the_same(swing: float) -> None:
     text = problem_toml(stated(swing_deg=swing, time_ratio=1.0))
     document = tomllib.loads(text)
     assert document["stroke"] == {"swing_deg": swing, "time_ratio": 1.0}
     assert problem_toml(problem_from(document, "wiper")) == text
-
-
-def test_the_catalogue_has_a_quick_return() -> None:
-    task = load("quick-return").task
-    assert isinstance(task, StrokeTask)
-    assert task.size == 120

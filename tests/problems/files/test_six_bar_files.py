@@ -1,4 +1,4 @@
-"""Linkage files and lists of six-bars: what they state comes back, and what is wrong is one clear line."""
+"""Linkage files and lists of six-bars come back; errors are one clear line."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def refused(text: str, word: str = "stephenson-3") -> list[str]:
     return refusal(read, text, word).splitlines()
 
 
-def test_what_is_not_said_is_usual() -> None:
+def test_absent_keys_have_their_defaults() -> None:
     assert read(FOUR_BAR + DYAD).linkage == PLAIN
     slider = SixBar((0, 0), (4, 0), 1, 4, 3, c=(5, 1), r5=3, slide_angle_2=0, hosts=(3, 1))
     assert read(FOUR_BAR + SLIDE).linkage == slider
@@ -50,8 +50,8 @@ def test_hosts_are_needed_where_there_are_several(row: Mechanism) -> None:
     if alone:
         assert read(FOUR_BAR + text, row.word).linkage.mechanism == row
     else:
-        told = {"watt-1": "[2, 3] or [3, 4]", "watt-2": "[2, 1] or [4, 1]"}[row.word]
-        line = f"dyad.hosts is missing; it must be {told} with mechanism {row.word}"
+        pairs = {"watt-1": "[2, 3] or [3, 4]", "watt-2": "[2, 1] or [4, 1]"}[row.word]
+        line = f"dyad.hosts is missing; it must be {pairs} with mechanism {row.word}"
         assert refused(FOUR_BAR + text, row.word) == [line]
 
 
@@ -66,73 +66,44 @@ TEXTS = {
 }
 BAD = r"""
 stephenson-3 | <PINS>kind = "RPR" | dyad.kind is 'RPR'; it must be RRR or RRP
-stephenson-3 | <PINS>kind = 3 | dyad.kind is 3; it must be a string
 watt-1 | <PINS>hosts = [3, 1] |
     dyad.hosts is [3, 1], which makes a stephenson-3; it must be [2, 3] or [3, 4] with mechanism watt-1
 stephenson-3 | <PINS>hosts = [1, 3] | dyad.hosts is [1, 3]; it must be [3, 1] with mechanism stephenson-3
 watt-2 | <PINS>hosts = 4 | dyad.hosts is 4; it must be two numbers of links
-watt-2 | <PINS>hosts = [4] | dyad.hosts is [4]; it must be two numbers of links
 watt-2 | <PINS>hosts = [4, true] | dyad.hosts[1] is true; it must be a whole number
-watt-2 | <PINS>hosts = [4, 1.0] | dyad.hosts[1] is 1.0; it must be a whole number
-stephenson-3 | <PINS>assembly = 2 | dyad.assembly is 2; it must be +1 or -1
 stephenson-3 | <PINS>offset = 1 | dyad.offset does not go with kind RRR; only RRP has it
 stephenson-3 | <PINS>slide_angle_deg = 1 | dyad.slide_angle_deg does not go with kind RRR; only RRP has it
-stephenson-3 | <PINS>host = [3, 1] | dyad.host is unknown; did you mean hosts?
 stephenson-3 | <PINS>r4 = 3 | dyad.r4 is unknown; did you mean r4?
 stephenson-3 | <BLOCK>hosts = [3, 4] |
     dyad.hosts is [3, 4]; a slide lies on the ground, so it must be [3, 1] with mechanism stephenson-3
 stephenson-3 | <BLOCK>r6 = 1 | dyad.r6 does not go with kind RRP; only RRR has it
-stephenson-3 | <BLOCK>d = [1, 2] | dyad.d does not go with kind RRP; only RRR has it
 stephenson-3 | <BLOCK>slide_angle_deg = 36001 | dyad.slide_angle_deg is 36001; it must be from -36000 to 36000
-stephenson-3 | <BLOCK>offset = inf | dyad.offset is inf; all numbers must be finite
 stephenson-3 | <FOUR_BAR> | dyad is missing
 four-bar | <PINS> | dyad does not go with mechanism four-bar; <ONLY>
-slider-crank | r2 = 1\nr3 = 4\n<DYAD> | dyad does not go with mechanism slider-crank; <ONLY>
-four-bar | <FOUR_BAR>point_link = 3 | point_link does not go with mechanism four-bar; <ONLY>
-stephenson-2 | <PINS> | mechanism is 'stephenson-2'; did you mean stephenson-3?
-watt1 | <PINS> | mechanism is 'watt1'; did you mean watt-1?
-watt-1 | <FOUR_BAR>dyad = 3 | dyad is 3; it must be a table
-watt-1 | <FOUR_BAR>dyad = [] | dyad is []; it must be a table
 watt-1 | <BLOCK> | dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism watt-1
 stephenson-1 | <BLOCK>hosts = [2, 4] |
     dyad.kind is 'RRP'; a slide lies on the ground, so it must be RRR with mechanism stephenson-1
 stephenson-3 | <PINS>hosts = [3, 0x1<ZEROS>] |
     dyad.hosts is [3, a whole number of about 6021 digits]; it must be [3, 1] with mechanism stephenson-3
 stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, 2]\nr5 = 3\n | dyad.r6 is missing
-stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, 2]\nr6 = 2\n | dyad.r5 is missing
 stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nr5 = 3\nr6 = 2\n | dyad.d is missing
-stephenson-3 | <FOUR_BAR>[dyad]\nc = [5]\nd = [6, 2]\nr5 = 3\nr6 = 2\n | dyad.c is [5]; it must be [u, v]
 stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = 6\nr5 = 3\nr6 = 2\n | dyad.d is 6; it must be [u, v]
 stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, nan]\nr5 = 3\nr6 = 2\n |
     dyad.d is [6.0, nan]; all numbers must be finite
-stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, 1e21]\nr5 = 3\nr6 = 2\n |
-    dyad.d is 1e+21; it must be from -1e+20 to 1e+20
 stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, 2]\nr5 = 0\nr6 = 2\n |
     dyad.r5 is 0.0; it must be greater than zero
-stephenson-3 | <FOUR_BAR>[dyad]\nc = [5, 1]\nd = [6, 2]\nr5 = 3\nr6 = 'x'\n |
-    dyad.r6 is 'x'; it must be a number
 stephenson-3 | <FOUR_BAR>r5 = 3\n<DYAD> | r5 is unknown; did you mean dyad.r5?
-stephenson-3 | <FOUR_BAR>offset = 3\n<SLIDE> | offset is unknown; did you mean dyad.offset?
-stephenson-3 | <FOUR_BAR>hosts = [3, 1]\n<DYAD> | hosts is unknown; did you mean dyad.hosts?
 stephenson-3 | <FOUR_BAR>output_arm = 3\n<DYAD> |
     output_arm does not go with mechanism stephenson-3; only four-bar and inverted-slider-crank have it
 stephenson-3 | <PINS>[pumping_unit]\nrod_load = 2 |
     pumping_unit does not go with mechanism stephenson-3; only four-bar has it
 stephenson-3 | <FOUR_BAR>point_link = 1\n<DYAD> |
     point_link is 1; it must be the number of a moving link, 2 to 6
-stephenson-3 | <FOUR_BAR>point_link = 7\n<DYAD> |
-    point_link is 7; it must be the number of a moving link, 2 to 6
-stephenson-3 | <FOUR_BAR>point_link = -5\n<DYAD> |
-    point_link is -5; it must be the number of a moving link, 2 to 6
-stephenson-3 | <FOUR_BAR>point_link = true\n<DYAD> | point_link is true; it must be a whole number
-stephenson-3 | o4 = [4, 0]\nr2 = 1\nr3 = 4\n<DYAD> | r4 is missing
-stephenson-3 | r2 = 1\nr3 = 4\nr4 = 3\n<DYAD> | o4 is missing; give it, or r1 with ground_angle_deg
 stephenson-3 | o4 = [0, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n<DYAD> |
     o4 is where o2 is; the ground pivots must be distinct
 stephenson-3 | <PINS>[dynamics]\nmasses = [1, 2, 3]\ninertias = [1, 2, 3, 4, 5] |
     dynamics.masses has 3 entries; it must have 5 numbers
 stephenson-3 | <PINS>[[loads]]\nlink = 7\nmoment = 1 | loads[0].link is 7; it must be 2, 3, 4, 5 or 6
-stephenson-3 | <PINS>[[loads]]\nlink = 1\nmoment = 1 | loads[0].link is 1; it must be 2, 3, 4, 5 or 6
 stephenson-3 | <PINS>[[dampers]]\nbetween = [{ link = 2 }, { link = 9 }]\ndamping = 1 |
     dampers[0].between[1].link is 9; it must be 1, 2, 3, 4, 5 or 6
 stephenson-3 | <PINS>[friction]\nviscous = [1, 2] |
@@ -150,7 +121,7 @@ stephenson-3 | <FOUR_BAR>[dyad]\nkind = "RRP"\nc = [5, 1]\nr5 = 3\nr6 = 2\nd = [
 
 
 @pytest.mark.parametrize(("word", "text", "lines"), rows(BAD, **TEXTS))
-def test_what_a_file_may_not_say(word: str, text: str, lines: str) -> None:
+def test_bad_files_are_refused(word: str, text: str, lines: str) -> None:
     assert refused(text, word) == lines.splitlines()
 
 
@@ -179,7 +150,7 @@ viscous = [1, 2, 3, 4, 5, 6, 7]
 """
 
 
-def test_what_acts_on_every_link_is_read(tmp_path: Path) -> None:
+def test_loads_on_every_link_are_read(tmp_path: Path) -> None:
     (tmp_path / "load.csv").write_text("theta6_deg,moment_nm\n0,1\n90,2\n360,1\n", encoding="utf-8")
     head = 'mechanism = "stephenson-3"\nlength_unit = "m"\n'
     (tmp_path / "mine.toml").write_text(head + FOUR_BAR + DYAD + ACTING, encoding="utf-8")

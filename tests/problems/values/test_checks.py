@@ -4,24 +4,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grashof.problems import ProblemError
+from grashof.problems.values import checks
 from grashof.problems.values.arrays import frozen_array
-from grashof.problems.values.checks import (
-    counted,
-    finite_number,
-    finite_rows,
-    limits,
-    near_miss,
-    number_within,
-    outline,
-    plain_text,
-    positive_number,
-    readable,
-    whole_number,
-)
 
 
 def test_frozen_array_is_a_read_only_copy() -> None:
@@ -31,96 +17,63 @@ def test_frozen_array_is_a_read_only_copy() -> None:
     assert frozen.tolist() == [1.0, 2.0]
     with pytest.raises(ValueError, match="read-only"):
         frozen[0] = 3.0
-
-
-def test_frozen_array_of_a_number_is_a_number() -> None:
-    assert frozen_array(3) == 3.0
     assert hash(frozen_array(3)) == hash(3.0)
 
 
 def test_finite_rows_keeps_the_rows() -> None:
     mixed: Any = [(1, 2), np.array([3.0, 4.0])]
-    rows = finite_rows(mixed, 2, "here", "a point")
+    rows = checks.finite_rows(mixed, 2, "here", "a point")
     assert rows.tolist() == [[1, 2], [3, 4]]
-    assert finite_rows([], 3, "here", "a point").shape == (0, 3)
+    assert checks.finite_rows([], 3, "here", "a point").shape == (0, 3)
 
 
 @pytest.mark.parametrize(
     ("rows", "message"),
     [
         (5, "here is 5; it must be a list, each entry a point"),
-        ("ab", "here is 'ab'; it must be a list, each entry a point"),
         ([[1, 2], [3]], r"here\[1\] is \[3\], 1 number; it must be a point"),
         ([[1, 2, 3]], r"here\[0\] is \[1, 2, 3\], 3 numbers; it must be a point"),
-        ([[1, 2], 3], r"here\[1\] is 3, not a plain list of numbers; it must be a point"),
-        ([[[1, 2]]], r"here\[0\] is \[\[1, 2\]\], not a plain list of numbers"),
         ([[[1, 2], [3]]], r"here\[0\] is \[\[1, 2\], \[3\]\]; it must be a point"),
         ([[1, "2"]], r"here\[0\] is \[1, '2'\]; it must be a point"),
-        ([["1", "2"]], r"here\[0\] is \['1', '2'\]; it must be a point"),
         ([[True, False]], r"here\[0\] is \[True, False\]; it must be a point"),
-        ([[1, None]], r"here\[0\] is \[1, None\]; it must be a point"),
-        ([{"x": 1}], r"here\[0\] is {'x': 1}; it must be a point"),
         ([[1, 2], [np.nan, 0]], r"here\[1\] is \[nan, 0\]; all numbers must be finite"),
         (np.array([[1, np.inf]]), r"here\[0\] is \[1.0, inf\]; all numbers must be finite"),
     ],
 )
 def test_finite_rows_names_the_row(rows: Any, message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}"):
-        finite_rows(rows, 2, "here", "a point")
+        checks.finite_rows(rows, 2, "here", "a point")
 
 
-def test_outline_needs_two_corners() -> None:
-    assert outline([[0, 0], [1, 2]], "here").tolist() == [[0, 0], [1, 2]]
-    with pytest.raises(ProblemError, match=r"^here has 1 corner; it must have two or more$"):
-        outline([[0, 0]], "here")
-
-
-@pytest.mark.parametrize("value", [3, 3.0, np.float64(3), np.int64(3)])
+@pytest.mark.parametrize("value", [3, np.float64(3), np.int64(3)])
 def test_finite_number_takes_every_kind_of_number(value: float) -> None:
-    assert finite_number(value, "here") == positive_number(value, "here") == 3.0
+    assert checks.finite_number(value, "here") == checks.positive_number(value, "here") == 3.0
 
 
 def from_one(value: Any, name: str) -> int:
-    return whole_number(value, 1, name)
+    return checks.whole_number(value, 1, name)
 
 
 FINITE = [True, np.True_, "3", b"3", None, [3], 3j, np.nan, -np.inf, 10**400]
 POSITIVE, WHOLE = [0, -1.5, float("nan")], [0, -1, 1.0, True, "1", None]
 REFUSED: list[tuple[Any, Any, str]] = [
-    *((finite_number, value, "a finite number") for value in FINITE),
-    *((positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
+    *((checks.finite_number, value, "a finite number") for value in FINITE),
+    *((checks.positive_number, value, "a (number greater than zero|finite number)") for value in POSITIVE),
     *((from_one, value, "a whole number from 1") for value in WHOLE),
 ]
 
 
-@pytest.mark.parametrize(("check", "value", "meant"), REFUSED)
-def test_what_is_no_such_number_is_refused(check: Any, value: Any, meant: str) -> None:
-    with pytest.raises(ProblemError, match=rf"^here is .*; it must be {meant}$"):
+@pytest.mark.parametrize(("check", "value", "expected"), REFUSED)
+def test_bad_numbers_are_refused(check: Any, value: Any, expected: str) -> None:
+    with pytest.raises(ProblemError, match=rf"^here is .*; it must be {expected}$"):
         check(value, "here")
 
 
-def test_number_within_allows_the_ends_and_shows_a_near_excess() -> None:
-    assert number_within(0, 0, 90, "here") == 0
-    assert number_within(90, 0, 90, "here") == 90
+def test_number_within_includes_its_ends() -> None:
+    assert checks.number_within(0, 0, 90, "here") == 0
+    assert checks.number_within(90, 0, 90, "here") == 90
     with pytest.raises(ProblemError, match=r"^here is 90.000000001; it must be from 0 to 90$"):
-        number_within(90.000000001, 0, 90, "here")
-
-
-def test_whole_number_takes_numpy_integers() -> None:
-    assert whole_number(np.int64(4), 1, "here") == 4  # type: ignore[arg-type]
-
-
-finite = st.floats(-1e20, 1e20)
-
-
-@pytest.mark.slow
-@given(finite, finite)
-def test_limits_pass_exactly_when_in_order(low: float, high: float) -> None:
-    if low <= high:
-        assert limits((low, high), "here") == (low, high)
-    else:
-        with pytest.raises(ProblemError, match=r"^here is .*: lo exceeds hi; it must be"):
-            limits((low, high), "here")
+        checks.number_within(90.000000001, 0, 90, "here")
 
 
 @pytest.mark.parametrize(
@@ -135,32 +88,32 @@ def test_limits_pass_exactly_when_in_order(low: float, high: float) -> None:
         ((-1, 1), r"here is \[-1, 1\]; lo must be at least 0"),
     ],
 )
-def test_limits_say_what_is_wrong(pair: tuple[float, float], message: str) -> None:
+def test_bad_limits_are_named(pair: tuple[float, float], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
-        limits(pair, "here", least=0.0)
+        checks.limits(pair, "here", least=0.0)
 
 
 @pytest.mark.parametrize(
-    ("word", "meant"),
+    ("word", "expected"),
     [("lugage", "luggage"), ("LUGGAGE", "luggage"), ("R1", "r1"), ("wheelbarrow", None), ("", None)],
 )
-def test_near_miss(word: str, meant: str | None) -> None:
-    assert near_miss(word, ["luggage", "r1"]) == meant
+def test_near_miss(word: str, expected: str | None) -> None:
+    assert checks.near_miss(word, ["luggage", "r1"]) == expected
 
 
 def test_counted() -> None:
-    assert [counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
+    assert [checks.counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
 
 
-@pytest.mark.parametrize("character", ["\x00", "\x1b", "\n", "\x7f", "\x9b", "\ud800", "\uffff"])
-def test_text_that_drawings_and_terminals_stumble_over(character: str) -> None:
+@pytest.mark.parametrize("character", ["\x00", "\x9b", "\ud800", "\uffff"])
+def test_control_characters_are_refused_or_replaced(character: str) -> None:
     with pytest.raises(
         ProblemError, match=rf"^title has control character U\+{ord(character):04X}; it must be"
     ):
-        plain_text(f"a{character}b", "title")
-    assert readable(f"a{character}b") == "a?b"
+        checks.plain_text(f"a{character}b", "title")
+    assert checks.readable(f"a{character}b") == "a?b"
 
 
 def test_text_of_all_languages_is_plain() -> None:
     for text in ("", "Étage \u2082", '階段 <&> "$x$"', "\U0001f9f3"):
-        assert plain_text(text, "title") == readable(text) == text
+        assert checks.plain_text(text, "title") == checks.readable(text) == text

@@ -52,10 +52,3 @@ def test_values_come_back_and_arrays_are_read_only(value: Any) -> None:
             assert not new.flags.writeable
             with pytest.raises(ValueError, match="read-only"):
                 new[...] = 0
-
-
-def test_copies_are_the_same_value() -> None:
-    twin = copy.deepcopy(WANTED)
-    assert twin == WANTED
-    assert twin.keep_out[0] is not WANTED.keep_out[0]
-    assert copy.deepcopy(MOTION).size == MOTION.size

@@ -37,7 +37,7 @@ from grashof.problems.values.dynamics.load_specs import (
     TorsionSpringSpec,
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.problems.values.dynamics.section import SectionSpec
+from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.loop.vector import Vector

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis import Kinematics, Loads, Masses, energies, powers, solve_kinematics
-from grashof.analysis.mechanism.means import mean_in_time
+from grashof.analysis.mechanism.driver_law import mean_in_time
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.samples import Columns, curves, over_driver, table
 from grashof.study.section import Fact, Section

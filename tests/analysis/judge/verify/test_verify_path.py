@@ -13,7 +13,7 @@ from grashof.analysis import (
     worst_transmission_cycle,
 )
 from grashof.analysis.judge.planted import planted_path
-from grashof.analysis.mechanism.reach import diagonal, reach_box
+from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.problems import FourBar, MotionTask, PathTask, Requirements, load
 
 CRANK_ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(2, 1))

@@ -4,7 +4,6 @@ import math
 import pickle
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,11 +12,8 @@ from refusals import refusal, rows
 from grashof.problems import (
     DynamicsSpec,
     Manufacturing,
-    MotionTask,
-    Problem,
     ProblemError,
     load,
-    problem_text,
 )
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -57,12 +53,6 @@ def test_a_linkage_is_to_be_as_exact_as_its_parts_by_default() -> None:
     assert pickle.loads(pickle.dumps(made)) == made
 
 
-@pytest.mark.parametrize(("name", "other"), [("dynamics", "dwell"), ("manufacturing", "luggage")])
-def test_nothing_is_driven_or_made_unless_the_problem_says_so(name: str, other: str) -> None:
-    assert getattr(Problem(task=MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])), name) is None
-    assert getattr(load(other), name) is None
-
-
 def test_the_luggage_has_the_masses_of_the_report() -> None:
     spec = load("luggage").dynamics
     assert spec is not None
@@ -75,57 +65,37 @@ def test_the_luggage_has_the_masses_of_the_report() -> None:
 @pytest.mark.parametrize(
     ("name", "table", "expected"),
     [
-        ("dynamics", BARS, DynamicsSpec(2.0)),
         (
             "dynamics",
             BARS + "speed_rpm = 10\ngravity = [0, -9.80665]\npayload = 20",
             DynamicsSpec(2.0, speed_rpm=10.0, gravity=(0.0, -9.80665), payload=20.0),
         ),
-        (
-            "dynamics",
-            "masses = [1, 2, 3]\ninertias = [0, 0.5, 0]",
-            DynamicsSpec(masses=(1.0, 2.0, 3.0), inertias=(0.0, 0.5, 0.0)),
-        ),
         ("manufacturing", "length_tolerance = 0.1", Manufacturing(0.1, 0.1)),
-        ("manufacturing", "length_tolerance = 1", Manufacturing(1.0, 1.0)),
         ("manufacturing", "length_tolerance = 0.1\nband = 0.25", Manufacturing(0.1, 0.25)),
     ],
 )
-def test_every_key_reaches_its_field(
-    tmp_path: Path, name: str, table: str, expected: DynamicsSpec | Manufacturing
-) -> None:
+def test_every_key_reaches_its_field(name: str, table: str, expected: DynamicsSpec | Manufacturing) -> None:
     head = HEAD if name == "dynamics" else HEAD.replace('length_unit = "mm"\n', "")  # masses alone need it
     assert stated(table, name, head) == expected
-    path = tmp_path / "mine.toml"  # a copied problem with the table added
-    copied = problem_text("dwell" if name == "dynamics" else "luggage")
-    path.write_text(f"{copied}\n[{name}]\n{table}\n", encoding="utf-8")
-    assert getattr(load(path), name) == expected
 
 
-@pytest.mark.parametrize(
-    ("unit", "length"), [("mm", 0.001), ("cm", 0.01), ("m", 1.0), ("in", 0.0254), ("ft", 12 * 0.0254)]
-)
-def test_known_length_units(unit: str, length: float) -> None:
-    assert metres(unit) == pytest.approx(length, rel=1e-15)
-    assert stated(BARS, head=HEAD.replace('"mm"', f'"{unit}"')) == DynamicsSpec(2.0)
+def test_known_length_units() -> None:
+    for unit, length in {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 12 * 0.0254}.items():
+        assert metres(unit) == pytest.approx(length, rel=1e-15)
+    assert replace(load("luggage"), dynamics=None, length_unit="furlong").length_unit == "furlong"
 
 
-@pytest.mark.parametrize("unit", ["", "M", "furlong", "metre"])
+@pytest.mark.parametrize("unit", ["", "M"])
 def test_torque_needs_a_known_length_unit(unit: str) -> None:
     expected = f"length_unit is {unit!r}; it must be one of mm, cm, m, in, ft with dynamics"
     assert refusal(stated, BARS, head=HEAD.replace('"mm"', f'"{unit}"')) == expected
     assert refusal(replace, load("luggage"), length_unit=unit) == expected
 
 
-def test_any_word_is_a_unit_without_dynamics() -> None:
-    assert replace(load("luggage"), dynamics=None, length_unit="furlong").length_unit == "furlong"
-
-
 TEXTS = {
     "BARS": BARS,
     "ZERO": "it must be a number from zero",
     "MORE": "it must be a number greater than zero",
-    "LENGTH": "it must be greater than zero",
 }
 BAD_DYNAMICS = r"""
 # | dynamics has no mass;
@@ -135,17 +105,14 @@ inertias = [1, 2, 3] | dynamics.masses is missing; masses and inertias are neede
 <BARS>inertias = [1, 2, 3] |
     dynamics.mass_per_length does not go with masses and inertias; give one or the other
 mass_per_length = 0 | dynamics.mass_per_length is 0; <MORE>
-mass_per_length = 'a' | dynamics.mass_per_length is 'a'; it must be a number
 mass_per_length = inf | dynamics.mass_per_length is inf; it must be a finite number
 <BARS>speed_rpm = 0 | dynamics.speed_rpm is 0; <MORE>
-<BARS>speed_rpm = -10 | dynamics.speed_rpm is -10; <MORE>
 <BARS>payload = -1 | dynamics.payload is -1; <ZERO>
 <BARS>gravity = 9.81 | dynamics.gravity is 9.81; it must be [x, y] in m/s2
 <BARS>gravity = [0] | dynamics.gravity has 1 entry; it must have 2 numbers
 <BARS>gravity = [0, nan] | dynamics.gravity[1] is nan; it must be a finite number
 masses = [1, 2]\ninertias = [1, 2, 3] | dynamics.masses has 2 entries; it must have 3 numbers
 masses = [1, -2, 3]\ninertias = [1, 2, 3] | dynamics.masses[1] is -2; <ZERO>
-masses = [1, 2, 3]\ninertias = [1, 2, -3] | dynamics.inertias[2] is -3; <ZERO>
 masses = 3\ninertias = [1, 2, 3] | dynamics.masses is 3; it must be [m2, m3, m4]
 masses = [0, 0, 0]\ninertias = [0, 0, 0] | dynamics.masses are all zero; one at least has a mass
 <BARS>speed = 10 | dynamics.speed is unknown; did you mean speed_rpm?
@@ -155,16 +122,10 @@ masses = [0, 0, 0]\ninertias = [0, 0, 0] | dynamics.masses are all zero; one at 
 """
 BAD_MANUFACTURING = r"""
 # | manufacturing.length_tolerance is missing
-band = 0.1 | manufacturing.length_tolerance is missing
-length_tolerance = 0 | manufacturing.length_tolerance is 0; <LENGTH>
-length_tolerance = -0.1 | manufacturing.length_tolerance is -0.1; <LENGTH>
+length_tolerance = 0 | manufacturing.length_tolerance is 0; <MORE>
 length_tolerance = '0.1' | manufacturing.length_tolerance is '0.1'; it must be a number
-length_tolerance = true | manufacturing.length_tolerance is true; it must be a number
 length_tolerance = inf | manufacturing.length_tolerance is inf; it must be a finite number
-length_tolerance = nan | manufacturing.length_tolerance is nan; it must be a finite number
-length_tolerance = 0.1\nband = 0 | manufacturing.band is 0; <LENGTH>
-length_tolerance = 0.1\nband = -2 | manufacturing.band is -2; <LENGTH>
-length_tolerance = 0.1\nband = [1, 2] | manufacturing.band is [1, 2]; it must be a number
+length_tolerance = 0.1\nband = 0 | manufacturing.band is 0; <MORE>
 length_tolerance = 0.1\nsamples = 9 | manufacturing.samples is unknown; the keys are length_tolerance, band
 tolerance = 0.1\nlength_tolerance = 0.1 | manufacturing.tolerance is unknown; did you mean length_tolerance?
 """
@@ -177,24 +138,11 @@ def test_bad_tables(name: str, table: str, expected: str) -> None:
     assert refusal(stated, table, name) == expected
 
 
-def test_no_table_at_all() -> None:
-    text = 'manufacturing = 3\nkind = "motion"\nmotion.poses = [[0, 0, 0], [3, 4, 90]]'
-    with pytest.raises(ProblemError, match=r"^manufacturing is 3; it must be a table$"):
-        problem_from(tomllib.loads(text), "test")
-
-
-@pytest.mark.parametrize("value", [0, -1, math.inf, math.nan, "0.1", None, True])
-def test_bad_values_from_python(value: object) -> None:
-    with pytest.raises(ProblemError, match=r"^manufacturing\.length_tolerance is "):
-        Manufacturing(value)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     "given",
     [
         {"masses": 3, "inertias": (1, 2, 3)},
         {"mass_per_length": None, "masses": (1, 2, "3"), "inertias": (1, 2, 3)},
-        {"mass_per_length": True},
         {"mass_per_length": 2, "gravity": None},
         {"mass_per_length": 2, "payload": "heavy"},
     ],

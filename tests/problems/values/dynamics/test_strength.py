@@ -1,4 +1,4 @@
-"""What may be said of cross-sections, strengths and pumping units: defaults, and what is refused."""
+"""Cross-sections, strengths and pumping units: defaults and errors."""
 
 import pickle
 import tomllib
@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from refusals import refusal, rows
 
-from grashof.problems import CrossSection, FourBar, LinkageSpec, ProblemError, SectionSpec, StrengthSpec
+from grashof.problems import CrossSection, ProblemError, SectionSpec, StrengthSpec
 from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.problems.values.dynamics.strength import check_strength
 
@@ -60,23 +60,15 @@ TURNS = [[0, 9e3], [180, 2e4], [360, 9e3]]
         ({"crank": "left"}, "crank is 'left'; it must be clockwise or counter-clockwise"),
         ({"counterbalance": float("nan")}, "counterbalance is nan; it must be a finite number"),
         ({"rating": 0.0}, "rating is 0; it must be a number greater than zero"),
-        ({"rating": -1.0}, "rating is -1; it must be a number greater than zero"),
         ({"rod_load": 1e21}, "rod_load is 1e"),
         ({"over": "position"}, "over does not go with a constant load; it needs values"),
         ({"values": TURNS, "rod_load": 1.0}, "rod_load is given besides values; give one of them"),
-        ({"values": [[0, 1]]}, "values has 1 rows; it must have two or more"),
-        (
-            {"values": [[0, 1], [10, 2]]},
-            "values cover crank 0 to 10 deg; they must cover a turn, as 0 to 360",
-        ),
-        ({"values": [[0, 1], [360, 2]]}, "values end otherwise than they begin"),
         ({"values": [[0, 1], [90, 1], [80, 2], [360, 1]]}, "values[2] has crank 80; it must rise"),
-        ({"values": [[0, 1, 2], [360, 1]]}, "values[0] is"),
         ({"values": [[0, 1, 2], [2, 1, 2]], "over": "position"}, "values cover positions 0 to 2; they must"),
         ({"values": TURNS, "over": "theta2"}, "over is 'theta2'; it must be crank or position"),
     ],
 )
-def test_what_is_refused_of_a_pumping_unit(given: dict[str, Any], message: str) -> None:
+def test_bad_pumping_units(given: dict[str, Any], message: str) -> None:
     line = refusal(PumpingUnitSpec, **given)
     assert message in line
     assert "\n" not in line
@@ -93,7 +85,7 @@ def test_what_is_refused_of_a_pumping_unit(given: dict[str, Any], message: str) 
         PumpingUnitSpec(well="left", rating=1e5, values=TURNS),
     ],
 )
-def test_what_is_stated_gives_the_same_again(spec: SectionSpec | StrengthSpec | PumpingUnitSpec) -> None:
+def test_stated_keys_give_the_same_value(spec: SectionSpec | StrengthSpec | PumpingUnitSpec) -> None:
     assert type(spec)(**spec.stated) == spec == pickle.loads(pickle.dumps(spec))
     assert None not in spec.stated.values()
     hash(spec)
@@ -111,17 +103,13 @@ TEXTS = {
 BAD_SECTIONS = r"""
 # | section is empty; it must have width and height, or area, inertia and extreme_fibre
 width = 0\nheight = 1 | section.width is 0; <MORE>
-width = 1\nheight = -1 | section.height is -1; <MORE>
 width = [1, 0, 1]\nheight = 1 | section.width[1] is 0; <MORE>
 width = nan\nheight = 1 | section.width is nan; it must be a finite number
-width = 1e+21\nheight = 1 | section.width is 1e+21; it must be from 1e-20 to 1e+20
 width = 1e-300\nheight = 1 | section.width is 1e-300; it must be from 1e-20 to 1e+20
 width = '2'\nheight = 1 | section.width is '2'; it must be a number
 width = true\nheight = 1 | section.width is True; it must be a finite number
 width = [1, 2]\nheight = 1 | section.width has 2 entries; it must be a number, or 3 (link 2, link 3, link 4)
-width = [[1], 2, 3]\nheight = 1 | section.width[0] is [1]; it must be a finite number
 width = 1 | section.height is missing; width and height are needed together
-height = 1 | section.width is missing; width and height are needed together
 area = 1 | section.inertia is missing; <TOGETHER>
 shear_factor = 2 | section.area is missing; <TOGETHER>
 width = 1\nheight = 1\narea = 1 | section.area does not go with width; give one shape or the other
@@ -133,10 +121,7 @@ area = 1e+50\ninertia = 1\nextreme_fibre = 2 | section.area is 1e+50; it must be
 """
 BAD_STRENGTHS = r"""
 yield_stress = 0 | strength.yield_stress is 0; <MORE>
-yield_stress = inf | strength.yield_stress is inf; it must be a finite number
 yield_stress = 1\nelastic_modulus = -2 | strength.elastic_modulus is -2; <MORE>
-yield_stress = 1\nelastic_modulus = 1e+30 | strength.elastic_modulus is 1e+30; it must be from 1e-20 to 1e+20
-yield_stress = 1\npin_diameter = 0 | strength.pin_diameter is 0; <MORE>
 yield_stress = 1\npin_diameter = [1, 1, 0, 1] | strength.pin_diameter[2] is 0; <MORE>
 yield_stress = 1\npin_diameter = [1, 2, 3] |
     strength.pin_diameter has 3 entries; it must be a number, or 4 (O2, A, B, O4)
@@ -168,8 +153,3 @@ def test_strength_needs_sections() -> None:
         check_strength(None, StrengthSpec(1.0))
     with pytest.raises(ProblemError, match=r"^strength.pin_thickness is missing; bearing pressure needs it"):
         check_strength(TUBE, StrengthSpec(1.0, pin_diameter=1))
-
-
-def test_a_unit_needs_its_arm() -> None:
-    with pytest.raises(ProblemError, match="output_arm is missing; pumping_unit needs that of the horsehead"):
-        LinkageSpec(FourBar((0, 0), (4, 0), 1, 4, 3), "it", pumping_unit=PumpingUnitSpec())

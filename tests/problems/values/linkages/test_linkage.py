@@ -2,9 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from hypothesis.extra.numpy import arrays
 
 from grashof.problems import FourBar, ProblemError
 
@@ -30,14 +27,6 @@ def test_ground_link_from_the_pivots() -> None:
     assert linkage.lengths.tolist() == [5.0, 1.0, 4.0, 3.0]
 
 
-def test_defaults_put_the_coupler_point_on_a() -> None:
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    assert linkage.coupler_point.tolist() == [0.0, 0.0]
-    assert linkage.shape == ()
-    assert linkage.assembly == 1.0
-    assert linkage.body_angle == 0.0
-
-
 def test_fields_of_a_batch_share_their_leading_axes() -> None:
     batch = batch_of(3)
     assert batch.shape == (3,)
@@ -54,13 +43,8 @@ def test_indexing_takes_linkages_out() -> None:
     assert batch[1:3].r2.tolist() == [2.0, 3.0]
     assert batch[[3, 0]].r2.tolist() == [4.0, 1.0]
     assert batch[np.array([False, True, False, True])].assembly.tolist() == [-1.0, -1.0]
-    assert [float(batch[n].r2) for n in range(4)] == [1.0, 2.0, 3.0, 4.0]
-
-
-def test_an_empty_selection_is_an_empty_batch() -> None:
-    none = batch_of(3)[np.zeros(3, dtype=bool)]
-    assert none.shape == (0,)
-    assert none.o4.shape == (0, 2)
+    none = batch[np.zeros(4, dtype=bool)]
+    assert (none.shape, none.o4.shape) == ((0,), (0, 2))
 
 
 def test_indexing_adds_axes() -> None:
@@ -79,14 +63,6 @@ def test_a_single_linkage_has_nothing_to_index() -> None:
         batch_of(2)[2]
 
 
-@given(arrays(np.float64, (3, 2), elements=st.floats(0.1, 10)), st.integers(0, 2))
-def test_an_element_of_a_batch_equals_the_linkage_it_was_made_of(lengths: np.ndarray, index: int) -> None:
-    batch = FourBar(o2=lengths, o4=(20, 0), r2=lengths[:, 0], r3=lengths[:, 1], r4=2)
-    alone = FourBar(o2=lengths[index], o4=(20, 0), r2=lengths[index, 0], r3=lengths[index, 1], r4=2)
-    assert batch[index] == alone
-    assert batch[index].r1 == batch.r1[index]
-
-
 def test_equality_and_hash_go_by_value() -> None:
     assert crank_rocker() == crank_rocker()
     assert len({crank_rocker(), crank_rocker()}) == 1
@@ -94,14 +70,10 @@ def test_equality_and_hash_go_by_value() -> None:
     assert batch_of(3) == batch_of(3)
     assert batch_of(3) != batch_of(4)
     assert crank_rocker() != "crank-rocker"
-
-
-def test_every_field_counts_in_equality() -> None:
-    names = ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly", "body_angle")
-    values = {name: getattr(crank_rocker(), name) for name in names}
-    for name in names:
-        other = values | {name: -values[name] if name == "assembly" else values[name] + 1}
-        assert FourBar(**other) != crank_rocker(), name
+    for row in FourBar.mechanism.parameters:
+        value = getattr(crank_rocker(), row.name)
+        other = crank_rocker().changed(**{row.name: -value if row.kind == "sign" else value + 1})
+        assert other != crank_rocker(), row.name
 
 
 def test_equal_linkages_have_equal_hashes_whatever_the_sign_of_zero() -> None:
@@ -126,10 +98,8 @@ def test_a_linkage_stays_as_it_was_made() -> None:
         ({"r2": 0}, "r2 is 0; it must be greater than zero"),
         ({"r4": [1, -2]}, r"r4 is \[1, -2\]; it must be greater than zero"),
         ({"body_angle": -629}, "body_angle is -629; it must be at most 100 turns"),
-        ({"r3": np.nan}, "r3 is nan; all numbers must be finite"),
         ({"o2": (0, np.inf)}, r"o2 is \(0, inf\); all numbers must be finite"),
         ({"o4": (1, 2, 3)}, r"o4 has shape \(3,\); it must be \(..., 2\)"),
-        ({"coupler_point": 1}, r"coupler_point has shape \(\); it must be \(..., 2\)"),
         ({"r2": "long"}, "r2 is 'long'; it must be a number"),
         ({"assembly": 0}, r"assembly is 0; it must be \+1 or -1"),
         ({"r2": [1, 2], "r3": [1, 2, 3]}, "the fields of a batch have shapes .* that do not fit together"),

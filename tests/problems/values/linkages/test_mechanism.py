@@ -1,4 +1,4 @@
-"""Mechanisms as rows: what follows from a driver and dyads."""
+"""Mechanisms as rows: links, joints and parameters follow from a driver and dyads."""
 
 import pickle
 
@@ -93,7 +93,7 @@ def test_another_six_bar_is_another_kind() -> None:
         ({"assembly_2": 0}, "assembly_2 is 0"),
     ],
 )
-def test_what_is_no_six_bar_is_refused(given: dict[str, object], wrong: str) -> None:
+def test_bad_six_bars_are_refused(given: dict[str, object], wrong: str) -> None:
     stated = {**LEG.stated, **given}
     with pytest.raises(ProblemError, match=wrong):
         SixBar(**stated)  # type: ignore[arg-type]

@@ -3,12 +3,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from refusals import refusal
 
-from grashof.problems import FunctionLaw, FunctionTask, Problem, Requirements, Rotatability
-from grashof.problems.values.requirements.function_ground import grounded
+from grashof.problems import Box, FunctionLaw, FunctionTask, Problem, Requirements, Rotatability
+from grashof.problems.values.requirements.function_ground import FunctionGround, grounded
 from grashof.problems.values.tasks.function_law import LAWS, chebyshev_spacing, lobatto_with_weights
 
 RANGES: dict[str, Any] = {"input_range_deg": 60, "output_range_deg": 90}
@@ -56,16 +54,20 @@ def test_chebyshev_pairs_lie_inside_the_range() -> None:
     assert task.exact_by_default
 
 
-@given(st.integers(3, 30), st.integers(0, 2**32 - 1))
-def test_the_wanted_output_passes_through_all_pairs(count: int, seed: int) -> None:
-    rng = np.random.default_rng(seed)
+@pytest.mark.parametrize("count", [3, 5, 6, 30])
+def test_the_wanted_output_passes_through_all_pairs(count: int) -> None:
+    rng = np.random.default_rng(count)
     inputs = np.append(0, np.cumsum(rng.uniform(0.01, 0.2, count - 1)))
     outputs = np.append(0, np.cumsum(rng.uniform(-0.1, 0.2, count - 1)))
-    if np.ptp(outputs) < 1e-3:
-        return
     task = FunctionTask(inputs, outputs)
     assert np.abs(task.output(task.inputs) - outputs).max() < 1e-12
     assert task.exact_by_default == (count <= 5)
+
+
+def test_the_ground_is_placed_within_its_limits() -> None:
+    ground = FunctionGround.of(Requirements(o2=Box((0, 0), (0, 0)), o4=Box((0, 0), (200, 300))))
+    assert (np.degrees(ground.theta1), ground.length) == (90.0, 200.0)
+    assert ground.placed(250.0) == ((0.0, 0.0), (0.0, 250.0))
 
 
 def test_a_travel_may_have_any_size() -> None:
@@ -102,11 +104,9 @@ def test_rotatability_is_any_unless_it_is_stated() -> None:
         ({"input_deg": [0, 20, 10], "output_deg": [0, 1, 2]}, "function.input_deg[2] is 10 after 20"),
         ({"input_deg": [0, 20, 400], "output_deg": [0, 1, 2]}, "function.input_deg covers 400 deg"),
         ({"input_deg": [0, 20, 30], "output_deg": [0, 1, 400]}, "function.output_deg covers 400 deg"),
-        ({"input_deg": [0, 20, 30], "output_deg": [0, 1]}, "function.input_deg has 3 angles"),
         ({"input_deg": [0, 20, np.nan], "output_deg": [0, 1, 2]}, "function.input_deg[2] is nan"),
         ({"input_deg": [5, 20, 30], "output_deg": [0, 1, 2]}, "function.input_deg[0] is 5; it must be 0"),
         ({"input_deg": [0, 20, 30], "output_deg": [0, 0, 0]}, "function.output_deg does not move"),
-        ({"input_deg": [0, 20, 30]}, "function.output_deg is missing"),
         (
             {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2], "norm": "mx"},
             "function.norm is 'mx'; it must be rms or max",
@@ -117,7 +117,6 @@ def test_rotatability_is_any_unless_it_is_stated() -> None:
         ({"law": "reciprocal", "x": (-1, 2), **RANGES}, "function.law reciprocal has no value at x = 0"),
         ({"law": "power", "x": (1, 2), **RANGES}, "function.exponent is missing"),
         ({"law": "power", "x": (1, 2), "exponent": 0.0, **RANGES}, "function.law power is constant"),
-        ({"law": "sin", "x": (0, 90), "input_range_deg": 60}, "function.output_range_deg is missing"),
         ({"law": "sin", "x": (0, 90), **RANGES, "input_range_deg": 361}, "function.input_range_deg is 361"),
         ({"law": "sin", "x": (0, 90), **RANGES, "pairs": 2}, "function.pairs"),
         ({"law": lambda x: 1 / (x - 1.5) ** 0.5, "x": (1, 2), **RANGES}, "function.law sampled has no value"),

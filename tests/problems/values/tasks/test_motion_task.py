@@ -1,16 +1,13 @@
 """Motion tasks: poses with free parts, weights, and how much of them linkages can be expected to meet."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from grashof.problems import MotionTask, PathTask, ProblemError, Requirements, load
+from grashof.problems import MotionTask, PathTask, ProblemError, Requirements
 
-WHOLE, PLACE, TURNED = "whole", "place", "turned"
+COMPLETE, PLACE, TURNED = "complete", "place", "turned"
 MIXED: list[Any] = [[5, 4, 0], {"x": 3, "y": 4}, {"angle": -5}, {"x": 1, "y": 0, "angle": 365}]
 
 
@@ -42,31 +39,22 @@ def test_the_size_is_that_of_the_positions_given() -> None:
         MotionTask.from_degrees([{"x": 1, "y": 1}, {"angle": 3}])
 
 
-def test_weights_are_kept_and_are_one_by_default() -> None:
-    assert MotionTask.from_degrees(MIXED).weights.tolist() == [1, 1, 1, 1]
-    task = MotionTask.from_degrees(MIXED, weights=[1, 2, 0.5, 3])
-    assert task.weights.tolist() == [1, 2, 0.5, 3]
-
-
 # Unknowns: ten of the linkage and its body, nine without a body angle, and a driver angle for every
 # pose. Equations: two for a position, one for an angle (Brake et al. 2016, Alt-Burmester problems).
 @pytest.mark.parametrize(
     ("kinds", "exact"),
     [
-        ([WHOLE] * 2, True),
-        ([WHOLE] * 5, True),
-        ([WHOLE] * 6, False),
+        ([COMPLETE] * 5, True),
+        ([COMPLETE] * 6, False),
         ([PLACE] * 9, True),
         ([PLACE] * 10, False),
         ([TURNED] * 14 + [PLACE], True),  # angles take no more than the driver angles give
-        ([WHOLE] * 4 + [PLACE] * 2, True),
-        ([WHOLE] * 4 + [PLACE] * 3, False),
-        ([WHOLE] * 3 + [PLACE] * 4, True),
-        ([WHOLE] * 3 + [PLACE] * 5, False),
-        ([WHOLE] + [PLACE] * 8, True),
-        ([WHOLE] + [PLACE] * 9, False),
-        ([WHOLE] * 5 + [TURNED], True),
-        ([WHOLE] * 5 + [PLACE], False),
+        ([COMPLETE] * 4 + [PLACE] * 2, True),
+        ([COMPLETE] * 4 + [PLACE] * 3, False),
+        ([COMPLETE] + [PLACE] * 8, True),
+        ([COMPLETE] + [PLACE] * 9, False),
+        ([COMPLETE] * 5 + [TURNED], True),
+        ([COMPLETE] * 5 + [PLACE], False),
     ],
 )
 def test_exact_as_long_as_unknowns_are_enough(kinds: list[str], exact: bool) -> None:
@@ -76,22 +64,11 @@ def test_exact_as_long_as_unknowns_are_enough(kinds: list[str], exact: bool) -> 
     assert Requirements(exact=not exact).is_exact(task) is not exact
 
 
-@given(st.lists(st.sampled_from([WHOLE, PLACE, TURNED]), min_size=2, max_size=12))
-def test_exact_is_the_count_of_unknowns_and_equations(kinds: list[str]) -> None:
-    if set(kinds) == {TURNED}:
-        return
-    unknowns = 2 + 2 + 3 + 2 + len(kinds) + (set(kinds) != {PLACE})  # pivots, links, P, driver, body
-    equations = sum({WHOLE: 3, PLACE: 2, TURNED: 1}[kind] for kind in kinds)
-    assert mixed_task(kinds).exact_by_default is (equations <= unknowns)
-
-
 BAD_POSES: list[tuple[Any, str]] = [
     ([[0, 0, 0], [1, 0, 4e6]], r"motion.poses\[1\] is turned by 4e\+06 deg; it must be at most 3600000 .*"),
     ("poses", r"motion.poses is 'poses'; it must be a list of poses"),
-    ({"x": 1}, r"motion.poses is \{'x': 1\}; it must be a list of poses"),
     ([[0, 0, 0], "abc"], r"motion.poses\[1\] is 'abc'; it must be a pose \[x, y, angle in degrees\]"),
     ([[0, 0, 0], {"x": 1, "angle": 3}], r"motion.poses\[1\] has one of x and y; it must have both or .*"),
-    ([[0, 0, 0], {"y": 1}], r"motion.poses\[1\] has one of x and y; it must have both or neither"),
     ([[0, 0, 0], {"angle": np.nan}], r"motion.poses\[1\].angle is nan; .*"),
     ([[0, 0, 0], {"x": np.inf, "y": 0}], r"motion.poses\[1\].x is inf; .*"),
     ([{"angle": 3}, {"angle": 4}], "motion.poses has no position; one pose or more must have x and y"),
@@ -108,18 +85,15 @@ def test_bad_tables(poses: Any, message: str) -> None:
 
 BAD_ARRAYS: list[tuple[Any, Any, str]] = [
     ([1, 2], [0, 1], r"motion.poses has positions of shape \(2,\); it must be \(N, 2\)"),
-    ([[1, 2, 3]] * 2, [0, 1], r"motion.poses has positions of shape \(2, 3\); it must be \(N, 2\)"),
     ([[1, 2], [1]], [0, 1], r"motion.poses has positions .*; they must be numbers"),
     ([[1, 2], [1, np.inf]], [0, 1], r"motion.poses has positions that are infinite; .*"),
     ([[1, 2], [3, 4]], [[0], [1]], r"motion.poses has 2 positions and angles of shape \(2, 1\)"),
-    ([[0, 0], [1, 0]], [0], r"motion.poses has 2 positions and angles of shape \(1,\)"),
     (
         np.eye(2),
         [0, np.inf],
         "motion.poses has angles that are infinite; they must be finite, or NaN where free",
     ),
     ([[0, 0], [1, 0]], [0, "right"], "motion.poses has angles .*; they must be numbers"),
-    ([[1, 2], [3, np.nan]], [0, 1], r"motion.poses\[1\] has one of x and y; it must have both or neither"),
 ]
 
 
@@ -132,12 +106,8 @@ def test_bad_arrays(positions: Any, angles: Any, message: str) -> None:
 BAD_WEIGHTS: list[tuple[Any, str]] = [
     ([1, 2, 3], "motion.weights has 3 numbers for 4 poses"),
     ([1, -1, 1, 1], r"motion.weights\[1\] is -1; it must be a number from 1e-09 to 1e\+09"),
-    ([1, 1, 1, np.nan], r"motion.weights\[3\] is nan; it must be a number from 1e-09 to 1e\+09"),
-    ([np.inf, 1, 1, 1], r"motion.weights\[0\] is inf; it must be a number from 1e-09 to 1e\+09"),
     ("1111", r"motion.weights is '1111'; it must be a list of numbers"),
-    ([[1], [1, 2]], r"motion.weights is .*; it must be a list of numbers"),
     ([[1, 1, 1, 1]], r"motion.weights is .*; it must be a list of numbers"),
-    ([True, True, True, True], r"motion.weights is .*; it must be a list of numbers"),
 ]
 
 
@@ -147,7 +117,7 @@ def test_bad_weights(weights: Any, message: str) -> None:
         MotionTask.from_degrees(MIXED, weights=weights)
 
 
-def test_poses_that_are_no_standing_still() -> None:
+def test_poses_that_do_not_stand_still() -> None:
     assert len(MotionTask.from_degrees([[0, 0, 0], [1, 0, 0], [0, 0, 0]])) == 3  # equal, but no neighbours
     assert len(MotionTask.from_degrees([[0, 0, 5], [1, 0, 5], [1, 0, 5.001]])) == 3
     rows: list[Any] = [{"x": 1, "y": 1}, {"angle": 5}, {"x": 1, "y": 1}, {"x": 1, "y": 1, "angle": 5}]
@@ -155,32 +125,6 @@ def test_poses_that_are_no_standing_still() -> None:
     assert len(task) == 4
     # The body may come back to an angle, somewhere else.
     assert len(MotionTask.from_degrees([[0, 0, 0], {"angle": 3}, {"angle": 363}], angle_length=1.0)) == 3
-
-
-FILE = """\
-kind = "motion"
-
-[motion]
-poses = [[5, 4, 0], { x = 3.5, y = 4 }, { angle = -5 }, { x = 1, y = 0, angle = 20 }]
-weights = [1, 2, 0.5, 4]
-angle_length = 2.5
-"""
-
-
-def test_a_file_states_free_parts_and_weights(tmp_path: Path) -> None:
-    path = tmp_path / "mixed.toml"
-    path.write_text(FILE)
-    found, stated = (
-        load(path).task,
-        MotionTask.from_degrees(
-            [[5, 4, 0], {"x": 3.5, "y": 4}, {"angle": -5}, [1, 0, 20]],
-            weights=[1, 2, 0.5, 4],
-            angle_length=2.5,
-        ),
-    )
-    assert isinstance(found, MotionTask)
-    for name in ("positions", "angles", "weights", "angle_length"):
-        np.testing.assert_array_equal(getattr(found, name), getattr(stated, name))
 
 
 def test_a_zone_that_is_not_given_follows_through_the_angle_length() -> None:
@@ -194,7 +138,7 @@ def test_a_zone_that_is_not_given_follows_through_the_angle_length() -> None:
     np.testing.assert_allclose(task.zones[1], [np.pi / 2] * 3 + [np.inf])
 
 
-@pytest.mark.parametrize("zone", [0, -1, np.nan, np.inf, 3.2, [1, 1], "1", True, [[1, 1, 1]]])
+@pytest.mark.parametrize("zone", [0, np.nan, 3.2, [1, 1], True])
 def test_zones_of_angles_are_up_to_half_a_turn(zone: Any) -> None:
     with pytest.raises(ProblemError, match="angle_within "):
         MotionTask([[0, 0], [3, 4], [1, 1]], [0, 1, 2], angle_within=zone)
@@ -211,14 +155,8 @@ def test_angle_length_is_the_size_of_a_pure_rotation() -> None:
         MotionTask.from_degrees([[1, 1, 0], [1, 1, 40]])
 
 
-@pytest.mark.parametrize("angle_length", [0, -1, np.nan, np.inf, "1", True])
-def test_bad_angle_length(angle_length: float) -> None:
-    with pytest.raises(ProblemError, match=r"^motion.angle_length is .*; it must be "):
-        MotionTask.from_degrees(LUGGAGE, angle_length=angle_length)
-
-
-@given(st.integers(0, 3), st.integers(-3, 3))
-def test_consecutive_equal_poses_are_refused_modulo_the_whole_turn(index: int, turns: int) -> None:
+@pytest.mark.parametrize(("index", "turns"), [(0, 0), (1, 1), (3, -3)])
+def test_consecutive_equal_poses_are_refused_modulo_a_full_turn(index: int, turns: int) -> None:
     x, y, angle = LUGGAGE[index]
     poses = [*LUGGAGE[: index + 1], [x, y, angle + 360 * turns], *LUGGAGE[index + 1 :]]
     expected = (

@@ -1,4 +1,4 @@
-"""Stroke tasks: what can be asked for, and what is refused in a line."""
+"""Stroke tasks: their properties, and impossible ones, which are refused in a line."""
 
 import re
 from dataclasses import replace
@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grashof.problems import Box, Problem, ProblemError, Requirements, StrokeTask
 
@@ -25,6 +23,7 @@ def test_two_limit_positions_without_a_place() -> None:
 def test_a_stroke_is_the_size() -> None:
     task = StrokeTask(stroke=100, time_ratio=1.2)
     assert (task.size, task.scale_free, task.swing) == (100.0, False, None)
+    assert Requirements().resolved(1.0, scale_free=True).link_length is None
 
 
 @pytest.mark.parametrize(
@@ -35,7 +34,6 @@ def test_a_stroke_is_the_size() -> None:
         ({"link_length": (10, 200)}, 200.0),
         ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3), (4, 4))}, 5.0),
         ({"o2": Box((0, 0), (0, 0)), "o4": Box((3, 3))}, 1.0),
-        ({"o2": Box((0, 0), (0, 0))}, 1.0),
     ],
 )
 def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) -> None:
@@ -44,12 +42,7 @@ def test_a_free_scale_is_taken_from_limits(wanted: dict[str, Any], size: float) 
     assert task.size == 1.0
 
 
-def test_no_length_has_a_default_where_the_scale_is_free() -> None:
-    assert Requirements().resolved(1.0, scale_free=True).link_length is None
-    assert Requirements().resolved(1.0).link_length == (0.01, 20.0)
-
-
-def test_what_is_not_replaced_stays() -> None:
+def test_replaced_strokes_keep_the_rest() -> None:
     task = StrokeTask(swing=1.0, time_ratio=1.5).sized(7.0)
     assert replace(task).swing == 1.0
     assert task.without_zones().time_ratio == 1.5
@@ -65,15 +58,11 @@ def test_what_is_not_replaced_stays() -> None:
         ),
         ({"swing_deg": 200}, "stroke.swing_deg is 200; it must be from 0.0573 to less than 180, .*"),
         ({"swing_deg": 180}, "stroke.swing_deg is 180; it must be .*"),
-        ({"swing_deg": 0}, "stroke.swing_deg is 0; it must be .*"),
-        ({"swing_deg": float("nan")}, "stroke.swing_deg is nan; it must be a finite number"),
-        ({"swing_deg": "80"}, "stroke.swing_deg is '80'; it must be a finite number"),
         ({"stroke": -1}, "stroke.stroke is -1; it must be a number greater than zero"),
         ({"swing_deg": 80, "time_ratio": 0.9}, "stroke.time_ratio is 0.9; it must be at least 1, .*"),
-        ({"swing_deg": 80, "time_ratio": np.inf}, "stroke.time_ratio is inf; it must be a finite number"),
     ],
 )
-def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: str) -> None:
+def test_impossible_strokes_are_refused_in_a_line(stated: dict[str, Any], message: str) -> None:
     with pytest.raises(ProblemError, match=f"^{message}$"):
         StrokeTask.from_degrees(**stated)
 
@@ -97,7 +86,9 @@ def test_what_cannot_be_is_refused_in_a_line(stated: dict[str, Any], message: st
         ({"swing_deg": 80}, "slider-crank", "stroke.swing_deg is of a rocker; .*"),
     ],
 )
-def test_what_a_kind_of_linkage_cannot_do(stated: dict[str, Any], mechanism: str, message: str) -> None:
+def test_impossible_strokes_of_a_kind_of_linkage(
+    stated: dict[str, Any], mechanism: str, message: str
+) -> None:
     assert re.fullmatch(message, StrokeTask.from_degrees(**stated).impossible(mechanism))
 
 
@@ -110,20 +101,20 @@ def test_what_a_kind_of_linkage_cannot_do(stated: dict[str, Any], mechanism: str
         ({"a_on_body": Box((0, 1))}, "stroke has no angles; requirements.a_on_body needs it"),
     ],
 )
-def test_requirements_that_mean_nothing(wanted: dict[str, Any], message: str) -> None:
+def test_requirements_that_do_not_apply(wanted: dict[str, Any], message: str) -> None:
     task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
     with pytest.raises(ProblemError, match=f"^{message}$"):
         Problem(task=task, requirements=Requirements(**wanted))
 
 
-def test_a_great_tolerance_is_no_zone() -> None:
+def test_a_large_tolerance_is_not_a_zone() -> None:
     task = StrokeTask.from_degrees(swing_deg=80, time_ratio=1.1)
     problem = Problem(task=task, requirements=Requirements(tolerance=0.01))
     assert problem.zones is None
     assert problem.by_objective
 
 
-@given(st.floats(1.0, 1e6))
+@pytest.mark.parametrize("ratio", [1.0, 1.3, 1e6])
 def test_the_slow_stroke_takes_the_ratio_of_the_quick_one(ratio: float) -> None:
     slow = StrokeTask(swing=1.0, time_ratio=ratio).driver_rotation
     assert slow >= np.pi - 1e-12

@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from grashof.problems import FunctionTask, MotionTask, PathTask, ProblemError, Requirements, StrokeTask, Task
+from grashof.problems import FunctionTask, MotionTask, PathTask, ProblemError, StrokeTask, Task
 from grashof.problems.values.tasks.task import row_of
 
 LINE: list[list[float]] = [[0, 0], [3, 0], [3, 4], [0, 4]]
@@ -25,36 +23,17 @@ def test_points_are_the_positions() -> None:
 
 
 def test_degrees_become_radians() -> None:
-    task = PathTask.from_degrees(LINE, timing_deg=[0, 90, 180, 360], closed=True)
-    assert task.timing is not None
-    assert task.timing.tolist() == [0, np.pi / 2, np.pi, 2 * np.pi]
-    assert task.closed
-
-
-def test_arrays_are_copies() -> None:
-    given = np.array(LINE)
-    task = PathTask(given, timing=[0, 1, 2, 3])
-    given[0] = 9
-    assert task.points[0].tolist() == [0, 0]
-
-
-def test_exact_is_checked() -> None:
-    with pytest.raises(ProblemError, match=r"^requirements.exact is 1; it must be true or false$"):
-        Requirements(exact=1)  # type: ignore[arg-type]
+    for sense in (1, -1):
+        task = PathTask.from_degrees(LINE, timing_deg=sense * np.array([0, 90, 180, 360]), closed=True)
+        assert task.timing is not None
+        assert task.timing.tolist() == [0, sense * np.pi / 2, sense * np.pi, sense * 2 * np.pi]
+        assert task.closed
 
 
 @pytest.mark.parametrize(
     ("points", "message"),
     [
-        ([], "path.points has 0 points; it must have three or more"),
         ([[1, 2], [3, 4]], "path.points has 2 points; it must have three or more"),
-        ([[1, 2], [3], [5, 6]], r"path.points\[1\] is \[3\], 1 number; it must be a point \[x, y\]"),
-        ([[1, 2], [3, np.nan], [5, 6]], r"path.points\[1\] is \[3, nan\]; all numbers must be finite"),
-        (
-            [[1e100, 0], [-1e100, 0], [0, 1]],
-            r"path.points\[0\] is \[1e\+100, 0\]; its numbers must be at most 1e\+20\n"
-            r"path.points\[1\] is \[-1e\+100, 0\]; its numbers must be at most 1e\+20",
-        ),
         (
             [[0, 0], [1e-150, 0], [0, 1e-150]],
             r"path.points are at most 1.41421e-150 apart; two must be at least 1e-20 apart",
@@ -78,31 +57,17 @@ def test_the_last_point_may_repeat_the_first() -> None:
     ("timing", "message"),
     [
         ([0, 1, 2], "path.timing_deg has 3 angles for 4 points"),
-        ([1, 2, 3, 4], r"path.timing_deg\[0\] is 1; it must be 0, at the first point"),
         ([0, 0, 3, 4], r"path.timing_deg\[1\] is 0 after 0; the angles must only grow, or only fall"),
         ([0, 1, -3, 4], r"path.timing_deg\[2\] is -3 after 1; the angles must only grow, or only fall"),
         ([0, -1, -3, -2], r"path.timing_deg\[3\] is -2 after -3; the angles must .*"),
         ([0, 1, 3, 360.1], r"path.timing_deg\[3\] is 360.1; it must be at most one turn, 360"),
-        ([0, -1, -3, -361], r"path.timing_deg\[3\] is -361; it must be at most one turn, 360"),
         ([0, 1, np.inf, 4], r"path.timing_deg\[2\] is inf; all numbers must be finite"),
-        ([0, "a", 2, 3], "path.timing_deg is .*; it must be a list of angles"),
         ("soon", "path.timing_deg is 'soon'; it must be a list of angles"),
-        ([0, [1], 2, 3], "path.timing_deg is .*; it must be a list of angles"),
-        (7, "path.timing_deg is 7; it must be a list of angles"),
-        (True, "path.timing_deg is True; it must be a list of angles"),
     ],
 )
 def test_bad_timing(timing: list[float], message: str) -> None:
     with pytest.raises(ProblemError, match=rf"^{message}$"):
         PathTask.from_degrees(LINE, timing_deg=timing)
-
-
-@given(st.lists(st.integers(1, 50), min_size=2, max_size=7), st.sampled_from([-1, 1]))
-def test_any_monotone_timing_of_at_most_a_turn_is_kept(steps: list[int], sense: int) -> None:
-    timing = sense * np.concatenate([[0], np.cumsum(steps)])
-    task = PathTask.from_degrees([[k, k % 2] for k in range(len(timing))], timing_deg=timing)
-    assert task.timing is not None
-    assert task.timing.tolist() == np.radians(timing).tolist()
 
 
 POSES: list[Any] = [[0, 0, 10], {"x": 3, "y": 0}, {"angle": 40}, [1, 5, 50]]
@@ -121,7 +86,7 @@ def test_a_path_has_the_columns_of_a_motion() -> None:
         assert task.exact_by_default
 
 
-def test_what_a_task_does_not_ask_of_the_output_is_free() -> None:
+def test_outputs_that_a_task_does_not_state_are_free() -> None:
     path, stroke = PathTask(LINE), StrokeTask.from_degrees(swing_deg=60)
     assert not path.has_output.any()
     assert (path.at_limits, path.travels, path.fits_range, path.norm) == (False, False, False, "rms")
@@ -182,18 +147,6 @@ def test_a_task_may_return_to_its_first_target() -> None:
     assert MotionTask.from_degrees([first, *rest, [0, 0, 370]]).returns
     assert not MotionTask.from_degrees([first, *rest, [0, 0, 11]]).returns
     assert not MotionTask.from_degrees([first, *rest, {"x": 0, "y": 0}]).returns
-
-
-@pytest.mark.parametrize(
-    ("timing", "message"),
-    [
-        ([0, 20, 40], r"motion.timing_deg has 3 angles for 4 poses"),
-        ([5, 20, 40, 60], r"motion.timing_deg\[0\] is 5; it must be 0, at the first pose"),
-    ],
-)
-def test_a_bad_timing_of_poses(timing: Any, message: str) -> None:
-    with pytest.raises(ProblemError, match=rf"^{message}$"):
-        MotionTask.from_degrees(POSES, timing_deg=timing)
 
 
 def test_closed_is_true_or_false() -> None:
