@@ -64,10 +64,10 @@ class Checker(CirclePoints):
         self.first_pieces = np.zeros(len(self.fates), bool)
         self.first_pieces[data["first"]] = True
         if not (len(self.fates) == len(self.parents) and 0 <= data["upper_deg"] <= 90):
-            raise ValueError("lists of unequal length, or a bound that none can be")
+            raise ValueError("lists of unequal length, or an impossible bound")
 
     def far(self, *part: Any) -> Bools:
-        """No arm is so long or so short, and no circle through three places."""
+        """Arms, or circles through three places, are too long or too short everywhere in parts of tubes."""
         z, gone = self.place(*part)
         w = [self.moved(z, j) for j in range(4)]
         forms = self.arm(z)
@@ -79,12 +79,12 @@ class Checker(CirclePoints):
         return gone | empty(forms)
 
     def arm(self, z: Vector) -> list[Poly]:
-        """What an arm has to meet, zero or greater."""
+        """Conditions of an arm, each zero or greater."""
         far = square(z)
         return [far + -(self.arms[0] ** 2), far * -1.0 + min(self.arms[1] ** 2, 1e300)]
 
     def dyad(self, z: Vector, ground: str, moving: str, link: str) -> list[Poly]:
-        """What a dyad has to meet, zero or greater."""
+        """Conditions of a dyad, each zero or greater."""
         c, (shortest, longest) = self.centre(z), self.links[link]
         r2 = square(minus(z, c))
         forms = [*self.arm(z), r2 * -1.0 + longest**2, r2 + -(shortest**2)]
@@ -124,7 +124,7 @@ class Checker(CirclePoints):
         return (made[0], made[1]), (made[2], made[3]), gone
 
     def pair(self, pairs: Ints, reason: str) -> Test:
-        """The test of pairs of pieces by lengths alone, by what they transmit, or by both."""
+        """The test of pairs of pieces by lengths alone, by transmission, or by both."""
 
         def test(n: Ints, s: Floats, ds: Floats, t: Floats, dt: Floats) -> Bools:
             za, ca, gone = self.side(pairs[n, 0], s, ds, other=False)
@@ -162,7 +162,7 @@ class Checker(CirclePoints):
         return test
 
     def lengths(self, links: list[Poly]) -> tuple[list[Poly], list[list[Poly]]]:
-        """What lengths have to meet; and what more, for one kind of linkage or another."""
+        """Conditions of the lengths; and more of them for each kind of linkage."""
         forms: list[Poly] = []
         for r, (low, high) in zip(links, self.links.values(), strict=True):
             forms += [r + -low, r * -1.0 + high]
@@ -195,7 +195,7 @@ class Checker(CirclePoints):
         self.check_pairs()
 
     def tree(self) -> None:
-        """Rectangles, tubes and halves are what they are said to be."""
+        """Rectangles, tubes and halves are as stated."""
         nodes, fates, parents = np.arange(len(self.fates)), self.fates, self.parents
         if not np.isin(fates, DROPPED + KEPT).all():
             raise ValueError("an unknown fate")
@@ -253,7 +253,7 @@ class Checker(CirclePoints):
 
 
 def differences(data: dict[str, Any], path: str) -> list[str]:
-    """What a certificate states otherwise than a problem file."""
+    """Parts in which a certificate differs from a problem file."""
     with Path(path).open("rb") as file:
         problem = tomllib.load(file)
     stated, found = problem.get("requirements", {}), []

@@ -19,7 +19,7 @@ NEXT = 4 * UNIT  # by which parts overlap: no gaps between them by rounding
 
 
 class CirclePoints:
-    """What a certificate states of the curve, in a frame at the first pose and with lengths in sizes.
+    """The curve of a certificate, in a frame at the first pose and with lengths in sizes.
 
     Parts are numbers k of rectangles, their tubes or pairs, and the middles and halves of ranges of two
     parameters, each an array of shape (n,).
@@ -98,8 +98,8 @@ class CirclePoints:
     def quartered(self, name: str, which: Ints, test: Test) -> None:
         """Parts of things that a test leaves, quartered until nothing is left; else those are a fault."""
         none: Floats = np.zeros(len(which))
-        whole = none + 1
-        parts, enough = (which, none, whole, none, whole), max(MOST, len(which))
+        full = none + 1
+        parts, enough = (which, none, full, none, full), max(MOST, len(which))
         for _ in range(DEPTH + 1):
             if not 0 < len(which) <= enough:
                 break
@@ -145,7 +145,7 @@ class CirclePoints:
         return zero_free(self.cubic(self.in_rectangle(*part)))
 
     def narrowed(self, k: Ints, low: Floats, high: Floats, e: Floats, rounds: int = 5) -> Floats:
-        """How far from the middle of tubes the curve can be, where it is no farther than e."""
+        """How far from the middle of tubes the curve can be, where it is at most e away."""
         s = Poly.of((low + high) / 2, (high - low) / 2 + NEXT * (1 + np.abs(low) + np.abs(high)))
         for _ in range(rounds):
             f = self.cubic(self.on_tube(k, s, Poly.of(0.0 * e, 0.0, e)))

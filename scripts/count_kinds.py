@@ -1,40 +1,116 @@
-"""Count what knows the kinds of linkage: files that ask for the kind, and bodies of the loop's closure.
+"""Count the code that knows the kinds of linkage: files that ask for the kind, bodies of the loop's closure.
 
-A file asks when it compares a kind (`MECHANISM`, `mechanism`, `FOUR_BAR` ..., a class of linkage, or
-`type(linkage)`), looks something up by it, keys or lists a table by it, matches it, dispatches by the
-annotation of a registered function, or uses `isinstance`, `kind_of`, `KINDS` or `SLIDES`. Names are followed
-through imports: other things of these names do not count. Imports, annotations and the construction of a
-linkage do not ask. A file that only hands the word on, to a function, a file, a column or a message, is
-counted apart. The values themselves may ask.
+A file asks when it compares a kind (a class of linkage, its word or `mechanism`, `type(linkage)`), looks
+something up by it, keys or lists a table by it, matches it, or dispatches by it (`isinstance`, `kind_of`,
+registered functions). Imports, annotations, the construction of a linkage and handing the word on do not ask,
+nor does code that looks at features (`slides`, `"o4" in ground`). The values themselves may ask.
 
 Bodies of the closure carry a mark, `# closure: RRR` (RRP, RPR, or several): code that finds links 3 and 4, or
 the slide, from the driver angle. Nothing else shows them all: some fix the assembly, one leaves the root to
 Ipopt, one is text for GeoGebra. A function that takes a root and names the assembly without a mark is a
-suspect. Most suspects find something else, such as limit positions; a new one has to be looked at.
-
-Not seen: a kind that is told by what it has (`hasattr`, `"o4" in ground`, the `kinds` of a quantity, the
-`slides` of a row, the kind of its dyads) or by a function that tells it (`is_of`, `closing_dyad`), or that is
-held in a variable of another name, and kinds in JavaScript but for marks.
+suspect. Most suspects find something else, such as limit positions; a new one has to be examined.
 """
 
-import argparse
 import ast
-import json
 import re
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from kinds_asked import HOME, Asking, Scope, last
-from source_tree import FOLDERS, ROOT, circle_of_modules, circle_of_rooms, name_of
+from source_tree import FOLDERS, ROOT, circle_of_modules, circle_of_rooms
 
 LAYERS = (*FOLDERS, "src/grashof", "scripts")
+HOME = "problems/values/linkages/"  # the room of the linkages as values
+CLASSES = frozenset({"FourBar", "SliderCrank", "InvertedSliderCrank", "SixBar"})
+WORDS = frozenset({
+    "four-bar", "slider-crank", "inverted-slider-crank", "six-bar", "watt-1", "watt-2", "stephenson-1",
+    "stephenson-3",
+})  # fmt: skip
+CONSTANTS = frozenset({"FOUR_BAR", "SLIDER_CRANK", "INVERTED"})
 MARK = re.compile(r"(?:#|//) closure: ((?:RRR|RRP|RPR)(?:, (?:RRR|RRP|RPR))*)$", re.MULTILINE)
 ROOTS = frozenset({"sqrt", "arccos", "acos", "arcsin", "asin", "root"})
 ASSEMBLY = frozenset({"assembly", "sign", "branch"})
 LONGEST, FULLEST = 400, 20  # lines of a file, files of a folder
+_LISTS = ast.Tuple | ast.List | ast.Set
+
+
+def last(node: ast.AST | None) -> str:
+    """Last part of a dotted name, or of the table of an index; empty of anything else."""
+    if isinstance(node, ast.Subscript):
+        return last(node.value)
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
+
+
+def is_kind(node: ast.AST) -> bool:
+    """Whether an expression stands for a kind, or is a list or a union with one."""
+    match node:
+        case ast.Tuple(elts=parts) | ast.List(elts=parts) | ast.Set(elts=parts):
+            return any(map(is_kind, parts))
+        case ast.BinOp(left=left, right=right):
+            return is_kind(left) or is_kind(right)
+        case ast.Constant(value=str(text)):
+            return text in WORDS | CLASSES
+        case ast.Call(func=ast.Name("type"), args=[one]) | ast.Attribute(value=one, attr="__class__"):
+            return "linkage" in last(one) or is_kind(one)
+        case ast.Attribute(value=one, attr="__name__"):
+            return is_kind(one)
+    return last(node) in CLASSES | CONSTANTS | {"mechanism"}
+
+
+def asks(tree: ast.AST) -> dict[str, list[int]]:
+    """The ways in which a source asks for the kind, with the lines."""
+    found: dict[str, list[int]] = {}
+    for node in ast.walk(tree):
+        for way, parts in _questions(node):
+            if any(map(is_kind, parts)):
+                found.setdefault(way, []).append(getattr(node, "lineno", 0))
+    return found
+
+
+def _questions(node: ast.AST) -> Iterator[tuple[str, list[Any]]]:
+    """How a node asks, and the expressions that have to stand for a kind."""
+    match node:
+        case ast.Call(func=ast.Name("isinstance" | "issubclass"), args=[one, classes]):
+            constant = "linkage" in last(one) and last(classes).isupper()
+            yield "isinstance", [ast.Constant("FourBar") if constant else classes]
+        case ast.Compare(left=left, comparators=others):
+            yield "compared", [left, *others]
+        case ast.Call(func=ast.Attribute(value=value, attr="startswith" | "endswith")):
+            yield "compared", [value]
+        case ast.Match(subject=subject):
+            yield "match", [subject]
+        case ast.MatchValue(value=value) | ast.MatchClass(cls=value):
+            yield "match", [value]
+        case ast.Call(func=ast.Attribute(attr="get" | "setdefault" | "pop" | "fromkeys"), args=[key, *_]):
+            yield "key", [key]
+        case ast.Dict(keys=keys):
+            yield "key", [key for key in keys if key]
+        case ast.DictComp(key=key):
+            yield "key", [key]
+        case ast.Subscript(slice=key, value=table) if last(table).isupper():
+            yield "key", [key]
+        case ast.Subscript(slice=key, value=table) if last(table).islower():  # not such as list[FourBar]
+            yield "key", [key] if last(key) not in CLASSES and not isinstance(key, _LISTS | ast.BinOp) else []
+        case ast.Call(func=ast.Name("kind_of")):
+            yield "table", [ast.Constant("FourBar")]
+        case ast.For(iter=value) | ast.Assign(targets=[ast.Name()], value=value):
+            lists = [each for each in _literals(value) if isinstance(each, _LISTS)]
+            names = [part for each in lists for part in each.elts if last(part) != "mechanism"]
+            yield "listed", [name for name in names if not isinstance(name, ast.Constant | _LISTS)]
+        case ast.FunctionDef(decorator_list=[_, *_] as marks, args=arguments):
+            stated = [*marks, *(each.annotation for each in arguments.args[:1] if each.annotation)]
+            parts = [part for one in stated for part in ast.walk(one)]
+            yield "register", parts if any(last(part) == "register" for part in parts) else []
+
+
+def _literals(value: ast.AST) -> Iterator[ast.AST]:
+    """A literal and those inside it, tables of tables."""
+    yield value
+    if isinstance(value, _LISTS | ast.Dict):
+        for each in value.values if isinstance(value, ast.Dict) else value.elts:
+            yield from _literals(each)
 
 
 def closures(text: str) -> list[str]:
@@ -71,84 +147,53 @@ def read(folder: str, ending: str = "py") -> dict[str, str]:
     return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
-def counted() -> dict[str, Any]:
-    """What is behind the figures: by layer and file, by folder, or by name."""
-    texts = {layer: read(layer) for layer in LAYERS}
-    trees = {where: ast.parse(text) for files in texts.values() for where, text in files.items()}
-    # Scripts import one another by their bare names.
-    names = {
-        where: Path(where).stem if where.startswith("scripts/") else name_of(ROOT / where) for where in trees
-    }
-    scopes = {names[where]: Scope(tree) for where, tree in trees.items()}
-    found: dict[str, Any] = {what: {} for what in ("asks", "passes", "closures", "suspects")}
-    for layer, files in texts.items():
-        asking = {
-            where: Asking(scopes[names[where]], scopes) for where in files if not HOME.match(names[where])
-        }
-        for where, one in asking.items():
-            one.visit(trees[where])
-        marked = files | (read(layer, "js") if layer.startswith("src") else {})
-        figures: dict[str, dict[str, Any]] = {
-            "asks": {where: one.asks for where, one in asking.items()},
-            "passes": {where: one.passes for where, one in asking.items() if not one.asks},
+def counted() -> dict[str, dict[str, dict[str, Any]]]:
+    """Files that ask, closures, suspects, by layer and file; circles of imports; large folders and files."""
+    found: dict[str, dict[str, dict[str, Any]]] = {what: {} for what in ("asks", "closures", "suspects")}
+    sizes = {where: text.count("\n") for where, text in read("tests").items()}
+    for layer in LAYERS:
+        texts = read(layer)
+        sizes |= {where: text.count("\n") for where, text in texts.items()}
+        trees = {where: ast.parse(text) for where, text in texts.items()}
+        marked = texts | (read(layer, "js") if layer.startswith("src") else {})
+        by_file: dict[str, dict[str, Any]] = {
+            "asks": {where: asks(tree) for where, tree in trees.items() if not where.startswith(HOME)},
             "closures": {where: closures(text) for where, text in marked.items()},
-            "suspects": {where: suspects(trees[where], text) for where, text in files.items()},
+            "suspects": {where: suspects(trees[where], text) for where, text in texts.items()},
         }
-        for what, by_file in figures.items():
-            found[what][layer] = {where: value for where, value in by_file.items() if value}
-    texts["tests"] = read("tests")
-    sizes = {where: len(text.splitlines()) for files in texts.values() for where, text in files.items()}
+        for what, every in by_file.items():
+            found[what][layer] = {where: value for where, value in every.items() if value}
     folders = Counter(Path(where).parent.as_posix() for where in sizes)
     return found | {
-        "lines": {layer: sum(sizes[where] for where in files) for layer, files in texts.items()},
-        "full": {folder: count for folder, count in folders.items() if count > FULLEST},
-        "long": {where: size for where, size in sizes.items() if size > LONGEST},
-        "circles": {"files": circle_of_modules(), "rooms": circle_of_rooms()},
-    }
-
-
-def totals(found: dict[str, Any]) -> dict[str, dict[str, int]]:
-    """The figures, by layer where they have one."""
-    return {
-        **{what: {layer: len(files) for layer, files in found[what].items()} for what in ("asks", "passes")},
-        **{
-            what: {layer: sum(map(len, files.values())) for layer, files in found[what].items()}
-            for what in ("closures", "suspects")
+        "circles": {
+            "files": dict.fromkeys(circle_of_modules()), "rooms": dict.fromkeys(circle_of_rooms())
         },
-        "lines": found["lines"],
-        "circles": {what: len(names) for what, names in found["circles"].items()},
-        "large": {what: len(found[what]) for what in ("full", "long")},
+        "large": {
+            "full": {folder: count for folder, count in folders.items() if count > FULLEST},
+            "long": {where: size for where, size in sizes.items() if size > LONGEST},
+        },
+    }  # fmt: skip
+
+
+def totals(found: dict[str, dict[str, dict[str, Any]]]) -> dict[str, dict[str, int]]:
+    """The figures: of files that ask, circles and large things their number, else how many each file has."""
+    of_files = ("asks", "circles", "large")
+    return {
+        what: {
+            group: len(files) if what in of_files else sum(map(len, files.values()))
+            for group, files in groups.items()
+        }
+        for what, groups in found.items()
     }
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Print the figures by layer, or with `--json` all that is behind them."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--json", action="store_true", help="files, lines and functions behind the figures")
-    asked = parser.parse_args(argv)
+def main() -> int:
+    """Print the figures, and the names behind them."""
     found = counted()
-    if asked.json:
-        print(json.dumps(found, indent=1))
-        return 0
-    figures = totals(found)
-    columns = ("asks", "passes", "closures", "suspects", "lines")
-    print(f"{'':12}" + "".join(f"{what:>10}" for what in columns))
-    for layer in found["lines"]:
-        print(f"{layer:12}" + "".join(f"{figures[what].get(layer, ''):>10}" for what in columns))
-    for layer, files in found["closures"].items():
-        dyads = Counter(dyad for each in files.values() for dyad in each)
-        print(
-            f"closures in {layer}: {', '.join(f'{count} {dyad}' for dyad, count in dyads.items()) or 'none'}"
-        )
-    for what, names in found["circles"].items():
-        print(f"{what} in circles of imports: {', '.join(names) or 'none'}")
-    for what, large in (
-        ("full", f"folders of more than {FULLEST} files"),
-        ("long", f"files above {LONGEST} lines"),
-    ):
-        print(f"{large}: {', '.join(f'{name} {size}' for name, size in found[what].items()) or 'none'}")
+    for what, figures in totals(found).items():
+        for group, figure in figures.items():
+            names = (f"{name} {value or ''}".strip() for name, value in found[what][group].items())
+            print(f"{what}, {group}: {figure}", *names, sep="\n    ")
     return 0
 
 

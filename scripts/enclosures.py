@@ -30,7 +30,7 @@ ROUNDED = [UNIT / 2 * sum(k == each for *_, k in PRODUCTS) for each in range(10)
 
 
 class Poly:
-    """Polynomials, arrays of shape (10, n), and what they may be off by, shape (n,)."""
+    """Polynomials, arrays of shape (10, n), and bounds of their errors, shape (n,)."""
 
     def __init__(self, c: Floats, r: Floats) -> None:
         self.c = c

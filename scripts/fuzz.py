@@ -1,11 +1,11 @@
 """Bad input at scale: mutated problem files, linkage files and lists, each refused in clear lines or right.
 
     python scripts/fuzz.py                    # 10 000 mutants
-    python scripts/fuzz.py --show FILE        # what becomes of a file that it wrote as a finding
+    python scripts/fuzz.py --show FILE        # examine a finding again
 
-Every mutant loads, or `ProblemError` states what is wrong, in a line for each error. A problem that loads
-reads back the same from what is written of it. A share of the problems, of up to a hundred targets, are
-searched, a little, and every design is judged once more from its numbers alone; a share of the linkages are
+Every mutant loads, or `ProblemError` states each error in a line of its own. A problem that loads
+is the same when written and read again. A share of the problems, of up to a hundred targets, are
+searched briefly, and every design is judged once more from its numbers alone; a share of the linkages are
 reported on. Exit code 1: something was found.
 """
 
@@ -23,7 +23,6 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
@@ -53,7 +52,7 @@ LOADING, WORKING = 5, 180  # s of processor time, after which it counts as a han
 MOST_TARGETS = 100  # of a task that is searched: the time grows with them
 LONGEST = 1500  # characters of a line of an error, beside the name of the file
 TRACEBACK, HANG, WRONG, UNCLEAR = "tracebacks", "hangs", "wrong designs", "unclear messages"
-# All that an analysis can be asked for; what does not go together, or not with every kind, by itself.
+# Every option of an analysis; those that exclude each other, or need a certain kind, by themselves.
 ASKED = (
     Asked(tolerance=0.01, sections=ON_REQUEST, at_deg=(0.0, 90.0)),
     Asked(balance=True, seconds=0.2),
@@ -65,51 +64,33 @@ FINDINGS = (TRACEBACK, HANG, WRONG, UNCLEAR)
 COUNTED = ("files", "refused", "accepted", "searched", "designs judged", "reports", *FINDINGS)
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """A promise that a file breaks: which kind, and what happened."""
-
-    kind: str
-    what: str
-
-
 Work = Callable[[], bool]
 
 
-class BrokenError(Exception):
-    """A promise that is not kept."""
+class Finding(Exception):  # noqa: N818  (it is reported, too)
+    """A promise that a file breaks: its kind, and what happened."""
 
     def __init__(self, kind: str, what: str) -> None:
         super().__init__(what)
-        self.finding = Finding(kind, what)
+        self.kind, self.what = kind, what
 
 
 class TooLongError(BaseException):
-    """What runs into a limit of time; nothing that handles errors catches it."""
+    """A limit of time is exceeded; no handler of errors catches it."""
 
 
 def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Finding | None:
-    """What a file breaks, if anything.
-
-    Parameters
-    ----------
-    path : Path
-    kind : {"problem", "linkage", "list"}
-    figures : Counter
-        Of what became of the files; grows.
-    work : callable
-        Whether what loads is searched or reported on, too.
-    """
+    """The promise that a file breaks, if any; `work` decides whether it is searched or reported on, too."""
     figures["files"] += 1
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             _examined(path, kind, figures, work)
-    except BrokenError as broken:
-        return broken.finding
+    except Finding as found:
+        return found
     except TooLongError:
         return Finding(HANG, traceback.format_exc())
-    except Exception:  # noqa: BLE001  (this is what is looked for)
+    except Exception:  # noqa: BLE001  (findings)
         return Finding(TRACEBACK, traceback.format_exc())
     return None
 
@@ -145,16 +126,16 @@ def _refuse_unclear(error: ProblemError, where: str = "") -> None:
     for line in lines:
         words = line.removeprefix(where)
         if not words.strip() or len(words) > LONGEST or not words.isprintable() or (where and words == line):
-            raise BrokenError(UNCLEAR, f"{type(error).__name__}: {line}")
+            raise Finding(UNCLEAR, f"{type(error).__name__}: {line}")
     if len(set(lines)) < len(lines):
-        raise BrokenError(UNCLEAR, f"a line comes twice: {error}")
+        raise Finding(UNCLEAR, f"a line comes twice: {error}")
 
 
 def _examine_problem(problem: Problem, folder: Path, figures: Counter[str], work: Work) -> None:
     with _limit(LOADING):
         written = problem_toml(problem)
         if problem_toml(problem_of(written, "written", problem.name)) != written:
-            raise BrokenError(WRONG, "what is written of the problem reads back as another one")
+            raise Finding(WRONG, "the problem is another one when written and read again")
         summary(problem)
         try:
             refuse_unsearchable(problem)
@@ -185,7 +166,7 @@ def _judge_again(result: Result, figures: Counter[str]) -> None:
             linkage, problem.task, problem.requirements, problem=problem, cylinder=design.verdict.cylinder
         )
         if not verdict.ok or verdict.square > most:
-            raise BrokenError(WRONG, f"{linkage!r}: {verdict.defects}, {verdict.square} against {most}")
+            raise Finding(WRONG, f"{linkage!r}: {verdict.defects}, {verdict.square} against {most}")
 
 
 def _examine_linkage(
@@ -214,7 +195,7 @@ def _examine_linkage(
 
 @contextmanager
 def _limit(seconds: float) -> Iterator[None]:
-    """Interrupt what takes more processor time: a machine may be busy."""
+    """Interrupt after this processor time: a machine may be busy."""
 
     def stop(_signal: int, _frame: FrameType | None) -> None:
         raise TooLongError
@@ -229,12 +210,12 @@ def _limit(seconds: float) -> Iterator[None]:
 
 
 def seeds() -> list[Seed]:
-    """All files that mutants are made of, the few linkages and lists more than once."""
+    """The seeds of all mutants, the few linkages and lists more than once."""
     return [*problem_seeds(), *2 * linkage_seeds(), *3 * list_seeds()]
 
 
 def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> Counter[str]:
-    """Examine so many mutants; the figures. Findings go into a folder, and a line of each to stdout."""
+    """Figures of `count` mutants; findings go into a folder, and a line of each to stdout."""
     rng = random.Random(seed)  # noqa: S311
     mutator, figures = Mutator(files, rng), Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
@@ -242,7 +223,7 @@ def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> C
             mutant = mutator.mutant()
             path = Path(folder) / f"mutant{mutant.suffix}"
             path.write_bytes(mutant.content)
-            # What hangs in compiled code ends the program, with a traceback; the mutant then stays.
+            # A hang in compiled code ends the program, with a traceback; the mutant then stays.
             faulthandler.dump_traceback_later(10 * WORKING, exit=True, file=sys.__stderr__ or 2)
             found = examine(path, mutant.kind, figures, lambda: rng.random() < share)
             if found is not None:
@@ -267,7 +248,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--share", type=float, default=0.1, help="of what loads, for more than loading")
     parser.add_argument("--out", type=Path, default=Path("fuzz-findings"), help="folder for findings")
-    parser.add_argument("--show", type=Path, help="a finding to look at again; its name begins with its kind")
+    parser.add_argument("--show", type=Path, help="a finding to examine again; its name begins with its kind")
     given = parser.parse_args(arguments)
     if given.show:
         kind = next(kind for kind in KINDS if given.show.name.startswith(kind))

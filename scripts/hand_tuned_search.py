@@ -4,7 +4,7 @@
 
 The report guesses a dyad (a link W that turns by beta with the driver, an arm Z that turns with the box),
 improves the guess by a quasi-Newton method until the closure equations have no residual, does so again for
-the second dyad, and looks at what the two do together. It says that four guesses failed and the fifth worked.
+the second dyad, and looks at their linkage. It says that four guesses failed and the fifth worked.
 Here each of them is run and judged by `grashof.analysis.verify`; then many random guesses are, every one
 paired with every other.
 """
@@ -37,7 +37,7 @@ STARTS, JUDGED, RESAMPLED = 600, 100, 1000
 TOLERANCE = 1e-5  # of the size of the task: a quasi-Newton method ends at some 1e-6 of a root of squares
 REACH, TURNED = 6.0, 300.0  # of random guesses, m and deg: as far as the report's
 APART = 1e-3  # of the size: dyads so close are one
-GOOD = 30.0  # deg: a transmission angle that textbooks ask for
+GOOD = 30.0  # deg: the transmission angle that textbooks require
 
 
 class Guess(NamedTuple):
@@ -74,16 +74,9 @@ GUESSES = (
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """A dyad that is to pass the poses.
+    """A dyad that is to pass the poses: W and Z in the first pose, turns of W to the others (rad).
 
-    Parameters
-    ----------
-    link, arm : complex, length
-        W and Z in the first pose.
-    turns : tuple of float, rad
-        Of the link, to the other poses.
-    residual : float, length
-        Root of the sum of squares of what is left open at the poses.
+    `residual`, a length, is the root of the sum of squares of the gaps at the poses.
     """
 
     link: complex
@@ -91,15 +84,10 @@ class Dyad:
     turns: tuple[float, ...]
     residual: float
 
-    @property
-    def length(self) -> float:
-        """Of the link."""
-        return abs(self.link)
-
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """What came of a guess."""
+    """A guess with its dyads, their linkage and the verdict on it."""
 
     guess: Guess
     left: Dyad
@@ -136,7 +124,7 @@ def linkage_of(task: Task, left: Dyad, right: Dyad) -> FourBar:
     o2, o4 = ((pivot.real, pivot.imag) for pivot in pivots)
     assembly = np.sign((right.link / along).imag) or 1.0
     turned = float(task.angles[0] - np.angle(along))
-    return FourBar(o2, o4, left.length, abs(b - a), right.length, (p.real, p.imag), assembly, turned)
+    return FourBar(o2, o4, abs(left.link), abs(b - a), abs(right.link), (p.real, p.imag), assembly, turned)
 
 
 def tried(problem: Problem, guess: Guess) -> Tried:
@@ -148,7 +136,7 @@ def tried(problem: Problem, guess: Guess) -> Tried:
 
 
 def outcome(each: Tried) -> str:
-    """What a linkage does, in words."""
+    """The behaviour of a linkage in words."""
     verdict = each.verdict
     words = [str(verdict.grashof_class)]
     if not verdict.circuit_ok:
@@ -167,7 +155,7 @@ def outcome(each: Tried) -> str:
 
 
 def random_dyads(task: Task, starts: int, seed: int) -> list[Dyad]:
-    """What BFGS makes of random guesses."""
+    """Dyads from random guesses by BFGS."""
     rng = np.random.default_rng(seed)
     guesses = np.hstack([rng.uniform(-REACH, REACH, (starts, 4)), rng.uniform(-TURNED, TURNED, (starts, 3))])
     return [improved(task, guess) for guess in guesses]
@@ -175,31 +163,22 @@ def random_dyads(task: Task, starts: int, seed: int) -> list[Dyad]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pairs:
-    """Which pairs of dyads, the first of each driven, do what; each of shape (N, N).
-
-    Parameters
-    ----------
-    exact : ndarray of bool
-        Both close at all poses.
-    in_order : ndarray of bool
-        One motion without dead position meets the poses in order, besides.
-    crank_rocker : ndarray of bool
-        That is, besides.
-    usable : ndarray of bool
-        A full crank, and all else that the problem requires.
-    good : ndarray of bool
-        A crank-rocker whose transmission angle is `GOOD` over the turn.
-    """
+    """The pairs of dyads, the first of each driven, that have a property; arrays of shape (N, N)."""
 
     exact: BoolArray
+    "Both close at all poses."
     in_order: BoolArray
+    "One motion without dead position meets the poses in order, besides."
     crank_rocker: BoolArray
+    "That is a crank-rocker, besides."
     usable: BoolArray
+    "In order, a full crank, and all else that the problem requires."
     good: BoolArray
+    "A crank-rocker whose transmission angle is `GOOD` over the turn."
 
 
 def judged_pairs(problem: Problem, dyads: Sequence[Dyad]) -> Pairs:
-    """What every pair does, all at once: `verify` says the same of each by itself."""
+    """The properties of all pairs at once; `verify` agrees on each by itself."""
     task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
     link, arm = (np.array([getattr(dyad, name) for dyad in dyads]) for name in ("link", "arm"))
     turns = np.array([(0.0, *dyad.turns) for dyad in dyads])
@@ -267,8 +246,8 @@ def share(every: BoolArray, seed: int = 0) -> tuple[float, float, float]:
 
 
 def agreement(problem: Problem, dyads: Sequence[Dyad], pairs: Pairs, count: int, seed: int = 0) -> int:
-    """Of so many exact pairs at random, on how many `verify` is of one mind."""
-    # What dyads leave open is no more than ten times that at the poses of the linkage, where it fits best.
+    """On how many of `count` random exact pairs `verify` agrees."""
+    # The gaps of dyads are at most ten times those of the linkage where it comes nearest to the poses.
     wanted = replace(problem.requirements, tolerance=10 * TOLERANCE)
     chosen = np.random.default_rng(seed).choice(np.argwhere(pairs.exact), count)
     same = 0
@@ -281,7 +260,7 @@ def agreement(problem: Problem, dyads: Sequence[Dyad], pairs: Pairs, count: int,
 
 
 def guess_table(problem: Problem) -> Table:
-    """What came of the report's guesses."""
+    """The report's guesses and their linkages."""
     table = Table(title="The report's guesses, each dyad by BFGS", title_justify="left")
     for name in ("guess", "the report says", "residuals, m", "r1 to r4, m", "what it does"):
         table.add_column(name, no_wrap=True)
@@ -293,7 +272,7 @@ def guess_table(problem: Problem) -> Table:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print what guesses come to, and what the package finds."""
+    """Print the results of the guesses and of the package."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--starts", type=int, default=STARTS, help="random guesses")
     parser.add_argument("--seed", type=int, default=0)
@@ -307,7 +286,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     same = agreement(problem, dyads, pairs, JUDGED)
     console.print(
         f"{given.starts} random guesses of a dyad in {took:.1f} s, all {given.starts * (given.starts - 1)} "
-        f"pairs of them, with 95 % intervals (the judge is of one mind on {same} of {JUDGED}):"
+        f"pairs of them, with 95 % intervals (the judge agrees on {same} of {JUDGED}):"
     )
     for label, every, audited in (
         ("exact at the poses", pairs.exact, "7.5 to 27 %"),
@@ -323,7 +302,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     took = time.perf_counter() - began
     best = result.best.verdict
     console.print(
-        f"grashof.synthesize: {len(result)} designs in {took:.1f} s, which do all that the problem requires; "
+        f"grashof.synthesize: {len(result)} designs in {took:.1f} s, which meet all requirements; "
         f"the best has mu {np.degrees(best.transmission_min_task):.1f} deg on the way, "
         f"{np.degrees(best.transmission_min_cycle):.1f} deg over the turn"
     )

@@ -8,130 +8,97 @@ as text; every right value is computed by `grashof`.
 """
 
 import argparse
-import warnings
 from pathlib import Path
 
 import numpy as np
-from reports.folder import COLUMNS, Row, write_folder
-from reports.published import ELEVEN, JOB, LUGGAGE, MASSES, POSE_1, STEP
-from reports.pumpjack import bodies
+from reports.folder import COLUMNS, Row, Sources, write_folder
+from reports.luggage import Luggage
+from reports.published import ELEVEN, GRAVITY, LUGGAGE, MASSES, POSE_1, SAMPLES, STEP
+from reports.pumpjack import Pumpjack
 from rich.console import Console
 from rich.table import Table
 
 from grashof.analysis import (
     Loads,
-    NotAFunctionWarning,
-    central_differences,
-    extremes,
-    fit_polynomial,
     greatest_error,
     inverse_dynamics,
     newton_interpolation,
-    output_stroke,
-    regression,
     solve_kinematics,
     solve_position,
-    system_centre,
-    worst_transmission,
-    worst_transmission_cycle,
 )
-from grashof.problems import load_linkage_spec
 from grashof.problems.values.arrays import FloatArray
 
 SAME = "same"
-
-
-def pumpjack() -> list[Row]:
-    """Rows about the pumpjack, at 20 rpm."""
-    spec = load_linkage_spec("pumpjack")
-    linkage, omega2 = spec.four_bar, 20 * 2 * np.pi / 60
-    omega3 = extremes(linkage, lambda state: state.omega3, omega2)
-    alpha3 = extremes(linkage, lambda state: state.alpha3, omega2)
-    speed = extremes(linkage, lambda state: state.b.speed, omega2).high
-    push = extremes(linkage, lambda state: state.b.acceleration_magnitude, omega2).high
-    stroke = output_stroke(linkage)
-    ends = np.sort(solve_kinematics(linkage, stroke.theta2, omega2).b.acceleration_magnitude)[::-1]
-    a = solve_kinematics(linkage, 0.0, omega2).a
-    bars, whole = bodies(spec)
-    upright = solve_kinematics(linkage, np.pi / 2, omega2)
-    centre, centre_whole = (_pair(system_centre(masses, upright).position) for masses in (bars, whole))
-    return [
+# Quantity, as published, right with names of figures in braces, cause: at 20 rpm, and at 1 rad/s.
+ROWS: dict[str, tuple[Row, ...]] = {
+    "pumpjack": (
         (
-            "omega3 max / min, rad/s", "0.67 / -1.91", f"{omega3.high:.6f} / {omega3.low:.6f}",
+            "omega3 max / min, rad/s", "0.67 / -1.91", "{omega3_greatest:.6f} / {omega3_least:.6f}",
             "theta4 taken as theta_s + mu; right is theta3 + mu",
         ),
-        ("alpha3 max / min, rad/s2", "5.08 / -4", f"{alpha3.high:.6f} / {alpha3.low:.6f}", SAME),
-        ("v_B max, a_B max", "6.4, 25.1", f"{speed:.6f}, {push:.6f}", SAME),
+        ("alpha3 max / min, rad/s2", "5.08 / -4", "{alpha3_greatest:.6f} / {alpha3_least:.6f}", SAME),
+        ("v_B max, a_B max", "6.4, 25.1", "{speed_b_greatest:.6f}, {push_b_greatest:.6f}", SAME),
         (
-            "a_B at the ends of the stroke", "0", " / ".join(f"{end:.3f}" for end in ends),
+            "a_B at the ends of the stroke", "0", "{push_end_greatest:.3f} / {push_end_least:.3f}",
             "acceleration is not zero where velocity is",
         ),
-        ("v_A, a_A", "2.5, 5", f"{a.speed:.6f}, {a.acceleration_magnitude:.6f}", "rounding"),
-        ("rocker swing, deg", "69.2 (from its code)", f"{np.degrees(stroke.swing):.6f}", "as omega3"),
+        ("v_A, a_A", "2.5, 5", "{speed_a:.6f}, {push_a:.6f}", "rounding"),
+        ("rocker swing, deg", "69.2 (from its code)", "{swing:.6f}", "as omega3"),
         (
             "system COM at theta2 = 90 deg", "(2.92, 3.19)",
-            f"{centre}; with the full beam A + C {centre_whole}",
+            "({system_x:.6f}, {system_y:.6f}); with the full beam A + C "
+            "({system_whole_x:.6f}, {system_whole_y:.6f})",
             "coupler assumed horizontal; one link's centre used as the next one's joint",
         ),
         (
             "moving mass, kg", "3941.98",
-            f"{bars.total:.2f} for the links simulated; {whole.total:.2f} with the full beam",
-            f"beam length 7.62 used, rocker is {linkage.r4:.6f}",
+            "{mass:.2f} for the links simulated; {mass_whole:.2f} with the full beam",
+            "beam length 7.62 used, rocker is {r4:.6f}",
         ),
-    ]  # fmt: skip
-
-
-def luggage() -> list[Row]:
-    """Rows about the luggage linkage, at 1 rad/s."""
-    samples = POSE_1 + STEP * np.arange(101)
-    state = solve_kinematics(LUGGAGE, samples)
-    torque, heavy = (
-        _peaks(inverse_dynamics(state, MASSES, Loads(gravity=(0.0, -g))).torque) for g in (0.0, 9.81)
-    )
-    low = [_too_low(state.theta2, derivative) for derivative in (1, 2)]
-    step = f"h = 5 deg for samples {np.degrees(STEP):.4f} deg apart"
-    tracks = _tracks(ELEVEN)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NotAFunctionWarning)
-        r2 = [regression(track, 2).r2 for track in tracks]
-    fine = np.linspace(0, 30, 601)
-    parametric = [
-        greatest_error(fit_polynomial(ELEVEN, track, 4), fine, true)
-        for track, true in zip(tracks, _tracks(fine), strict=True)
-    ]
-    task = np.degrees(worst_transmission(LUGGAGE, POSE_1, POSE_1 + JOB))
-    turn = np.degrees(worst_transmission_cycle(LUGGAGE))
-    return [
+    ),
+    "luggage": (
         (
             "torque over its 101 samples, max / min / rms", "66.48 / -28.90 / 9.48",
-            f"{torque} (with gravity {heavy})", "moment arms of rows 3, 6, 9",
+            "{torque} (with gravity {torque_heavy})",
+            "moment arms of rows 3, 6, 9",
         ),
-        ("velocities by central differences", f"{low[0]:.1%} low".replace("%", " %"), "-", step),
-        ("accelerations by central differences", f"{low[1]:.1%} low".replace("%", " %"), "-", SAME),
+        (
+            "velocities by central differences", "{low_1:.1f} % low", "-",
+            "h = 5 deg for samples {step:.4f} deg apart",
+        ),
+        ("accelerations by central differences", "{low_2:.1f} % low", "-", SAME),
         (
             "regression y(x), R2 of degree 2: links 2, 3, 4", '"fits"',
-            ", ".join(f"{each:.3f}" for each in r2), "x not monotone",
+            "{r2_fit_y_2_2:.3f}, {r2_fit_y_2_3:.3f}, {r2_fit_y_2_4:.3f}", "x not monotone",
         ),
         (
             "Newton interpolation, max error: links 2, 3, 4", '"accurate"',
-            ", ".join(f"{_newton_error(link):.3g}" for link in range(3)),
-            f"same; parametric degree 4: {', '.join(f'{each:.4f}' for each in parametric)} "
+            "{halfway_2:.3g}, {halfway_3:.3g}, {halfway_4:.3g}",
+            "same; parametric degree 4: {fit_t_4_2:.4f}, {fit_t_4_3:.4f}, {fit_t_4_4:.4f} "
             "(an audit gave link 4's for link 3 too)",
         ),
-        ("worst transmission angle, task / turn", "not given", f"{task:.2f} / {turn:.2f} deg", "-"),
-    ]  # fmt: skip
+        ("worst transmission angle, task / turn", "not given", "{mu_task:.2f} / {mu_turn:.2f} deg", "-"),
+    ),
+}  # fmt: skip
 
 
-def _tracks(every: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def torque(gravity: float) -> str:
+    """Greatest, least and effective drive torque, N m, of slender bars at the samples."""
+    state = solve_kinematics(LUGGAGE, POSE_1 + STEP * np.arange(SAMPLES))
+    torques = inverse_dynamics(state, MASSES, Loads(gravity=(0.0, -gravity))).torque
+    return f"{torques.max():.2f} / {torques.min():.2f} / {np.sqrt(np.mean(torques**2)):.2f}"
+
+
+def tracks(samples: FloatArray) -> dict[int, FloatArray]:
     """Centres of links 2, 3 and 4, halfway between their joints, at these of the 101 samples."""
-    state = solve_position(LUGGAGE, POSE_1 + STEP * every)
-    return state.a / 2, (state.a + state.b) / 2, (LUGGAGE.o4 + state.b) / 2
+    state = solve_position(LUGGAGE, POSE_1 + STEP * samples)
+    return {2: state.a / 2, 3: (state.a + state.b) / 2, 4: (LUGGAGE.o4 + state.b) / 2}
 
 
-def _newton_error(link: int) -> float:
+def newton_error(link: int) -> float:
     """Greatest error of y(x) through five of the eleven, halfway in x between the first two of them."""
-    track, fine = _tracks(ELEVEN)[link], np.linspace(0, 30, 30001)
-    x, y = _tracks(fine)[link].T
+    track, fine = tracks(ELEVEN)[link], np.linspace(0, 30, 30001)
+    x, y = tracks(fine)[link].T
     errors = []
     for first in range(7):
         halfway = track[first : first + 2, 0].mean()
@@ -142,21 +109,17 @@ def _newton_error(link: int) -> float:
     return float(max(errors))
 
 
-def _too_low(theta2: FloatArray, derivative: int) -> float:
-    """Share by which differences come out low when 5 deg is put in for the step of the samples."""
-    right, wrong = (
-        central_differences(step * np.arange(len(theta2)), theta2**derivative, derivative)
-        for step in (STEP, np.radians(5))
-    )
-    return float(np.nanmean(1 - wrong / right))
-
-
-def _peaks(torque: FloatArray) -> str:
-    return f"{torque.max():.2f} / {torque.min():.2f} / {np.sqrt(np.mean(torque**2)):.2f}"
-
-
-def _pair(point: FloatArray) -> str:
-    return f"({point[0]:.6f}, {point[1]:.6f})"
+def rows_of(sources: Sources) -> dict[str, list[Row]]:
+    """The tables of both reports, with their figures."""
+    own: dict[str, float | str] = {f"halfway_{link}": newton_error(link) for link in (2, 3, 4)}
+    own |= {"torque": torque(0.0), "torque_heavy": torque(GRAVITY)}
+    found = {}
+    for report, rows in ROWS.items():
+        figures = sources[report].numbers | own
+        found[report] = [
+            (a, b.format(**figures), c.format(**figures), d.format(**figures)) for a, b, c, d in rows
+        ]
+    return found
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -165,7 +128,8 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("reports"), help="folder; reports by default")
     folder = parser.parse_args(argv).out
     console = Console(width=250, highlight=False, markup=False)
-    rows = {"pumpjack": pumpjack(), "luggage": luggage()}
+    sources: Sources = {"pumpjack": Pumpjack(), "luggage": Luggage()}
+    rows = rows_of(sources)
     for title, table_rows in zip(("1. The pumpjack", "2. The luggage linkage"), rows.values(), strict=True):
         table = Table(title=title, title_justify="left")
         for name in COLUMNS:
@@ -173,7 +137,7 @@ def main(argv: list[str] | None = None) -> int:
         for row in table_rows:
             table.add_row(*row)
         console.print(table)
-    files = write_folder(folder, rows)
+    files = write_folder(folder, sources, rows)
     console.print(f"{len(files)} files in {folder}; open {files[-1]}")
     return 0
 

@@ -1,12 +1,13 @@
 """The source of the package as a tree: modules, layers, rooms, and what imports what."""
 
-import ast
+import re
 from collections.abc import Mapping, Set
 from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = {"problems": "grashof.problems", "analysis": "grashof.analysis", "synth": "grashof.synth"}
+IMPORT = re.compile(r"^[ \t]*(?:from ([\w.]+) import (?:\(([^)]*)\)|(.+))|import (.+))$", re.MULTILINE)
 # Every layer may import from those before it.
 LAYERS = ("grashof.problems", "grashof.analysis", "grashof.synth", "grashof")
 
@@ -25,13 +26,12 @@ SOURCES = {name_of(path): path for folder in (*FOLDERS, "src") for path in (ROOT
 def imported(name: str) -> frozenset[str]:
     """Modules that a module imports, lazily or not; a package where it takes a name from it."""
     found = set[str]()
-    for node in ast.walk(ast.parse(SOURCES[name].read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            module = node.module or ""
-            full = [f"{module}.{alias.name}" for alias in node.names]
-            found |= {each if each in SOURCES else module for each in full}
+    for module, listed, named, plain in IMPORT.findall(SOURCES[name].read_text(encoding="utf-8")):
+        names = [
+            each.split()[0] for each in re.sub("#.*", "", listed or named or plain).split(",") if each.strip()
+        ]
+        full = [f"{module}.{each}" for each in names] if module else names
+        found |= {each if each in SOURCES or not module else module for each in full}
     return frozenset(found)
 
 
@@ -77,6 +77,6 @@ def circle_of_modules() -> list[str]:
 
 
 def circle_of_rooms() -> list[str]:
-    """Rooms that import from one that imports from them; what a layer shows to others is none."""
+    """Rooms that import from one that imports from them; the `__init__` of a layer is not a room."""
     layers = set(LAYERS)
     return circle({name: others - layers for name, others in imports_of_rooms().items()})

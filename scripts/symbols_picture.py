@@ -1,4 +1,4 @@
-"""Draw what the symbols of a linkage mean: u and v, the angles, mu, and the frame of the body."""
+"""Draw the symbols of a linkage: u and v, the angles, mu, and the frame of the body."""
 
 from typing import Any
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-# The tests run in one process a core: threads of NumPy's own would only stand in each other's way.
+# The tests run in one process a core: threads of NumPy's own would only compete.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest

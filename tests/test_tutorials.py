@@ -1,4 +1,4 @@
-"""The tutorials, followed step by step: every command is run, and says what is shown."""
+"""The tutorials, followed step by step: every command is run, and prints what the page shows."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PLACES = {
 
 
 def run(line: str) -> str:
-    """What a command of the page prints, both streams; its output file is written where it names one."""
+    """The output of a command of the page, both streams; its output file is written where it names one."""
     words = shlex.split(line)
     into = words.pop() if ">" in words else None
     words = [word for word in words if word != ">"]

@@ -1,8 +1,8 @@
 """Tasks as a user of a general solver writes them down: unknowns in a box, residuals, and limits.
 
 Of points and poses the unknowns are O2, O4, r2, r3, r4, the coupler point, the body's angle and the driver
-angle at every target; of a function r2, r3, r4 over the ground, and where driver and output begin. What is a
-choice, such as the assembly, is drawn at random for every start. A limit holds where it is not positive.
+angle at every target; of a function r2, r3, r4 over the ground, and where driver and output begin. Choices,
+such as the assembly, are drawn at random for every start. A limit holds where it is not positive.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ STEP = 1e-3  # rad, between two targets
 
 
 class Choice(NamedTuple):
-    """What a start decides: each 1 or -1."""
+    """Choices of a start, each 1 or -1."""
 
     assembly: float
     way: float
@@ -50,13 +50,13 @@ class CouplerFormulation:
     low: FloatArray
     high: FloatArray
     scale: float
-    "That residuals are divided by."
+    "Divisor of the residuals."
     minimax: bool = False
     "Whether the greatest residual is made least instead of the sum of squares."
 
     @classmethod
     def of(cls, task: Task, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
-        """Pivots within so many sizes of the task, links as the requirements have them."""
+        """Pivots within `reach` sizes of the task, links as the requirements have them."""
         size, middle = task.size, task.positions.mean(axis=0)
         least, most = wanted.link_length or (0.01 * size, 20 * size)
         arm = (wanted.coupler_arms or (0, np.inf))[1]
@@ -194,13 +194,13 @@ Formulation = CouplerFormulation | FunctionFormulation
 
 
 def _transmission(square: FloatArray, r3: float, r4: float, wanted: Requirements) -> FloatArray:
-    """What the transmission angle lacks where A and O4 are so far apart, squared; assembly at least."""
+    """Lack of transmission angle, or of assembly, at these squared distances from A to O4."""
     cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
     most: float = np.cos(np.radians(wanted.transmission_min_deg))
     return np.concatenate([cosine - most, -cosine - most])
 
 
 def _turning(shortest: float, *others: float) -> FloatArray:
-    """What the shortest link with each other is longer than the two that are left (Grashof)."""
+    """Excess of the shortest link plus each other one over the two left (Grashof)."""
     total = sum(others)
     return np.array([shortest + 2 * each - total for each in others])

@@ -5,11 +5,12 @@ closed by the elbow formula, every limit is a residual once it is overstepped, a
 improves many random starts at once, with differences for derivatives. Sequential quadratic programming
 (SLSQP of scipy) brings the best under their limits, and `grashof.analysis.judge.verify` judges them.
 
-It is plain, to hold the package's own search against. It knows free and timed points met in order, and poses
+It is plain, a reference for the package's own search. It knows free and timed points met in order, and poses
 with position and angle; no areas to keep out of and no constraints of one's own.
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 TURN, STARTS, POLISHED = 2 * np.pi, 800, 40
-# So far inside its limits a design is made, sizes and rad (the judge forgives 1e-9); step of differences.
+# Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
@@ -38,6 +39,12 @@ class Aim:
     timing: FloatArray
     closed: bool
     wanted: Requirements
+    turned: bool
+    "Whether the targets have angles."
+    timed: bool
+    "Whether the driver rotations are prescribed."
+    over_turn: bool
+    "Whether the transmission angle counts over the full turn."
 
     @classmethod
     def of(cls, problem: Problem) -> "Aim":
@@ -50,41 +57,24 @@ class Aim:
         middle, size = complex(places.mean()), task.size
         if not (task.is_whole or task.only_points):
             raise ValueError("poses with free parts are not known here")
-        points, length, weights = (places - middle) / size, task.angle_length / size, np.sqrt(task.weights)
-        timing = task.driver_turns
-        return cls(size, middle, points, task.angles, weights, length, timing, task.closed, wanted)
-
-    @property
-    def turned(self) -> bool:
-        """Whether the targets have angles."""
-        return not np.isnan(self.angles).any()
-
-    @property
-    def timed(self) -> bool:
-        """Whether the driver rotations are prescribed."""
-        return not np.isnan(self.timing).any()
-
-    @property
-    def whole_turn(self) -> bool:
-        """Whether the transmission angle counts over the whole turn."""
-        return self.closed or self.wanted.transmission_over == "cycle"
+        return cls(
+            size, middle, (places - middle) / size, task.angles, np.sqrt(task.weights),
+            task.angle_length / size, task.driver_turns, task.closed, wanted,
+            turned=not np.isnan(task.angles).any(), timed=not np.isnan(task.driver_turns).any(),
+            over_turn=task.closed or wanted.transmission_over == "cycle",
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Designs:
-    """A batch of designs being improved.
-
-    Parameters
-    ----------
-    x : ndarray, shape (B, n)
-        O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles.
-    elbow, sense : ndarray, shape (B,)
-        +1 or -1: side of B on A-O4, and sense of the driver.
-    """
+    """A batch of B designs being improved."""
 
     x: FloatArray
+    "(B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles."
     elbow: FloatArray
+    "(B,): side of B on A-O4, +1 or -1."
     sense: FloatArray
+    "(B,): of the driver, +1 or -1."
 
     def __getitem__(self, rows: IntArray | slice) -> "Designs":
         return Designs(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -139,7 +129,7 @@ def places(aim: Aim, designs: Designs) -> Places:  # closure: RRR
 
 
 def misses(aim: Aim, at: Places) -> FloatArray:
-    """What is squared: weighted distances of points, and turns of poses as lengths; shape (B, M)."""
+    """Terms of the sum of squares: weighted distances of points, turns of poses as lengths; shape (B, M)."""
     gap = (at.p - aim.points) * aim.root_weights
     parts = [gap.real, gap.imag]
     if aim.turned:
@@ -195,7 +185,7 @@ def transmission(aim: Aim, at: Places) -> list[FloatArray]:
     least = np.radians(aim.wanted.transmission_min_deg) + INSIDE
     square, product = at.r3**2 + at.r4**2, 2 * at.r3 * at.r4 * np.cos(least)
     shortest, longest = np.abs(at.r1 - at.r2), at.r1 + at.r2
-    if not aim.whole_turn:
+    if not aim.over_turn:
         # Driver angles from the ground line; A passes it within the motion or not.
         around = (at.theta2 - np.angle(at.o4 - at.o2)) / TURN
         low, high = around.min(axis=1, keepdims=True), around.max(axis=1, keepdims=True)
@@ -213,7 +203,7 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     places of A and B are limited, a design may not gain by others.
     """
     boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box())
-    if aim.whole_turn and not boxed:
+    if aim.over_turn and not boxed:
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2
     down = (coupler.conj() * output).imag
@@ -313,24 +303,21 @@ def distinct(aim: Aim, designs: Designs, cost: FloatArray) -> Designs:
 def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
     """A design brought under its limits, and its sum of squares; infinite where that fails.
 
-    `steady` asks for the driver angles nearest to their targets where limits depend on them.
+    `steady` requires the driver angles nearest to their targets where limits depend on them.
     """
-    last: dict[bytes, tuple[FloatArray, ...]] = {}
 
-    def rows(x: FloatArray, part: int) -> FloatArray:
-        if x.tobytes() not in last:
-            last.clear()
-            designs = replace(design, x=x[None]).nudged()
-            at = places(aim, designs)
-            last[x.tobytes()] = misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
-        return last[x.tobytes()][part]
+    @lru_cache(maxsize=1)
+    def batch(key: bytes) -> tuple[FloatArray, FloatArray, FloatArray]:
+        designs = replace(design, x=np.frombuffer(key)[None]).nudged()
+        at = places(aim, designs)
+        return misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
 
     def value(x: FloatArray, part: int) -> FloatArray:
-        found: FloatArray = rows(x, part)[0]
+        found: FloatArray = batch(x.tobytes())[part][0]
         return found
 
     def change(x: FloatArray, part: int) -> FloatArray:
-        found: FloatArray = (rows(x, part)[1:] - value(x, part)).T / NUDGE
+        found: FloatArray = (batch(x.tobytes())[part][1:] - value(x, part)).T / NUDGE
         return found
 
     def square(x: FloatArray) -> float:
@@ -371,18 +358,9 @@ class Best:
 
 
 def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None:
-    """The best design from so many random starts, or None where the judge accepts none.
+    """The best design of a least-squares problem from random starts; None where the judge accepts none.
 
-    Parameters
-    ----------
-    problem : Problem
-        With ``exact = false``.
-    starts, seed : int
-
-    Raises
-    ------
-    ValueError
-        The problem asks for something that this search does not know.
+    ValueError: the problem has a requirement that this search does not know.
     """
     aim = Aim.of(problem)
     designs = penalised(aim, drawn(aim, starts, np.random.default_rng(seed)))

@@ -1,7 +1,7 @@
-"""What a user would take instead of Grashof: general solvers on the usual formulation, and other packages.
+"""Alternatives to Grashof: general solvers on the usual formulation, and other packages.
 
-Each tells of linkages as it finds them, for `benchmark.py`, which judges them, and goes on with other starts
-until its time is over. Each is used as its documentation recommends; what it cannot express is left out.
+Each reports linkages as it finds them to `compare.py`, which judges them, and continues with other starts
+until its time is over. Each is used as its documentation recommends, on the tasks that it can express.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class LeftOutError(Exception):
 
 
 def penalised(x: FloatArray, task: Formulation, choice: Choice, weight: float = WEIGHT) -> FloatArray:
-    """The residuals and, weighted, what the limits lack."""
+    """The residuals and, weighted, the excess over the limits."""
     lack = np.maximum(task.limits(x, choice) + MARGIN, 0)
     return np.concatenate([task.residuals(x, choice) / task.scale, weight * lack])
 
@@ -62,22 +62,22 @@ def starts(
 
 def grashof(problem: Problem, seed: int, budget: float, found: Found) -> None:
     """Grashof with its defaults; it ends by itself."""
-    told: set[str] = set()
+    reported: set[str] = set()
 
-    def tell(progress: Progress) -> None:
+    def report(progress: Progress) -> None:
         for each in progress.designs:
-            if each.id not in told:
-                told.add(each.id)
+            if each.id not in reported:
+                reported.add(each.id)
                 found(each.linkage)
 
     del budget
-    for each in synthesize(problem, seed=seed, progress=tell).top(200).candidates:
-        if each.id not in told:
+    for each in synthesize(problem, seed=seed, progress=report).top(200).candidates:
+        if each.id not in reported:
             found(each.linkage)
 
 
 def scipy_least_squares(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """Trust-region reflective from random starts, by turns with the limits as penalties and without them."""
+    """Trust-region reflective from random starts, alternately with limits as penalties and without them."""
     task = formulated(problem)
     for number, (_, choice, x) in enumerate(starts(task, seed, budget)):
         given = task, choice, WEIGHT * (number % 2)
@@ -134,9 +134,12 @@ def scipy_differential_evolution(problem: Problem, seed: int, budget: float, fou
         found(task.linkage(solved.x, choice))
 
 
-def _pymoo(
-    make: Callable[[FloatArray], Any], problem: Problem, seed: int, budget: float, found: Found
-) -> None:
+def pymoo(
+    name: str, options: Callable[[FloatArray], dict[str, Any]], problem: Problem, seed: int, budget: float,
+    found: Found,
+) -> None:  # fmt: skip
+    """An algorithm of pymoo, 400 generations, restarted from random points."""
+    algorithm = getattr(import_module(f"pymoo.algorithms.soo.nonconvex.{name.lower()}"), name)
     base: Any = import_module("pymoo.core.problem").ElementwiseProblem
     minimized = import_module("pymoo.optimize").minimize
     task = formulated(problem)
@@ -150,23 +153,11 @@ def _pymoo(
             out["F"] = cost(x, task, self.choice)
 
     for rng, choice, x in starts(task, seed, budget):
-        solved = minimized(Linkages(choice), make(x), ("n_gen", 400), seed=int(rng.integers(1 << 30)))
+        solved = minimized(
+            Linkages(choice), algorithm(**options(x)), ("n_gen", 400), seed=int(rng.integers(1 << 30))
+        )
         if solved.X is not None:
             found(task.linkage(np.asarray(solved.X), choice))
-
-
-def pymoo_de(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """Differential evolution of pymoo, population 100, 400 generations, restarted."""
-    de = import_module("pymoo.algorithms.soo.nonconvex.de").DE
-
-    _pymoo(lambda _: de(pop_size=100), problem, seed, budget, found)
-
-
-def pymoo_cmaes(problem: Problem, seed: int, budget: float, found: Found) -> None:
-    """CMA-ES of pymoo with its own restarts from a random point."""
-    cmaes = import_module("pymoo.algorithms.soo.nonconvex.cmaes").CMAES
-
-    _pymoo(lambda start: cmaes(x0=start, restarts=2), problem, seed, budget, found)
 
 
 def fourbarhinge(problem: Problem, seed: int, budget: float, found: Found) -> None:
@@ -221,7 +212,7 @@ def pylinkage(problem: Problem, seed: int, budget: float, found: Found) -> None:
                     Choice(float(made.assembly), choice.way, 1.0),
                 )
                 error = float(np.abs(formulation.residuals(*known)).max())
-                if error < least:  # of so many the best ones
+                if error < least:  # only the best of many
                     least = error
                     found(made)
         return
@@ -264,8 +255,8 @@ PEERS: dict[str, Callable[[Problem, int, float, Found], None]] = {
     "scipy least_squares": scipy_least_squares,
     "scipy SLSQP": scipy_slsqp,
     "scipy differential_evolution": scipy_differential_evolution,
-    "pymoo DE": pymoo_de,
-    "pymoo CMA-ES": pymoo_cmaes,
+    "pymoo DE": partial(pymoo, "DE", lambda _: {"pop_size": 100}),
+    "pymoo CMA-ES": partial(pymoo, "CMAES", lambda start: {"x0": start, "restarts": 2}),
     "fourbarhinge": fourbarhinge,
     "pylinkage": pylinkage,
 }

@@ -1,1 +1,1 @@
-"""What `reproduce_reports.py` writes: every figure and table of the two reports, with right figures."""
+"""Every figure and table of the two reports, with right figures; written by `reproduce_reports.py`."""

@@ -23,21 +23,15 @@ _ROUNDING = 1e-14  # of values about 1: less is shown as 0
 _ROWS = 30  # of a table on the page; the CSV has them all
 COLUMNS = ("quantity", "as published", "right", "cause")
 Row = tuple[str, str, str, str]
+Sources = Mapping[str, Pumpjack | Luggage]  # by report
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A figure, table or statement of a report, and its counterpart.
+    """A figure, table or statement of a report, and its counterpart, made by the method `make` with `args`.
 
-    Parameters
-    ----------
-    report, figure, id, title : str
-    make : str
-        The method that makes the counterpart.
-    reported, right, wrong : str
-        What the report shows or prints, what is right, with names of figures in braces, and what was wrong.
-    args : sequence
-        Of the method.
+    `reported` is the content of the report, `right` states the right figures, by their names in braces, and
+    `wrong` the error.
     """
 
     report: str
@@ -62,24 +56,13 @@ def items() -> list[Item]:
     return [Item(**given) for given in tomllib.loads(text)["item"]]
 
 
-def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
-    """Write the counterparts of all items, and index.html.
+def write_folder(folder: Path, sources: Sources, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
+    """Write the counterparts of all items, and index.html; the files, the page last.
 
-    Parameters
-    ----------
-    folder : Path
-        Made if it is not there; files of the same names are replaced.
-    rows : mapping
-        The table of published and right values, by report.
-
-    Returns
-    -------
-    list of Path
-        The files, the page last.
+    Files of the same names are replaced. `rows` is the table of published and right values, by report.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    sources: dict[str, Pumpjack | Luggage] = {"pumpjack": Pumpjack(), "luggage": Luggage()}
-    told: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
+    entries_of: dict[str, list[dict[str, Any]]] = {name: [] for name in REPORTS}
     written: list[Path] = []
     for item in items():
         source = sources[item.report]
@@ -89,7 +72,7 @@ def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
             made = getattr(source, item.make)(*item.args)
         pictures, tables = _write(folder, item.stem, made)
         written += [*pictures, *(path for path, _ in tables)]
-        told[item.report].append(
+        entries_of[item.report].append(
             {
                 "item": item,
                 "right": item.right.format(**source.numbers),
@@ -99,7 +82,7 @@ def write_folder(folder: Path, rows: Mapping[str, Sequence[Row]]) -> list[Path]:
             }
         )
     pages = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined)
-    page = pages.get_template("page.html").render(reports=REPORTS, told=told)
+    page = pages.get_template("page.html").render(reports=REPORTS, entries_of=entries_of)
     (folder / "index.html").write_text(page, encoding="utf-8")
     return [*written, folder / "index.html"]
 
@@ -128,7 +111,7 @@ def _inline(path: Path) -> dict[str, str]:
 
 
 def _short(table: pd.DataFrame) -> dict[str, Any]:
-    """Headings and cells of a table that is short enough to be read; else only how long it is."""
+    """Headings and cells of a short table; of a long one only its length."""
     if len(table) > _ROWS:
         return {"columns": [], "rows": [], "count": len(table)}
     cells = [[_cell(value) for value in row] for row in table.itertuples(index=False)]

@@ -1,4 +1,4 @@
-"""The report on unloading luggage: what it shows and prints, with right figures."""
+"""The report on unloading luggage: its items with right figures."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -46,7 +46,7 @@ class Luggage:
 
     @cached_property
     def verdict(self) -> Verdict:
-        """What the judge says, at a tolerance that the residuals allow."""
+        """The verdict, at a tolerance that the residuals allow."""
         wanted = replace(self.problem.requirements, tolerance=2e-6)
         return verify(self.linkage, self.problem.task, wanted)
 
@@ -93,33 +93,26 @@ class Luggage:
             def curve(theta2: FloatArray, gravity: bool = gravity) -> FloatArray:
                 return self.torque(theta2, gravity=gravity)
 
-            at_samples = curve(self.start + published.STEP * np.arange(published.SAMPLES))
+            seen = curve(self.start + published.STEP * np.arange(published.SAMPLES))
             turn, job = extremes_of(curve, 0.0, TURN, closed=True), extremes_of(curve, begin, end)
             over_turn = curve(np.arange(_DENSE) * TURN / _DENSE)
             nodes, weights = np.polynomial.legendre.leggauss(400)
             on_job = curve((begin + end) / 2 + (end - begin) / 2 * nodes)
             for where, high, low, square, mean in (
-                (
-                    "101 samples",
-                    at_samples.max(),
-                    at_samples.min(),
-                    np.mean(at_samples**2),
-                    at_samples.mean(),
-                ),
+                ("101 samples", seen.max(), seen.min(), np.mean(seen**2), seen.mean()),
                 ("the whole turn", turn.high, turn.low, np.mean(over_turn**2), over_turn.mean()),
                 ("the job", job.high, job.low, weights @ on_job**2 / 2, weights @ on_job / 2),
             ):
                 row = {"over": where, "gravity_m_s2": published.GRAVITY if gravity else 0.0}
                 rows.append({**row, "max": high, "min": low, "rms": np.sqrt(square), "mean": mean})
         table = pd.DataFrame(rows)
-        table["mean"] = table["mean"].where(
-            table["mean"].abs() > 1e-9 * table["rms"], 0.0
-        )  # less is rounding
+        rounding = table["mean"].abs() <= 1e-9 * table["rms"]
+        table["mean"] = table["mean"].mask(rounding, 0.0)
         return table
 
     @cached_property
     def numbers(self) -> dict[str, float | str]:
-        """All that the words of the items quote."""
+        """The figures that the texts of the items quote."""
         found: dict[str, float | str] = {
             "step": float(np.degrees(published.STEP)),
             "low_1": 100 * (1 - published.STEP / published.H),
@@ -159,15 +152,13 @@ class Luggage:
         return found | {f"slope_{str(path)[-1]}": float(slope) for path, slope in slopes}
 
     def _residuals(self) -> tuple[float, float]:
-        """Root of the sum of squares of what each dyad leaves open at the driver angles printed."""
+        """Root of the sum of squares of the gaps of each dyad at the driver angles printed."""
         task, first = self.problem.task, solve_position(self.linkage, self.verdict.theta2[0])
         place = task.positions @ np.array([1, 1j])
         body = np.exp(1j * (task.angles - task.angles[0])) - 1
         found = []
-        for pivot, joint, turns in (
-            (self.linkage.o2, first.a, published.BETA),
-            (self.linkage.o4, first.b, published.GAMMA),
-        ):
+        dyads = (self.linkage.o2, first.a, published.BETA), (self.linkage.o4, first.b, published.GAMMA)
+        for pivot, joint, turns in dyads:
             link, arm = complex(*(joint - pivot)), place[0] - complex(*joint)
             gap = link * (np.exp(1j * np.radians([0.0, *turns])) - 1) + arm * body - (place - place[0])
             found.append(float(np.sqrt((np.abs(gap) ** 2).sum())))
@@ -185,32 +176,21 @@ class Luggage:
         table["angle_deg"] = np.degrees(task.angles).round(12)
         return Made({"": figure}, {"": table})
 
-    def in_poses(self) -> Made:
-        """The linkage in its four poses."""
-        return Made({"": self._drawn(None)}, {"": self._positions(self.poses_deg)})
-
-    def pose(self, number: int) -> Made:
-        """The linkage in one pose, in place of a photograph of the prototype."""
-        angle = self.poses_deg[number - 1]
-        return Made({"": self._drawn(np.radians(angle))}, {"": self._positions([angle])})
-
-    def _drawn(self, theta2: float | None) -> Figure:
+    def poses(self, number: int | None = None) -> Made:
+        """The linkage in its four poses, or in one of them, in place of a photograph of the prototype."""
+        angles = self.poses_deg if number is None else [self.poses_deg[number - 1]]
         with rc_context(STYLE):
             figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
+            theta2 = None if number is None else np.radians(angles[0])
             plot_linkage(self.spec, self.problem, theta2=theta2, ax=figure.subplots())
-        return figure
-
-    def _positions(self, angles_deg: list[float]) -> pd.DataFrame:
-        return Analysis.of(self.spec, at_deg=tuple(angles_deg)).tables["positions"]
+        return Made({"": figure}, {"": Analysis.of(self.spec, at_deg=tuple(angles)).tables["positions"]})
 
     def guess(self, name: str) -> Made:
-        """A guess of the report: what BFGS makes of it, and what the judge says of that."""
+        """A guess of the report, its dyads by BFGS, and the verdict on them."""
         each = next(each for each in self.guesses if each.guess.name == name)
         rows = []
-        for side, given, dyad in (
-            ("left", each.guess.left, each.left),
-            ("right", each.guess.right, each.right),
-        ):
+        sides = ("left", each.guess.left, each.left), ("right", each.guess.right, each.right)
+        for side, given, dyad in sides:
             turns = np.degrees(dyad.turns)
             came = (dyad.link.real, dyad.link.imag, dyad.arm.real, dyad.arm.imag, *turns)
             names = ("W_x", "W_y", "Z_x", "Z_y", "turn_1_deg", "turn_2_deg", "turn_3_deg")
@@ -235,7 +215,7 @@ class Luggage:
         return Made({} if figure is None else {"": figure}, tables)
 
     def result(self) -> Made:
-        """Table 7 beside the catalogue's linkage, and what the report does not say of it."""
+        """Table 7 beside the catalogue's linkage, and its errors, which the report does not state."""
         left, right = self._residuals()
         lengths = [float(length) for length in self.linkage.lengths]
         state = solve_position(self.linkage, self.verdict.theta2)
@@ -245,10 +225,10 @@ class Luggage:
         printed = [*published.RESIDUALS, published.R1, published.R2, published.R3, published.R4]
         ours = [left, right, *lengths]
         for name, given, found in (("beta", published.BETA, driver), ("gamma", published.GAMMA, output)):
-            for number, (told, angle) in enumerate(zip(given, found, strict=True), start=1):
+            for number, (given_angle, angle) in enumerate(zip(given, found, strict=True), start=1):
                 names.append(f"{name}{number}, deg")
-                printed.append(told)
-                ours.append(float(angle + 360 * round((told - angle) / 360)))
+                printed.append(given_angle)
+                ours.append(float(angle + 360 * round((given_angle - angle) / 360)))
         table = pd.DataFrame({"quantity": names, "printed": printed, "catalogue": ours})
         errors = pd.DataFrame(
             {
@@ -261,19 +241,15 @@ class Luggage:
 
     def newton_raphson(self) -> Made:
         """theta3 and theta4 by Newton-Raphson, and the steps it takes."""
-        angles, steps = (self._over_angle(key) for key in ("newton-raphson", "newton-raphson-steps"))
-        return shown(angles, steps)
-
-    def _over_angle(self, key: str) -> Plot:
-        return self.fine.over_angle(key)
+        return shown(*map(self.fine.over_angle, ("newton-raphson", "newton-raphson-steps")))
 
     def centre(self, link: int, rate: str = "place") -> Made:
         """Place, velocity or acceleration of a centre of mass."""
-        return shown(self._over_angle(f"g{link}-{rate}"))
+        return shown(self.fine.over_angle(f"g{link}-{rate}"))
 
     def angular(self, rate: str) -> Made:
         """omega3 and omega4, or alpha3 and alpha4."""
-        return shown(self._over_angle(f"angular-{rate}"))
+        return shown(self.fine.over_angle(f"angular-{rate}"))
 
     def angular_differences(self, rate: str, order: int) -> Made:
         """The same by central differences at the samples of the report."""
@@ -293,13 +269,9 @@ class Luggage:
         return self._differences(plot, rate, order, exact, by_order)
 
     def _differences(
-        self,
-        plot: Plot,
-        rate: str,
-        order: int,
-        exact: Mapping[str, FloatArray],
+        self, plot: Plot, rate: str, order: int, exact: Mapping[str, FloatArray],
         by_order: Mapping[str, FloatArray],
-    ) -> Made:
+    ) -> Made:  # fmt: skip
         """With the step of the samples, with the 5 deg that the report divides by, and the errors of both."""
         derivative = {"velocity": 1, "acceleration": 2}[rate]
         values, errors = dict[str, FloatArray](), dict[str, FloatArray]()
@@ -329,28 +301,25 @@ class Luggage:
         first = table[table["theta2_deg"] == table["theta2_deg"].iloc[0]].drop(columns="theta2_deg")
         return Made(tables={"": first, "every-pose": table})
 
-    def torque_at_samples(self) -> Made:
-        """The drive torque at the report's samples, between what it prints as greatest and least."""
-        theta2 = self.start + published.STEP * np.arange(published.SAMPLES)
-        high, low = published.TORQUE[:2]
-        levels = {"greatest as published": high, "least as published": low}
-        return self._torque(theta2, COUNTED, {name: float(level) for name, level in levels.items()})
-
-    def torque_over_turn(self) -> Made:
-        """The drive torque over the whole turn on a fine grid."""
-        return self._torque(np.linspace(0, TURN, 1441), DRIVER_ANGLE, {})
-
-    def torque_on_job(self) -> Made:
-        """The drive torque from the first pose to the last."""
-        return self._torque(np.linspace(self.verdict.theta2[0], self.verdict.theta2[-1], 481), COUNTED, {})
-
-    def _torque(self, theta2: FloatArray, over: str, levels: Mapping[str, float]) -> Made:
+    def torque_over(self, range_: str) -> Made:
+        """The drive torque over the report's samples, with its extremes, over a fine turn, or on the job."""
+        samples = self.start + published.STEP * np.arange(published.SAMPLES)
+        begin, end = self.verdict.theta2[[0, -1]]
+        theta2, over = {
+            "samples": (samples, COUNTED),
+            "turn": (np.linspace(0, TURN, 1441), DRIVER_ANGLE),
+            "job": (np.linspace(begin, end, 481), COUNTED),
+        }[range_]
+        levels = (
+            dict(zip(("greatest", "least"), published.TORQUE, strict=False)) if range_ == "samples" else {}
+        )
         series = {
             "without gravity": self.torque(theta2, gravity=False),
             "with gravity": self.torque(theta2, gravity=True),
         }
         plot = Plot("torque", "drive torque", "N m", series, np.degrees(theta2), over)
-        made = shown(lines(plot, besides={name: np.array(level) for name, level in levels.items()}))
+        besides = {f"{name} as published": np.array(float(level)) for name, level in levels.items()}
+        made = shown(lines(plot, besides=besides))
         return replace(made, tables={**made.tables, "figures": self.torque_table})
 
     def regression(self, link: int) -> Made:

@@ -1,4 +1,4 @@
-"""What items are made of: analyses, figures of their plots, tables."""
+"""Material of the items: analyses, figures of their plots, tables."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,7 +24,7 @@ from grashof.study.sweep import dead_positions_unwarned
 
 WIDTH, HEIGHT = 8.5, 4.2
 PUBLISHED = "as published"  # how the names of lines end that are the report's
-_TOLD, _DOTS = "#b03a2e", ((1, 1.2), (4, 1.2, 1, 1.2))
+_RED, _DOTS = "#b03a2e", ((1, 1.2), (4, 1.2, 1, 1.2))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +37,7 @@ class Made:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Analysis:
-    """What the sections of an analysis say, by key."""
+    """Plots and tables of the sections of an analysis, by key."""
 
     study: LinkageStudy
     plots: Mapping[str, Plot]
@@ -72,18 +72,18 @@ def lines(plot: Plot, wanted: Sequence[str] = (), besides: Mapping[str, FloatArr
 
 
 def drawn(*plots: Plot, beside: bool = False) -> Figure:
-    """A figure with a panel for each plot, one above the other or beside it; what is published dotted."""
+    """A figure with a panel for each plot, one above the other or beside it; published lines are dotted."""
     with rc_context(STYLE):
         tracks = plots[0].places is None
         size = (WIDTH, (5.2 if tracks else HEIGHT) if len(plots) == 1 or beside else 1.4 + 2.8 * len(plots))
         figure = Figure(figsize=size, layout="constrained")
         shape = (1, len(plots)) if beside else (len(plots), 1)
         for plot, axes in zip(plots, figure.subplots(*shape, squeeze=False).ravel(), strict=True):
-            told = {label: values for label, values in plot.series.items() if label.endswith(PUBLISHED)}
-            ours = {label: values for label, values in plot.series.items() if label not in told}
+            published = {label: values for label, values in plot.series.items() if label.endswith(PUBLISHED)}
+            ours = {label: values for label, values in plot.series.items() if label not in published}
             plot_section(replace(plot, series=ours), axes)
-            for (label, values), dots in zip(told.items(), cycle(_DOTS), strict=False):
-                axes.plot(plot.places, values, color=_TOLD, linestyle=(0, dots), linewidth=1.3, label=label)
+            for (label, values), dots in zip(published.items(), cycle(_DOTS), strict=False):
+                axes.plot(plot.places, values, color=_RED, linestyle=(0, dots), linewidth=1.3, label=label)
             if not tracks:
                 _name_above(axes)
     return figure

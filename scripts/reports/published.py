@@ -1,4 +1,4 @@
-"""What the two reports print and Grashof takes from them: none of it is a result."""
+"""Values that the two reports print and Grashof takes from them: none of them is a result."""
 
 import numpy as np
 
@@ -13,10 +13,10 @@ LUGGAGE = FourBar((0, 0), (R1 * np.cos(GROUND), R1 * np.sin(GROUND)), R2, R3, R4
 # Slender bars: the printed inertias, 0.3282, 0.6646 and 0.4920, are these rounded.
 BARS = ((0.3764, R2), (0.4762, R3), (0.4308, R4))
 MASSES = given_masses(LUGGAGE, [m for m, _ in BARS], [m * length**2 / 12 for m, length in BARS])
-# Its 101 samples run over the job and a whole turn; curves are fitted through eleven of the first thirty-one.
+# Its 101 samples run over the job and a full turn; curves are fitted through eleven of the first thirty-one.
 SAMPLES, STEP = 101, (2 * np.pi + JOB) / 100
 ELEVEN = np.arange(0.0, 31.0, 3.0)
-H = np.radians(5)  # what it divides differences by
+H = np.radians(5)  # its divisor of differences
 GRAVITY = 9.81  # m/s2, which it leaves out
 
 # Table 7: driver and coupler angles in deg.

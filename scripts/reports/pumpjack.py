@@ -1,5 +1,6 @@
-"""The report on a pumpjack: what it shows and prints, with right figures."""
+"""The report on a pumpjack: its items with right figures."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -37,17 +38,13 @@ _DENSE = 7201
 ROD_UP, ROD_DOWN, SOFT = 20e3, 9e3, 0.1
 _BESIDE = 0.05  # m: so near a cross its name is that of the dot
 _CROSS: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "x",
-    "markersize": 7,
-    "markeredgewidth": 1.6,
-    "color": "#b03a2e",
+    "linestyle": "none", "marker": "x", "markersize": 7, "markeredgewidth": 1.6, "color": "#b03a2e",
     "zorder": 9,
-}
+}  # fmt: skip
 
 
 def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
-    """The links as bars of 0.2 x 0.2 m, link 4 from O4 to B; and with the whole beam, A + C long."""
+    """The links as bars of 0.2 x 0.2 m, link 4 from O4 to B; and with the full beam, A + C long."""
     linkage = spec.four_bar
     bars = uniform_bars(linkage, np.array(published.DENSITIES) * published.SIDE**2)
     length = float(linkage.r4) + (spec.output_arm or 0.0)
@@ -58,7 +55,7 @@ def bodies(spec: LinkageSpec) -> tuple[Masses, Masses]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AsPublished:
-    """What the report's code computes, with theta_s + mu for theta4 in place of theta3 + mu."""
+    """Results of the report's code, with theta_s + mu for theta4 in place of theta3 + mu."""
 
     theta4_deg: FloatArray
     omega3: FloatArray
@@ -71,33 +68,22 @@ class AsPublished:
         """At the driver angles of a state, shape (N,)."""
         way = linkage.o4 - state.a.position
         theta4 = state.theta4 - (state.theta3 - np.arctan2(way[:, 1], way[:, 0]))
+        lengths, angles = (linkage.r2, linkage.r3, linkage.r4), (state.theta2, state.theta3, theta4)
         two, three, four = (
-            float(length) * np.exp(1j * angle)
-            for length, angle in (
-                (linkage.r2, state.theta2),
-                (linkage.r3, state.theta3),
-                (linkage.r4, theta4),
-            )
+            float(length) * np.exp(1j * angle) for length, angle in zip(lengths, angles, strict=True)
         )
         omega3, omega4 = _two(1j * three, -1j * four, -1j * two * state.omega2)
-        alpha3, alpha4 = _two(
-            1j * three, -1j * four, two * state.omega2**2 + three * omega3**2 - four * omega4**2
-        )
+        push = two * state.omega2**2 + three * omega3**2 - four * omega4**2
+        alpha3, alpha4 = _two(1j * three, -1j * four, push)
         r4 = float(linkage.r4)
-        return cls(
-            np.degrees(np.unwrap(theta4)),
-            omega3,
-            alpha3,
-            r4 * np.abs(omega4),
-            r4 * np.hypot(omega4**2, alpha4),
-        )
+        speed, acceleration = r4 * np.abs(omega4), r4 * np.hypot(omega4**2, alpha4)
+        return cls(np.degrees(np.unwrap(theta4)), omega3, alpha3, speed, acceleration)
 
 
 def _two(first: np.ndarray, second: np.ndarray, right: np.ndarray) -> tuple[FloatArray, FloatArray]:
     """Real x and y with x first + y second = right, complex; shape (N,)."""
-    matrix = np.stack([np.stack([each.real, each.imag], -1) for each in (first, second)], -1)
-    solved = np.linalg.solve(matrix, np.stack([right.real, right.imag], -1)[..., None])[..., 0]
-    return solved[:, 0], solved[:, 1]
+    over = (first.conj() * second).imag
+    return (right.conj() * second).imag / over, (first.conj() * right).imag / over
 
 
 class Pumpjack:
@@ -109,7 +95,7 @@ class Pumpjack:
             self.spec, seconds=published.SECONDS, step=published.TIME_STEP, start_deg=published.START_DEG,
             at_deg=published.PICTURES,
         )  # fmt: skip
-        self.bars, self.whole = bodies(self.spec)
+        self.bars, self.full = bodies(self.spec)
 
     @property
     def linkage(self) -> FourBar:
@@ -123,7 +109,7 @@ class Pumpjack:
 
     @cached_property
     def wrong(self) -> AsPublished:
-        """What the report's code computes at its samples."""
+        """Results of the report's code at its samples."""
         theta2 = np.radians(self.history.tables["over-time"]["theta2_total_deg"])
         return AsPublished.of(self.linkage, solve_kinematics(self.linkage, theta2, self.omega2))
 
@@ -133,7 +119,7 @@ class Pumpjack:
 
     @cached_property
     def numbers(self) -> dict[str, float | str]:
-        """All that the words of the items quote."""
+        """The figures that the texts of the items quote."""
         linkage, stroke = self.linkage, output_stroke(self.linkage)
         found: dict[str, float | str] = {}
         for name, of in {
@@ -156,14 +142,13 @@ class Pumpjack:
             "rotation_pi": published.SECONDS * self.omega2 / np.pi, "swing": float(np.degrees(stroke.swing)),
             "time_ratio": float(stroke.time_ratio), "up": up, "down": down,
             "slower": "slower" if down > up else "faster",
-            "mass": float(self.bars.total), "mass_whole": float(self.whole.total),
+            "mass": float(self.bars.total), "mass_whole": float(self.full.total),
             "r4": float(linkage.r4), "beam": float(linkage.r4) + (self.spec.output_arm or 0.0),
         }  # fmt: skip
         upright = self.state(90.0)
-        for name, masses in (("system", self.bars), ("system_whole", self.whole)):
-            found |= dict(
-                zip((f"{name}_x", f"{name}_y"), system_centre(masses, upright).position, strict=True)
-            )
+        for name, masses in (("system", self.bars), ("system_whole", self.full)):
+            x, y = system_centre(masses, upright).position
+            found |= {f"{name}_x": x, f"{name}_y": y}
         for link, name in ((3, "coupler"), (4, "beam")):
             centre = upright.point(link, self.bars.of(link).centre).position
             found |= {f"{name}_x": float(centre[0]), f"{name}_y": float(centre[1])}
@@ -230,40 +215,12 @@ class Pumpjack:
         seconds = TURN / self.omega2
         return Made({"": figure, "moving": draw_motion(self.spec, seconds=seconds, fps=12.5, annotated=True)})
 
-    def theta2(self) -> Made:
-        """The sawtooth."""
-        return shown(self.history.plots["theta2-over-time"])
-
-    def angles(self) -> Made:
-        """theta3 and theta4."""
-        plot = self.history.plots["angles-over-time"]
-        return shown(lines(plot, besides={"theta4 as published": self.wrong.theta4_deg}))
-
-    def place(self) -> Made:
-        """P."""
-        return shown(self.history.plots["p-place-over-time"])
-
-    def omega3(self) -> Made:
-        """Angular velocity of the coupler."""
-        return self._rate(
-            "angular-velocity-over-time", ["omega3"], {"omega3 as published": self.wrong.omega3}
-        )
-
-    def alpha3(self) -> Made:
-        """Angular acceleration of the coupler."""
-        besides = {"alpha3 as published": self.wrong.alpha3}
-        return self._rate("angular-acceleration-over-time", ["alpha3"], besides)
-
-    def speeds(self) -> Made:
-        """Of A and B."""
-        return self._rate("speed-over-time", ["A", "B"], {"B as published": self.wrong.speed})
-
-    def accelerations(self) -> Made:
-        """Of A and B."""
-        return self._rate("acceleration-over-time", ["A", "B"], {"B as published": self.wrong.acceleration})
-
-    def _rate(self, key: str, wanted: list[str], besides: dict[str, FloatArray]) -> Made:
-        return shown(lines(self.history.plots[key], wanted, besides))
+    def over_time(self, key: str, wanted: Sequence[str] = (), name: str = "", published_as: str = "") -> Made:
+        """Lines of a plot over time; with a name also the report's line, an attribute of `AsPublished`."""
+        plot = self.history.plots[f"{key}-over-time"]
+        if not name:
+            return shown(plot)
+        return shown(lines(plot, wanted, {f"{name} as published": getattr(self.wrong, published_as)}))
 
     def strokes(self) -> Made:
         """The horsehead's height over time, and how long it takes up and down."""
@@ -284,11 +241,11 @@ class Pumpjack:
         return time, arm * (angle - angle.min()), arm * state.omega4
 
     def masses(self) -> Made:
-        """Volumes, densities, masses; with link 4 alone and with the whole beam."""
+        """Volumes, densities, masses; with link 4 alone and with the full beam."""
         lengths = {"crank": self.linkage.r2, "coupler": self.linkage.r3, "rocker, O4 to B": self.linkage.r4}
         named = [*zip(lengths.items(), published.DENSITIES, strict=True)]
-        whole = float(self.linkage.r4) + (self.spec.output_arm or 0.0)
-        named += [(("whole beam, A + C", np.asarray(whole)), published.DENSITIES[2])]
+        beam = float(self.linkage.r4) + (self.spec.output_arm or 0.0)
+        named += [(("whole beam, A + C", np.asarray(beam)), published.DENSITIES[2])]
         rows = []
         for (name, length), density in named:
             volume = float(length) * published.SIDE**2
@@ -297,7 +254,7 @@ class Pumpjack:
         totals = pd.DataFrame(
             {
                 "moving mass": ["links simulated", "with the whole beam", "as published"],
-                "kg": [float(self.bars.total), float(self.whole.total), float(published.MASS)],
+                "kg": [float(self.bars.total), float(self.full.total), float(published.MASS)],
             }
         )
         return Made(tables={"": pd.DataFrame(rows), "total": totals})
@@ -310,14 +267,14 @@ class Pumpjack:
             for link, name in ((2, "crank"), (3, "coupler"), (4, "beam"))
         }
         right["system"] = system_centre(self.bars, state).position
-        right["system with the whole beam"] = system_centre(self.whole, state).position
-        told = {**published.CENTRES, "system with the whole beam": published.SYSTEM}
+        right["system with the whole beam"] = system_centre(self.full, state).position
+        theirs = {**published.CENTRES, "system with the whole beam": published.SYSTEM}
         with rc_context(STYLE):
             figure = Figure(figsize=(WIDTH, 6.6), layout="constrained")
             axes = plot_linkage(self.spec, theta2=np.pi / 2, ax=figure.subplots())
-            _mark(axes, right, told)
+            _mark(axes, right, theirs)
         rows = [
-            {"centre of": name, "x_m": place[0], "y_m": place[1], **_as_published(told.get(name))}
+            {"centre of": name, "x_m": place[0], "y_m": place[1], **_as_published(theirs.get(name))}
             for name, place in right.items()
         ]
         return Made({"": figure}, {"": pd.DataFrame(rows)})
@@ -347,10 +304,10 @@ class Pumpjack:
         # The rope leaves the horsehead at the same distance from O4 at every angle: a moment of its tension.
         loads = Loads(gravity=gravity, moments=(AppliedMoment(4, pull),))
         turn = self.state(np.linspace(0, 360, 720, endpoint=False))
-        balanced = balance_torque(turn, self.whole, loads, radius=float(self.linkage.r2))
+        balanced = balance_torque(turn, self.full, loads, radius=float(self.linkage.r2))
         state = self.state(angle_deg)
         before, after = (
-            inverse_dynamics(state, masses, loads).torque for masses in (self.whole, balanced.masses)
+            inverse_dynamics(state, masses, loads).torque for masses in (self.full, balanced.masses)
         )
         return before, after, balanced.crank_weight
 
@@ -374,7 +331,7 @@ class Pumpjack:
         return Made({"": figure}, {"": table[table["theta2_deg"] == theta2_deg]})
 
 
-def _mark(axes: Axes, right: dict[str, FloatArray], told: dict[str, tuple[float, float]]) -> None:
+def _mark(axes: Axes, right: dict[str, FloatArray], theirs: dict[str, tuple[float, float]]) -> None:
     """Centres as dots, and as crosses where the report has them."""
     for number, (name, place) in enumerate(right.items()):
         marker = "o" if not name.startswith("system") else "Ds"[name != "system"]
@@ -382,7 +339,7 @@ def _mark(axes: Axes, right: dict[str, FloatArray], told: dict[str, tuple[float,
             *place[:, None], linestyle="none", marker=marker, markersize=7, markerfacecolor=f"C{number}",
             markeredgecolor="black", label=f"centre: {name}", zorder=8,
         )  # fmt: skip
-    for number, (name, cross) in enumerate(told.items()):
+    for number, (name, cross) in enumerate(theirs.items()):
         axes.plot(*np.array(cross)[:, None], **_CROSS, label="as published" if number == 0 else None)
         if np.hypot(*(right[name] - cross)) > _BESIDE:
             words = name.removesuffix(" with the whole beam")

@@ -1,12 +1,10 @@
-"""The hand-tuned search: what the report's guesses come to; pairs judged at once as one by one."""
+"""The hand-tuned search: the report's guesses; pairs judged at once as one by one."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -17,14 +15,10 @@ from grashof import load
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.problems import Problem
 
-SCRIPTS = Path(__file__).parents[2] / "scripts"
-
 
 @pytest.fixture(scope="module")
-def script() -> Iterator[ModuleType]:
-    with pytest.MonkeyPatch.context() as patched:
-        patched.syspath_prepend(SCRIPTS)
-        yield import_module("hand_tuned_search")
+def hand(script: Callable[[str], ModuleType]) -> ModuleType:
+    return script("hand_tuned_search")
 
 
 @pytest.fixture(scope="module")
@@ -33,26 +27,24 @@ def luggage() -> Problem:
 
 
 @pytest.fixture(scope="module")
-def few(script: ModuleType, luggage: Problem) -> tuple[list[Any], Any]:
+def few(hand: ModuleType, luggage: Problem) -> tuple[list[Any], Any]:
     """Thirty dyads from random guesses, and what their pairs do."""
-    dyads = script.random_dyads(luggage.task, 30, seed=3)
-    return dyads, script.judged_pairs(luggage, dyads)
+    dyads = hand.random_dyads(luggage.task, 30, seed=3)
+    return dyads, hand.judged_pairs(luggage, dyads)
 
 
-def test_the_guess_that_works_leads_to_the_linkage_of_the_report(
-    script: ModuleType, luggage: Problem
-) -> None:
-    found = script.tried(luggage, script.GUESSES[4])
+def test_the_guess_that_works_leads_to_the_linkage_of_the_report(hand: ModuleType, luggage: Problem) -> None:
+    found = hand.tried(luggage, hand.GUESSES[4])
     assert max(found.left.residual, found.right.residual) < 1e-5
     assert found.linkage.lengths == pytest.approx([3.91882993, 3.23490430, 4.09244415, 3.70202612], abs=5e-3)
     assert np.degrees(found.verdict.transmission_min_cycle) == pytest.approx(8.27, abs=0.01)
-    said = script.outcome(found)
+    said = hand.outcome(found)
     assert said.startswith("crank-rocker, passes the poses in order, mu 22.2")
 
 
-def test_a_dyad_closes_where_its_residual_says(script: ModuleType, luggage: Problem) -> None:
+def test_a_dyad_closes_where_its_residual_says(hand: ModuleType, luggage: Problem) -> None:
     """And a linkage of two dyads passes the first pose."""
-    found = script.tried(luggage, script.GUESSES[0])
+    found = hand.tried(luggage, hand.GUESSES[0])
     task = luggage.task
     for dyad in (found.left, found.right):
         turns = np.array([0.0, *dyad.turns])
@@ -65,39 +57,39 @@ def test_a_dyad_closes_where_its_residual_says(script: ModuleType, luggage: Prob
     assert state.theta3 + found.linkage.body_angle == pytest.approx(0, abs=1e-12)
 
 
-def test_outcomes_are_told(script: ModuleType, luggage: Problem) -> None:
-    each = script.tried(luggage, script.GUESSES[4])
+def test_defects_are_named_in_the_outcome(hand: ModuleType, luggage: Problem) -> None:
+    each = hand.tried(luggage, hand.GUESSES[4])
 
-    def told(**changed: bool) -> str:
+    def described(**changed: bool) -> str:
         verdict: Verdict = replace(each.verdict, **changed)
-        return str(script.outcome(replace(each, verdict=verdict)))
+        return str(hand.outcome(replace(each, verdict=verdict)))
 
-    assert "circuit defect" in told(circuit_ok=False, branch_ok=False)
-    assert "branch defect" in told(branch_ok=False)
-    assert "out of order" in told(order_ok=False)
-    assert "over the turn" not in told(full_rotation=False)
+    assert "circuit defect" in described(circuit_ok=False, branch_ok=False)
+    assert "branch defect" in described(branch_ok=False)
+    assert "out of order" in described(order_ok=False)
+    assert "over the turn" not in described(full_rotation=False)
 
 
 @pytest.mark.study
-def test_pairs_are_judged_as_by_the_judge(script: ModuleType, luggage: Problem, few: tuple[Any, Any]) -> None:
+def test_pairs_are_judged_as_by_the_judge(hand: ModuleType, luggage: Problem, few: tuple[Any, Any]) -> None:
     dyads, pairs = few
     assert pairs.exact.sum() > 300
     assert pairs.good.sum() <= pairs.crank_rocker.sum() < pairs.in_order.sum() < pairs.exact.sum()
     assert (pairs.usable <= pairs.in_order).all()
-    assert script.agreement(luggage, dyads, pairs, 60) == 60
+    assert hand.agreement(luggage, dyads, pairs, 60) == 60
     for i, j in np.argwhere(pairs.crank_rocker)[:3]:
         verdict = verify(
-            script.linkage_of(luggage.task, dyads[i], dyads[j]), luggage.task, luggage.requirements
+            hand.linkage_of(luggage.task, dyads[i], dyads[j]), luggage.task, luggage.requirements
         )
         assert verdict.full_rotation
         assert str(verdict.grashof_class) == "crank-rocker"
 
 
-def test_shares_and_their_intervals(script: ModuleType) -> None:
+def test_shares_and_their_intervals(hand: ModuleType) -> None:
     every = np.zeros((40, 40), dtype=bool)
     every[:10] = True
     np.fill_diagonal(every, val=False)
-    found, low, high = script.share(every)
+    found, low, high = hand.share(every)
     assert found == pytest.approx(0.25)
     # Ten of forty drivers: the interval is about that of a share of forty.
     assert low == pytest.approx(0.12, abs=0.04)
@@ -105,10 +97,10 @@ def test_shares_and_their_intervals(script: ModuleType) -> None:
 
 
 @pytest.mark.study
-def test_it_prints_what_guesses_come_to(script: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
-    assert script.main(["--starts", "40"]) == 0
+def test_it_prints_what_guesses_come_to(hand: ModuleType, capsys: pytest.CaptureFixture[str]) -> None:
+    assert hand.main(["--starts", "40"]) == 0
     said = capsys.readouterr().out
     assert all(f"│ T{number} " in said for number in range(2, 7))
     assert "all 1560 pairs" in said.replace("\n", " ")
-    assert "one mind on 100 of 100" in said
+    assert "agrees on 100 of 100" in said
     assert re.search(r"grashof.synthesize: \d\d designs", said)

@@ -19,7 +19,7 @@ SCRIPTS = Path(__file__).parents[3] / "scripts" / "benchmarks"
 def benchmark():
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(SCRIPTS)
-        yield import_module("benchmark_eight_points")
+        yield import_module("eight_points")
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
-"""Measure Grashof and what a user would take instead on the same tasks, judged by one judge.
+"""Measure Grashof and its alternatives on the same tasks, judged by one judge.
 
-    pip install '.[bench]' && python scripts/benchmarks/benchmark.py --out benchmark
+    pip install '.[bench]' && python scripts/benchmarks/compare.py --out benchmark
 
 One after another in one process, single-threaded. Of every run: processor time to the first design that the
 judge accepts within 1 % of the least error that any run found (of exact tasks: to rounding), how many
@@ -20,15 +20,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from statistics import median
-from time import perf_counter, process_time
+from time import process_time
 from typing import Any
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before NumPy is loaded
     os.environ[name] = "1"
 
 import numpy as np  # noqa: E402
-from limited_tasks import problem_of  # noqa: E402
+import pandas as pd  # noqa: E402
+from limited import problem_of  # noqa: E402
 from peers import PEERS, LeftOutError  # noqa: E402
 
 from grashof import load, synthesize  # noqa: E402
@@ -44,7 +44,7 @@ LIMITED = Path(__file__).parents[2] / "tests" / "data" / "limited.json"
 
 
 def tasks() -> dict[str, Problem]:
-    """All tasks; what is only ranked, such as masses, is left out."""
+    """All tasks, without data for ranking alone, such as masses."""
     rng = np.random.default_rng(17)
     found = {name: load(name) for name in ("luggage", "path-8-points", "path-18-timed", "path-ellipse")}
     found["six-point line"] = load("path-vertical-line")
@@ -63,8 +63,8 @@ def tasks() -> dict[str, Problem]:
 def judged(problem: Problem, linkage: Linkage) -> float:
     """The error of a linkage that meets all requirements, length or rad; infinite of others.
 
-    Exactness is asked for afterwards: least squares counts here as what it is. Of a function whose greatest
-    error is to be least it is that one over the whole range, not at the pairs alone.
+    Exactness is required afterwards, so least squares counts here by its error. The greatest error of a
+    function is that over the full range, not at the pairs alone.
     """
     task, wanted = problem.task, replace(problem.requirements, exact=False)
     verdict = verify(linkage, task, wanted)
@@ -76,9 +76,9 @@ def judged(problem: Problem, linkage: Linkage) -> float:
 
 
 def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]:
-    """What a package finds, and when."""
+    """The linkages that a package finds, and the times."""
     found: list[tuple[float, Linkage]] = []
-    begun, wall = process_time(), perf_counter()
+    begun = process_time()
     signal.setitimer(signal.ITIMER_PROF, OVERTIME * budget)
     try:
         PEERS[peer](problem, seed, budget, lambda linkage: found.append((process_time() - begun, linkage)))
@@ -88,19 +88,16 @@ def run(peer: str, problem: Problem, seed: int, budget: float) -> dict[str, Any]
         print(f"{peer}: {error}")
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
-    spent, wall = process_time() - begun, perf_counter() - wall
+    spent = process_time() - begun
     errors = [judged(problem, linkage) for _, linkage in found]
-    good = [
-        linkage
-        for (_, linkage), error in zip(found, errors, strict=True)
-        if error <= limit_of(problem, errors)
-    ]
+    limit = limit_of(problem, min(errors, default=np.inf))
+    good = [linkage for (_, linkage), error in zip(found, errors, strict=True) if error <= limit]
     apart = 0
     if good:
         signatures = np.array([signature(each, problem.task.middle) for each in good])
         apart = len(pick_apart(signatures, -np.arange(len(good), dtype=float), APART, len(good)))
     return {
-        "processor": spent, "wall": wall, "times": [round(time, 4) for time, _ in found], "errors": errors,
+        "processor": spent, "times": [round(time, 4) for time, _ in found], "errors": errors,
         "returned": len(found), "usable": sum(map(bool, np.isfinite(errors))), "distinct": apart,
     }  # fmt: skip
 
@@ -114,49 +111,54 @@ def is_exact(problem: Problem) -> bool:
     return problem.requirements.is_exact(problem.task)
 
 
-def limit_of(problem: Problem, errors: Sequence[float], best: float | None = None) -> float:
-    """Up to which error a design counts: rounding where targets are to be met, else 1 % above the least."""
-    if is_exact(problem):
-        return EXACT * problem.task.size
-    return NEAR * (min(errors, default=np.inf) if best is None else best)
+def limit_of(problem: Problem, least: float) -> float:
+    """Greatest error of a design that counts: rounding of exact tasks, else 1 % above the least."""
+    return EXACT * problem.task.size if is_exact(problem) else NEAR * least
 
 
-def reached(problem: Problem, one: dict[str, Any], best: float) -> float:
-    """Processor time to the first design that counts, s; infinite where there is none."""
-    limit = limit_of(problem, (), best)
-    return min((t for t, e in zip(one["times"], one["errors"], strict=True) if e <= limit), default=np.inf)
+def frame_of(runs: dict[str, Any], problems: dict[str, Problem]) -> pd.DataFrame:
+    """A row for each run; `first`, s, is the processor time to the first design that counts, or infinite."""
+    rows = []
+    for key, one in runs.items():
+        task, peer, seed = key.split("|")
+        empty = {"processor": np.nan, "errors": [], "times": []}
+        if task in problems:
+            rows.append({"task": task, "peer": peer, "seed": seed, **empty, **one})
+    frame = pd.DataFrame(rows)
+    frame["least"] = frame["errors"].map(lambda errors: min(errors, default=np.inf))
+    frame["size"] = frame["task"].map(lambda task: problems[task].task.size)
+    best = frame.groupby("task")["least"].transform("min")
+    limits = (limit_of(problems[task], least) for task, least in zip(frame["task"], best, strict=True))
+    frame["first"] = [
+        min((t for t, e in zip(times, errors, strict=True) if e <= limit), default=np.inf)
+        for times, errors, limit in zip(frame["times"], frame["errors"], limits, strict=True)
+    ]
+    return frame
 
 
-def table(runs: dict[str, Any], problems: dict[str, Problem]) -> str:
+def table(frame: pd.DataFrame) -> str:
     """A row for each task and package.
 
-    The time to the first design is that expected with restarts: all that the seeds spend until then, or in
-    vain, over the number of those that come to one. Else medians over the seeds.
+    The time to the first design is that expected with restarts: the time that all seeds spend until then, or
+    in vain, over the number of seeds with a design. Else medians over the seeds.
     """
     lines = [
         "| task | package | least error / size | first, s | in all, s | seeds | distinct | usable |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for task, problem in problems.items():
-        best = best_of(runs, task)
-        for peer in PEERS:
-            done = [one for key, one in runs.items() if key.startswith(f"{task}|{peer}|")]
-            kept = [one for one in done if "left_out" not in one]
-            if not kept:
-                lines += [f"| {task} | {peer} | - | - | - | - | - | - |"] * bool(done)
-                continue
-            least = min(min(one["errors"], default=np.inf) for one in kept) / problem.task.size
-            times = np.array([reached(problem, one, best) for one in kept])
-            hit = int(np.isfinite(times).sum())
-            spent = np.where(np.isfinite(times), times, [one["processor"] for one in kept]).sum()
-            returned = sum(one["returned"] for one in kept)
-            usable = sum(one["usable"] for one in kept) / returned if returned else 0.0
-            first = f"{spent / hit:.3g}" if hit else "-"
-            lines.append(
-                f"| {task} | {peer} | {least:.2g} | {first} | "
-                f"{median(one['processor'] for one in kept):.3g} | {hit} of {len(kept)} | "
-                f"{median(one['distinct'] for one in kept):g} | {100 * usable:.0f} % |"
-            )
+    for (task, peer), done in frame.groupby(["task", "peer"], sort=False):
+        kept = done.dropna(subset="processor")  # the others are left out
+        if kept.empty:
+            lines.append(f"| {task} | {peer} | - | - | - | - | - | - |")
+            continue
+        hit = int(np.isfinite(kept["first"]).sum())
+        spent = np.minimum(kept["first"], kept["processor"]).sum()
+        returned, medians = kept["returned"].sum(), kept[["processor", "distinct"]].median()
+        lines.append(
+            f"| {task} | {peer} | {(kept['least'] / kept['size']).min():.2g} | "
+            f"{f'{spent / hit:.3g}' if hit else '-'} | {medians['processor']:.3g} | {hit} of {len(kept)} | "
+            f"{medians['distinct']:g} | {100 * kept['usable'].sum() / max(returned, 1):.0f} % |"
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -171,36 +173,20 @@ def stages(problems: dict[str, Problem]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def best_of(runs: dict[str, Any], task: str) -> float:
-    """The least error that any run has of a task."""
-    every = [min(one["errors"], default=np.inf) for key, one in runs.items()
-             if key.startswith(f"{task}|") and "errors" in one]  # fmt: skip
-    return min(every, default=np.inf)
-
-
-def draw_profile(runs: dict[str, Any], problems: dict[str, Problem], path: Path) -> None:
-    """Share of runs that a package does within so many times the time of the fastest package."""
+def draw_profile(frame: pd.DataFrame, path: Path) -> None:
+    """Share of runs that a package does within a multiple of the time of the fastest package."""
     from matplotlib.figure import Figure
 
-    cases = sorted({tuple(key.split("|")[::2]) for key in runs})
-    times = {
-        peer: np.array([
-            np.nan if (one := runs.get(f"{task}|{peer}|{seed}")) is None
-            else reached(problems[task], one, best_of(runs, task)) if "errors" in one else np.inf
-            for task, seed in cases
-        ])
-        for peer in PEERS
-    }  # fmt: skip
-    fastest = np.nanmin(list(times.values()), axis=0)
+    times = frame.pivot_table(index=["task", "seed"], columns="peer", values="first", aggfunc="first")
+    fastest = times.min(axis=1)
     figure = Figure(figsize=(7, 4.4), layout="constrained")
     axes = figure.add_subplot()
     factors = np.logspace(0, 4, 400)
-    for peer, each in times.items():
-        done = np.isfinite(fastest) & ~np.isnan(each)
-        if not done.any():
-            continue
-        ratio = each[done] / fastest[done]
-        axes.step(factors, [(ratio <= factor).mean() for factor in factors], where="post", label=peer)
+    for peer in filter(times.columns.__contains__, PEERS):
+        ratio = (times[peer] / fastest)[np.isfinite(fastest) & times[peer].notna()].to_numpy()
+        if len(ratio):
+            shares = [(ratio <= factor).mean() for factor in factors]
+            axes.step(factors, shares, where="post", label=peer)
     axes.set(
         xscale="log", xlabel="times the processor time of the fastest", ylabel="share of runs", ylim=(0, 1.02)
     )
@@ -210,7 +196,7 @@ def draw_profile(runs: dict[str, Any], problems: dict[str, Problem], path: Path)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run what is asked for, and write the table."""
+    """Run the chosen packages on the chosen tasks, and write the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("benchmark"))
     parser.add_argument("--seeds", type=int, default=10)
@@ -225,7 +211,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     problems = {name: each for name, each in tasks().items() if given.tasks is None or name in given.tasks}
     peers = given.packages or list(PEERS)
     load("luggage")
-    PEERS["Grashof"](tasks()["luggage"], 0, 1.0, lambda _: None)  # what loads once is not measured
+    PEERS["Grashof"](tasks()["luggage"], 0, 1.0, lambda _: None)  # imports are not measured
     for seed in range(given.seeds):
         for task, problem in problems.items():
             for peer in peers:
@@ -235,11 +221,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
                     file.write_text(json.dumps(runs))
     versions = ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
     said = f"{platform.processor() or platform.machine()}, Python {platform.python_version()}; {versions}\n\n"
-    said += table(runs, problems)
+    frame = frame_of(runs, problems)
+    said += table(frame)
     if "Grashof" in peers:
         said += f"\nStages of Grashof, s\n\n{stages(problems)}"
     (given.out / "table.md").write_text(said)
-    draw_profile(runs, problems, given.out / "profile.png")
+    draw_profile(frame, given.out / "profile.png")
     print(said)
     return 0
 

@@ -1,19 +1,17 @@
-"""Measure kinematics and dynamics against a plain closed form in NumPy, pylinkage and MuJoCo.
+"""Kinematics and dynamics of one four-bar against a plain closed form in NumPy, pylinkage and MuJoCo.
 
-Prints one line a case: the median over repetitions, on this machine. Run it on a quiet one. The two packages
-come with `pip install '.[bench]'`; one that is not there is left out.
+``--count`` is the number of driver angles. The two packages come with ``pip install '.[bench]'``; one that is
+not there is left out.
 """
 
-import argparse
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from statistics import median
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from measuring import Case, timed
 
 from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, solve_position, uniform_bars
 from grashof.models import Model, mjcf
@@ -21,6 +19,7 @@ from grashof.problems import DynamicsSpec, FourBar, LinkageSpec
 from grashof.problems.values.arrays import TURN
 
 NORTON = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80, coupler_point=(60, 20))
+ANGLES, RUNS = 100_000, 21
 Array = npt.NDArray[np.float64]
 
 
@@ -45,58 +44,54 @@ def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:  # closure: RRR
     return theta3, theta4, omega3, omega4, alpha3, alpha4
 
 
-def taking_turns(runs: int, *functions: Callable[[], object]) -> list[float]:
-    """Median seconds of each; run by turns, so that a busy machine slows all alike."""
-    seconds: list[list[float]] = [[] for _ in functions]
-    for _ in range(runs):
-        for spent, function in zip(seconds, functions, strict=True):
-            begun = perf_counter()
-            function()
-            spent.append(perf_counter() - begun)
-    return [median(spent) for spent in seconds]
+def milliseconds(*functions: Callable[[], object]) -> list[float]:
+    """Median time of each; they take turns, so that a busy machine slows all alike."""
+    rounds = [[timed(function)[1] for function in functions] for _ in range(RUNS)]
+    return [1e3 * median(seconds) for seconds in zip(*rounds, strict=True)]
 
 
-def many_angles(count: int, runs: int) -> None:
+def many_angles(count: int, seed: int) -> Iterator[str]:
     """One linkage at many driver angles."""
+    del seed
     theta2 = np.linspace(0, 2 * np.pi, count)
     state = solve_kinematics(NORTON, theta2, 2.0)
     found = (state.theta3, state.theta4, state.omega3, state.omega4, state.alpha3, state.alpha4)
     apart = max(float(np.abs(a - b).max()) for a, b in zip(plain(theta2, 2.0), found, strict=True))
     masses, loads = uniform_bars(NORTON, 2.0, payload=3.0), Loads(gravity=(0, -9810))
-    closed, ours, points, forces = taking_turns(
-        runs,
+    closed, ours, points, forces = milliseconds(
         lambda: plain(theta2, 2.0),
         lambda: solve_kinematics(NORTON, theta2, 2.0),
         lambda: (state.a, state.b, state.p),
         lambda: inverse_dynamics(state, masses, loads),
     )
-    print(f"{count} angles, plain closed form: {closed * 1e3:.1f} ms")
-    print(
-        f"{count} angles, kinematics with jerk: {ours * 1e3:.1f} ms, {ours / closed:.2f} times the plain "
-        f"form, largest difference {apart:.0e}"
+    yield f"plain closed form {closed:.1f} ms"
+    yield (
+        f"kinematics with jerk {ours:.1f} ms, {ours / closed:.2f} times the plain form, "
+        f"largest difference {apart:.0e}"
     )
-    print(f"{count} angles, motion of A, B and P: {points * 1e3:.1f} ms more")
-    print(
-        f"{count} angles, inverse dynamics: {forces * 1e3:.1f} ms, {forces / ours:.1f} times the kinematics"
-    )
+    yield f"motion of A, B and P {points:.1f} ms more"
+    yield f"inverse dynamics {forces:.1f} ms, {forces / ours:.1f} times the kinematics"
 
 
-def many_linkages(count: int, angles: int, seed: int) -> None:
+def many_linkages(count: int, seed: int, angles: int = 64) -> Iterator[str]:
     """Random linkages, all at the same angles."""
     rng = np.random.default_rng(seed)
     o4 = np.stack([rng.uniform(90, 110, count), rng.uniform(-5, 5, count)], axis=-1)
     r2, r3, r4 = rng.uniform(30, 40, count), rng.uniform(110, 130, count), rng.uniform(75, 85, count)
     linkages = FourBar(o2=np.zeros((count, 2)), o4=o4, r2=r2, r3=r3, r4=r4)[:, None]
-    begun = perf_counter()
-    state = solve_kinematics(linkages, np.linspace(0, 2 * np.pi, angles))
-    seconds = perf_counter() - begun
-    each = seconds / state.theta3.size * 1e9
-    print(f"{count} linkages at {angles} angles: {seconds:.2f} s, {each:.0f} ns each")
+    _, seconds = timed(lambda: solve_kinematics(linkages, np.linspace(0, 2 * np.pi, angles)))
+    each = seconds / (count * angles) * 1e9
+    yield f"{count} linkages at {angles} angles in {seconds:.2f} s, {each:.0f} ns each"
 
 
-def against_pylinkage(count: int, runs: int) -> None:
+def against_pylinkage(count: int, seed: int) -> Iterator[str]:
     """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
-    conversion: Any = import_module("pylinkage.synthesis.conversion")
+    del seed
+    try:
+        conversion: Any = import_module("pylinkage.synthesis.conversion")
+    except ModuleNotFoundError:
+        yield "not installed"
+        return
     r1, r2, r3, r4 = map(float, NORTON.lengths)
     made = conversion.fourbar_from_lengths(r2, r3, r4, r1, iterations=count)
     made.set_input_velocity(made._cranks[0], omega=2.0)
@@ -108,21 +103,25 @@ def against_pylinkage(count: int, runs: int) -> None:
     a, b = path[:, crank], path[:, len(columns) - 1]
     theta2 = np.arctan2(a[:, 1], a[:, 0])
     apart = np.abs(solve_position(NORTON, theta2).b - b).max()
-    joints, rates, ours = taking_turns(
-        runs,
+    joints, rates, ours = milliseconds(
         lambda: made.step_fast(count),
         lambda: made.step_fast_with_kinematics(count),
         lambda: (state := solve_kinematics(NORTON, theta2, 2.0), state.a, state.b),
     )
-    print(
-        f"{count} angles, pylinkage with numba: {joints * 1e3:.1f} ms for joints, {rates * 1e3:.1f} ms with "
-        f"velocities and accelerations, against {ours * 1e3:.1f} ms; B differs by {apart / r1:.0e} of r1"
+    yield (
+        f"{joints:.1f} ms for joints, {rates:.1f} ms with velocities and accelerations, "
+        f"against {ours:.1f} ms; B differs by {apart / r1:.0e} of r1"
     )
 
 
-def against_mujoco(count: int, runs: int) -> None:
-    """So many steps of MuJoCo with the model that `grashof export` writes, against inverse dynamics."""
-    mujoco: Any = import_module("mujoco")
+def against_mujoco(count: int, seed: int) -> Iterator[str]:
+    """Steps of MuJoCo with the model that `grashof export` writes, against inverse dynamics."""
+    del seed
+    try:
+        mujoco: Any = import_module("mujoco")
+    except ModuleNotFoundError:
+        yield "not installed"
+        return
     spec = DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81), speed_rpm=60 / np.pi)
     model = Model.of(LinkageSpec(NORTON, "norton", length_unit="mm", dynamics=spec))
     made = mujoco.MjModel.from_xml_string(mjcf(model))
@@ -135,34 +134,19 @@ def against_mujoco(count: int, runs: int) -> None:
         at = solve_kinematics(NORTON, float(data.qpos[0]))
         off = float(data.qpos[0] + data.qpos[1] - at.theta3)
         worst = max(worst, abs((off + np.pi) % TURN - np.pi))
-    steps, ours = taking_turns(
-        runs,
+    steps, ours = milliseconds(
         lambda: mujoco.mj_step(made, data, count),
         lambda: inverse_dynamics(solve_kinematics(NORTON, theta2, 2.0), masses, loads),
     )
-    print(
-        f"{count} steps of MuJoCo: {steps * 1e3:.0f} ms, {steps / ours:.0f} times kinematics and inverse "
-        f"dynamics at as many angles ({ours * 1e3:.0f} ms); its coupler angle differs by {worst:.0e} rad"
+    yield (
+        f"{steps:.0f} ms for {count} steps, {steps / ours:.0f} times kinematics and inverse dynamics at as "
+        f"many angles ({ours:.0f} ms); its coupler angle differs by {worst:.0e} rad"
     )
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Run all measurements."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--angles", type=int, default=100_000)
-    parser.add_argument("--linkages", type=int, default=100_000)
-    parser.add_argument("--runs", type=int, default=21)
-    parser.add_argument("--seed", type=int, default=1)
-    options = parser.parse_args(argv)
-    many_angles(options.angles, options.runs)
-    many_linkages(options.linkages, 64, options.seed)
-    for against in (against_pylinkage, against_mujoco):
-        try:
-            against(options.angles, options.runs)
-        except ModuleNotFoundError as missing:
-            print(f"{missing.name} is not installed")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+CASES = [
+    Case("one linkage", ANGLES, many_angles),
+    Case("many linkages", ANGLES, many_linkages),
+    Case("pylinkage with numba", ANGLES, against_pylinkage),
+    Case("MuJoCo", ANGLES, against_mujoco),
+]
