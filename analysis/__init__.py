@@ -34,6 +34,7 @@ from grashof.analysis.forces.energy import Energies, Powers, energies, mechanica
 from grashof.analysis.forces.equilibrium import Equilibria, equilibria
 from grashof.analysis.forces.flywheel import Flywheel, flywheel_speed, size_flywheel
 from grashof.analysis.forces.free_response import Ending, FreeResponse, free_response, generalised_inertia
+from grashof.analysis.forces.from_spec import stated_loads, stated_masses
 from grashof.analysis.forces.joints import Joint
 from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import (
@@ -51,7 +52,6 @@ from grashof.analysis.forces.reciprocating import (
     balance_reciprocating,
     shaking_harmonics,
 )
-from grashof.analysis.forces.stated import stated_loads, stated_masses
 from grashof.analysis.forces.statics import Advantage, Holding, advantage, holding
 from grashof.analysis.forces.system_of_equations import SystemOfEquations, system_of_equations
 from grashof.analysis.four_bar.instant_centres import (
@@ -73,12 +73,11 @@ from grashof.analysis.four_bar.pumping_unit import (
     rod_load,
     rod_motion,
 )
+from grashof.analysis.judge.cylinder_drive import cylinder_forces
 from grashof.analysis.judge.design import Constraint, Design
-from grashof.analysis.judge.driven import cylinder_forces
 from grashof.analysis.judge.function_output import FunctionCurves, function_curves
-from grashof.analysis.judge.made_moves import MadeMoves, made_moves, output_sensitivity
 from grashof.analysis.judge.over_task import OverTask, over_task
-from grashof.analysis.judge.tolerance import Robustness, robustness
+from grashof.analysis.judge.tolerance import MadeMoves, Robustness, made_moves, output_sensitivity, robustness
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.judge.verify import verify
 from grashof.analysis.mechanism.differences import Deviation, central_differences, compare_differences

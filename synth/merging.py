@@ -1,4 +1,4 @@
-"""Shards merged: the list of the whole search."""
+"""Shards merged: the list of the complete search."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.checks import located, plain_text
 from grashof.synth.proof.provers import bounds_after, bounds_before
 from grashof.synth.results.conclusion import conclude, needless
-from grashof.synth.results.mixed import one_list
+from grashof.synth.results.lists import one_list
 from grashof.synth.results.result import Result
-from grashof.synth.search.asked import asking
-from grashof.synth.search.chunks import CHUNK, which
+from grashof.synth.search.chunks import CHUNK, arguments
+from grashof.synth.search.history import StopCondition
 from grashof.synth.search.journal import (
+    COMPLETE,
     HEAD,
-    WHOLE,
     head_of,
     read_head,
     recorded_steps,
@@ -29,7 +29,7 @@ from grashof.synth.search.journal import (
 )
 from grashof.synth.search.ledger import Chunk, Ledger
 from grashof.synth.search.plain import restored
-from grashof.synth.search.recorded_designs import agrees, is_whole_chunk
+from grashof.synth.search.recorded_designs import agrees, is_complete_chunk
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import finished, found_few
 from grashof.synth.search.workers import working
@@ -41,37 +41,18 @@ NAMED = 12  # shards that a message names
 
 @dataclass(frozen=True, slots=True)
 class Shards:
-    """The shards that a folder holds.
-
-    Parameters
-    ----------
-    folder : Path
-    of : int
-        How many the search has.
-    done : tuple of Shard
-        Those of which nothing is left to be done.
-    problem : Problem
-    text : str
-        The problem file.
-    search : Search
-    """
+    """The shards in a folder."""
 
     folder: Path
-    of: int
-    done: tuple[Shard, ...]
+    of: int  # shards of the search
+    done: tuple[Shard, ...]  # the complete ones
     problem: Problem
-    text: str
+    text: str  # the problem file
     search: Search
 
     @classmethod
     def found(cls, folder: Path) -> Shards:
-        """What is there.
-
-        Raises
-        ------
-        ProblemError
-            There is none, or they are not of one search made with these versions.
-        """
+        """The shards in a folder; ProblemError without any, or if not of one search with these versions."""
         there = sorted(_named(folder), key=lambda shard: (shard.of, shard.number))
         if not there:
             raise ProblemError(
@@ -86,13 +67,13 @@ class Shards:
         for shard in there:
             own = folder / SHARDS / shard.folder
             refuse_other(own, head_of(problem, search, name=problem.name, shard=str(shard)))
-            if read_head(own).get(WHOLE) is True:
+            if read_head(own).get(COMPLETE) is True:
                 done.append(shard)
         return cls(folder, there[0].of, tuple(done), problem, text, search)
 
     @property
     def lacking(self) -> str:
-        """Which are not done, in words; empty where all are."""
+        """The shards not done, in words; empty where all are."""
         done = {shard.number for shard in self.done}
         numbers = [str(number) for number in range(1, self.of + 1) if number not in done]
         if not numbers:
@@ -109,13 +90,13 @@ class Shards:
                 shard = Shard((turn * plan.count + number) % self.of + 1, self.of)
                 if shard.number not in steps:
                     continue
-                name = step_name(CHUNK, (number, *which(self.search, plan.starts)))
+                name = step_name(CHUNK, (number, *arguments(self.search, plan.starts)))
                 step = next(steps[shard.number], {})
                 try:
                     if step["step"] != name:
                         raise ValueError(name)
                     chunk = restored(step["result"], ledger.scaled.problem)
-                    if not isinstance(chunk, Chunk) or not is_whole_chunk(ledger.scaled, chunk):
+                    if not isinstance(chunk, Chunk) or not is_complete_chunk(ledger.scaled, chunk):
                         raise ValueError(name)
                 except (ValueError, KeyError, TypeError):
                     raise _damaged(self.folder / SHARDS / shard.folder) from None
@@ -130,23 +111,11 @@ def merge_shards(
     progress: Callable[[Progress], object] | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> Result:
-    """The list of a search whose shards are in a folder: the same, however many they are.
+    """The list of a search whose shards are in a folder, whatever their number.
 
-    Parameters
-    ----------
-    folder : Path
-    partial : bool
-        Be content with those that are done.
-    workers, progress, stop
-        As in `synthesize`.
+    `partial` accepts that some are not done; `workers`, `progress` and `stop` are as in `synthesize`.
+    ProblemError where shards are missing or not done, or not of one search made with these versions.
 
-    Raises
-    ------
-    ProblemError
-        Shards are missing or not done, or they are not of one search made with these versions.
-
-    Examples
-    --------
     >>> import tempfile
     >>> from grashof import load
     >>> from grashof.synth.shards import solve_shard
@@ -155,45 +124,43 @@ def merge_shards(
     ...     merge_shards(Path(name), partial=True).best.verdict.ok
     True
     """
-    asked, shards = asking(None, stop), Shards.found(folder)
+    stop_condition, shards = StopCondition.of(None, stop), Shards.found(folder)
     if shards.lacking and not partial:
         raise ProblemError(f"{folder}: {shards.lacking} to be done; --partial merges the others")
     if not shards.done:
-        raise ProblemError(
-            f"{folder}: none of its shards is done; the command that began one goes on with it"
-        )
+        raise ProblemError(f"{folder}: none of its shards is done; the command that began one continues it")
     plan = Plan.of(shards.problem, shards.search)
     if not plan.problems:
-        return needless(plan.asked[0], asked)
-    with stopping(asked), working(workers, None) as work:
-        run = Run(shards.search, work, asked, progress=progress)
+        return needless(plan.stated[0], stop_condition)
+    with stopping(stop_condition), working(workers, None) as work:
+        run = Run(shards.search, work, stop_condition, progress=progress)
         ledgers = [[plan.ledger(scaled, plan.count) for scaled in each] for each in plan.searched]
         every = list(chain.from_iterable(ledgers))
         with run.timed("merging"):
             for ledger, chunk in shards.chunks(every, plan):
                 ledger.absorb(chunk)
-                run.tell(ledger)
+                run.report(ledger)
             for ledger in every:
                 _refuse_unverified(folder, ledger)
         found = []
-        for scaled, (first, *second) in zip(plan.asked, ledgers, strict=True):
+        for scaled, (first, *second) in zip(plan.stated, ledgers, strict=True):
             used = [first, *second] if found_few(first) else [first]
             done = [finished(ledger, run) for ledger in used]
             bounds = bounds_before(scaled, run.proving)
             bounds = bounds_after(scaled, run.proving, bounds, [each for one in done for each in one.best])
-            found.append(conclude(scaled, done, run, asked, bounds))
+            found.append(conclude(scaled, done, run, stop_condition, bounds))
         return one_list(plan.problem, found)
 
 
 def _named(folder: Path) -> Iterator[Shard]:
-    """Shards whose folders are there."""
+    """Shards that have a folder."""
     for path in (folder / SHARDS).glob("*-of-*"):
         with suppress(ValueError):  # not ours
             yield Shard.named(path.name)
 
 
 def _of_shard(own: Path) -> tuple[Problem, str, Search]:
-    """Of which problem a shard is, the file that states it, and of which search."""
+    """The problem of a shard, the file that states it, and its search options."""
     head, path = read_head(own), own / PROBLEM
     if path.exists() and not path.is_file():  # a pipe or a device may never end
         raise ProblemError(f"{path}: is not a problem file; delete {own}, and run the shard again")
@@ -207,7 +174,7 @@ def _of_shard(own: Path) -> tuple[Problem, str, Search]:
 
 
 def _refuse_unverified(folder: Path, ledger: Ledger) -> None:
-    """Judge once more what may be listed, or the misses where nothing may be: a file may say anything."""
+    """Judge again the designs of a list, or the misses of an empty one: a file may contain anything."""
     misses = [one.candidate for one in ledger.rejected if one.candidate is not None]
     for one in ledger.best or misses:
         if not agrees(ledger.scaled, one):

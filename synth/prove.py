@@ -1,4 +1,4 @@
-"""From a problem to what is proven of it, without a list."""
+"""From a problem to a proof about its best design, without a list."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from grashof.synth.proof.poses.five_poses import FIVE
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.provers import bounds_before, bounds_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.asked import asking
 from grashof.synth.search.finder import refuse_unsearchable
+from grashof.synth.search.history import StopCondition
 from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
-_RIGHT = 90.0  # deg: a bound that says nothing
+_RIGHT = 90.0  # deg: a bound without information
 _BEYOND = (
     "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly, "
     "of four whole poses of a slider-crank, and of a swing or a stroke; of no other task yet"
@@ -46,7 +46,7 @@ def prove(
     stop: Callable[[], bool] | None = None,
     certificate: str | Path | None = None,
 ) -> Proof:
-    """Find out how good the best design can be, or that there is none.
+    """Prove how good the best design can be, or that there is none.
 
     Parameters
     ----------
@@ -55,21 +55,21 @@ def prove(
         whole poses; a function of three to five pairs. For a slider-crank four whole poses. For every kind of
         linkage a swing or a stroke; of a list of kinds for the first.
     at_least : float, deg, optional
-        Only decide whether a design has a transmission angle of so much.
+        Only decide whether a design has at least this transmission angle.
     gap : float, deg
         Up to which the bounds are brought together, 0.0001 to 90.
     constraints : sequence of callable
-        Your own, as for `synthesize`; the bound does without them.
+        Your own, as for `synthesize`; the bound ignores them.
     time_limit, stop
         As for `synthesize`; the bound so far holds.
     certificate : str or Path, optional
-        File to write what was proven of four poses to, for ``scripts/check_certificate.py``; it is not
-        written where no bound was reached.
+        File for the certificate of four poses, to be checked by ``scripts/check_certificate.py``; it is
+        not written where no bound was reached.
 
     Returns
     -------
     Proof
-        With the value of a design that the judge accepts as `lower`, None where none was found.
+        Its `lower` is the value of a design that the judge accepts, None where none was found.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def prove(
     >>> str(prove(load("luggage"), at_least=28).claim)
     'none'
     """
-    asked = asking(time_limit, stop)
+    stop_condition = StopCondition.of(time_limit, stop)
     if not isinstance(problem, Problem):
         raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
     refuse_unsearchable(problem)
@@ -120,7 +120,7 @@ def prove(
         return beyond
     scaled = ScaledProblem.of(alone, constraints)
     trail = None if certificate is None else Trail()
-    with stopping(asked):
+    with stopping(stop_condition):
         if trail is None:
             bounds = bounds_of(scaled, proving, at_least)
         else:
@@ -134,12 +134,12 @@ def prove(
 
 
 def _of_bars(problem: Problem) -> str | None:
-    """The kind among those asked for that is all bars, of which there are most proofs; None without it."""
+    """The requested kind that consists of bars alone, which has most proofs; None without it."""
     return next((kind for kind in problem.mechanism if closing_dyad(kind) is DyadKind.RRR), None)
 
 
 def _takes_minutes(scaled: ScaledProblem, proving: Proving) -> bool:
-    """Whether three poses stay open at first: a good design of a list is then worth more than many pairs."""
+    """Whether three poses stay open at first: a good design of a list then saves many pairs."""
     return not refusal(scaled, THREE) and bounds_before(scaled, proving) is None
 
 
@@ -162,7 +162,7 @@ def _certifiable(problem: Problem, constraints: Sequence[Constraint], path: Path
 
 
 def _of_at_least(proof: Proof, at_least: float | None) -> Proof:
-    """The same where only designs with so much count, deg."""
+    """The proof where only designs with at least `at_least` count, deg."""
     reached = proof.lower if proof.complete else proof.upper
     if at_least is None or proof.claim is Claim.REFUSED or (reached or 0.0) >= at_least:
         return proof
@@ -170,7 +170,7 @@ def _of_at_least(proof: Proof, at_least: float | None) -> Proof:
 
 
 def _known(scaled: ScaledProblem, bounds: Bounds) -> float | None:
-    """Transmission angle of the design that was found, deg, where it meets all that is asked."""
+    """Transmission angle of the design that was found, deg, where it meets all requirements."""
     if bounds.found is None:
         return None
     problem, linkage = scaled.problem, bounds.found.linkage

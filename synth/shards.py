@@ -14,31 +14,25 @@ from grashof.problems.files.on_disk import write_whole
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.errors import wrong_value
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.asked import asking, search_of
 from grashof.synth.search.chunks import CHUNKS, chunks, starts_of_chunk
-from grashof.synth.search.finder import finder_for
-from grashof.synth.search.journal import Recorded, head_of
+from grashof.synth.search.finder import finder_for, search_of
+from grashof.synth.search.history import StopCondition
+from grashof.synth.search.journal import Journal, head_of
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Progress, Run
-from grashof.synth.search.searches import asked_in_turn
+from grashof.synth.search.searches import problems_in_turn
 from grashof.synth.search.workers import working
 from grashof.synth.theory.stopping import StopRequested, stopping
 
 _LOG = logging.getLogger(__name__)
-SHARDS = "shards"  # folder of theirs
+SHARDS = "shards"  # their folder
 PROBLEM = "problem.toml"
 MOST = 100_000  # shards of a search
 
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of so many parts of a search.
-
-    Parameters
-    ----------
-    number, of : int
-        The first is 1.
-    """
+    """Part `number` of a search divided into `of`; the first is 1."""
 
     number: int
     of: int
@@ -74,51 +68,31 @@ class Shard:
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
-    """What a shard has come to.
+class ShardOutcome:
+    """The outcome of a shard."""
 
-    Parameters
-    ----------
-    chunks, of : int
-        Chunks that are done, and that it has.
-    solved, designs : int
-        Solves, and distinct verified designs.
-    whole : bool
-        Nothing is left to be done.
-    """
-
-    chunks: int
-    of: int
+    chunks: int  # that are done
+    of: int  # chunks in all
     solved: int
-    designs: int
-    whole: bool
+    designs: int  # distinct and verified
+    complete: bool  # no work is left
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """All chunks of a search: `count` of each of its problems.
-
-    Parameters
-    ----------
-    problem : Problem
-    asked : tuple of ScaledProblem
-        As it is asked, for each kind of linkage.
-    searched : tuple of tuple of ScaledProblem
-        As it is searched, for each kind; none where its targets need no linkage.
-    search : Search
-    """
+    """All chunks of a search: `count` of each of its problems."""
 
     problem: Problem
-    asked: tuple[ScaledProblem, ...]
-    searched: tuple[tuple[ScaledProblem, ...], ...]
+    stated: tuple[ScaledProblem, ...]  # for each kind of linkage
+    searched: tuple[tuple[ScaledProblem, ...], ...]  # for each kind; empty where the targets need no linkage
     search: Search
 
     @classmethod
     def of(cls, problem: Problem, search: Search) -> Plan:
         """The plan of a search."""
-        asked = tuple(ScaledProblem.of(problem.for_kind(kind)) for kind in problem.mechanism)
-        needed = not finder_for(asked[0]).degenerate()
-        return cls(problem, asked, tuple(map(asked_in_turn, asked)) if needed else (), search)
+        stated = tuple(ScaledProblem.of(problem.for_kind(kind)) for kind in problem.mechanism)
+        needed = not finder_for(stated[0]).degenerate()
+        return cls(problem, stated, tuple(map(problems_in_turn, stated)) if needed else (), search)
 
     @property
     def problems(self) -> tuple[ScaledProblem, ...]:
@@ -126,7 +100,7 @@ class Plan:
         return tuple(chain.from_iterable(self.searched))
 
     def ledger(self, scaled: ScaledProblem, chunks: int) -> Ledger:
-        """Bookkeeping of so many chunks of a problem, which nothing ends before all are done."""
+        """The ledger of `chunks` chunks of a problem, none of which ends it early."""
         search = replace(self.search, starts=max(1, chunks * self.starts), effort=1.0)
         ledger = Ledger(scaled, search, "all its chunks are done")
         ledger.plan_more()
@@ -143,7 +117,7 @@ class Plan:
         return starts_of_chunk(self.search)
 
     def numbers(self, shard: Shard) -> list[range]:
-        """The chunks of a shard, those of each problem: every so many of all."""
+        """Numbers of the chunks of a shard, for each problem: every `shard.of`-th of all."""
         begins = [shard.number - 1 - turn * self.count for turn in range(len(self.problems))]
         return [range(begin % shard.of, self.count, shard.of) for begin in begins]
 
@@ -163,67 +137,41 @@ def solve_shard(
     time_limit: float | None = None,
     progress: Callable[[Progress], object] | None = None,
     stop: Callable[[], bool] | None = None,
-) -> Made:
+) -> ShardOutcome:
     """Make all chunks of a shard and leave them in a folder, for `merge_shards`.
 
-    What the folder has of them is not done again. The whole search has four chunks for each unit of
-    effort: rounds of starts that do not depend on each other; none of them ends it early.
-
-    Parameters
-    ----------
-    problem : Problem
-    shard : Shard
-    folder : Path
-        The same for all shards.
-    text : str, optional
-        The problem file.
-    starts, enough, seed, effort, workers, executor, time_limit, progress, stop
-        As in `synthesize`; the first four have to be the same for all shards.
-
-    Raises
-    ------
-    ProblemError
-        The problem, or another argument, is invalid; or the folder has this shard of another search.
-    SolverError
-        A worker process or the executor was lost.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from grashof import load
-    >>> from grashof.synth.merging import merge_shards
-    >>> with tempfile.TemporaryDirectory() as name:
-    ...     for number in (1, 2):
-    ...         made = solve_shard(load("luggage"), Shard(number, 2), Path(name), starts=8)
-    ...     len(merge_shards(Path(name))) >= made.designs > 0
-    True
+    Recorded chunks are not repeated. The search has four chunks for each unit of effort: rounds of starts
+    that do not depend on each other, none of which ends it early. `folder` is the same for all shards, `text`
+    is the problem file; the others are as in `synthesize`, `starts`, `enough`, `seed` and `effort` the same
+    for all shards. ProblemError where the problem, or another argument, is invalid, or the folder has this
+    shard of another search; SolverError where a worker process or the executor was lost.
     """
-    asked = asking(time_limit, stop)
+    stop_condition = StopCondition.of(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     plan, own = Plan.of(problem, search), folder / SHARDS / shard.folder
     numbers = plan.numbers(shard)
     head = head_of(problem, search, name=problem.name, shard=str(shard))
-    journal = Recorded(own, head, needed=True)  # refuses another search
+    journal = Journal(own, head, needed=True)  # refuses another search
     own.mkdir(parents=True, exist_ok=True)
     write_whole(own / PROBLEM, problem_toml(problem) if text is None else text)
     journal.begin()
     done = 0
     ledgers = [plan.ledger(*each) for each in zip(plan.problems, map(len, numbers), strict=True)]
-    with stopping(asked), working(workers, executor) as work:
-        run = Run(search, work, asked, journal, progress)
+    with stopping(stop_condition), working(workers, executor) as work:
+        run = Run(search, work, stop_condition, journal, progress)
         try:
             for ledger, mine in zip(ledgers, numbers, strict=True):
                 for one in chunks(ledger.scaled, run, mine, plan.starts):
                     ledger.absorb(one)
                     done += 1
-                    run.tell(ledger)
-                    told = shard, done, ledger.solved, len(ledger.best)
-                    _LOG.info("shard %s: %d chunks, %d solves, %d designs", *told)
+                    run.report(ledger)
+                    counts = done, ledger.solved, len(ledger.best)
+                    _LOG.info("shard %s: %d chunks, %d solves, %d designs", shard, *counts)
         except StopRequested:
             journal.close()
-        whole = journal.is_open
-        if whole:
+        complete = journal.is_open
+        if complete:
             journal.finish()
         journal.close()
     solved, designs = (sum(each.solved for each in ledgers), sum(len(each.best) for each in ledgers))
-    return Made(done, sum(map(len, numbers)), solved, designs, whole)
+    return ShardOutcome(done, sum(map(len, numbers)), solved, designs, complete)

@@ -19,13 +19,12 @@ from grashof.synth.proof.poses.first_round import round_of_regions
 from grashof.synth.proof.provers import bounds_after, bounds_before, certified_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.conclusion import conclude, needless
-from grashof.synth.results.mixed import one_list
+from grashof.synth.results.lists import one_list
 from grashof.synth.results.result import Result
-from grashof.synth.search.asked import asking, search_of
-from grashof.synth.search.finder import finder_for
+from grashof.synth.search.chunks import solve
+from grashof.synth.search.finder import finder_for, search_of
 from grashof.synth.search.history import StopCondition, StopReason
 from grashof.synth.search.journal import journal_of
-from grashof.synth.search.rounds import solve
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
 from grashof.synth.search.workers import working
@@ -70,20 +69,20 @@ def synthesize(
     workers : int
         Processes. The result does not depend on it; a search of a second or two gains nothing.
     executor : concurrent.futures.Executor, optional
-        Where to work instead; not shut down. State by `workers` how many it has: so much is begun ahead.
-        Threads gain nothing: one of them solves at a time.
+        Where to work instead; not shut down. `workers` states how many it has, which is how much is begun
+        ahead. Threads gain nothing: one of them solves at a time.
     time_limit : float, s, optional
         The search ends soon after it.
     progress : callable, optional
         Called with a `Progress` after every batch.
     stop : callable, optional
-        Asked often; the search ends soon after it returns True.
+        Called often; the search ends soon after it returns True.
     record : Path, optional
-        Folder in which a search of more than two seconds is recorded as it goes; it goes on from the
-        record of the same search, and removes it at its end unless it was stopped. A disk that is full
-        ends the record, not the search. Not with constraints or an objective of your own.
+        Folder in which a search of more than two seconds is recorded while it runs; it resumes the record
+        of the same search, and removes it at its end unless it was stopped. A full disk ends the record,
+        not the search. Not with constraints or an objective of your own.
     keep_record : bool
-        Leave the record of a whole search, too, until its list is safe.
+        Leave the record of a complete search, too, until its list is saved.
     gap : float, deg
         Up to which proofs bring their bounds together, 0.0001 to 90.
     prove : bool
@@ -113,7 +112,7 @@ def synthesize(
     >>> result.best.verdict.ok, bool(result.best.verdict.error_max < 1e-9)
     (True, True)
     """
-    asked = asking(time_limit, stop)
+    stop_condition = StopCondition.of(time_limit, stop)
     search = search_of(problem, workers, starts=starts, enough=enough, seed=seed, effort=effort)
     refuse_no_list(constraints)
     proving = Proving.patient(gap) if prove else Proving(gap)
@@ -125,12 +124,12 @@ def synthesize(
     for scaled in kinds:
         refuse_unusable(scaled, in_processes=workers > 1 or executor is not None)
     if finder_for(kinds[0]).degenerate():
-        return needless(kinds[0], asked)
+        return needless(kinds[0], stop_condition)
     found: list[Result] = []
     with journal_of(record, problem, search, keep=keep_record) as journal, working(workers, executor) as work:
-        run = Run(search, work, asked, journal, progress, proving=proving)
+        run = Run(search, work, stop_condition, journal, progress, proving=proving)
         for number, scaled in enumerate(kinds, start=1):
-            part = asked.part(number, len(kinds))
+            part = stop_condition.part(number, len(kinds))
             with stopping(part):
                 run = replace(run, stop_requested=part)
                 found.append(_one_kind(scaled, run, part))
@@ -139,15 +138,15 @@ def synthesize(
     return one_list(problem, found)
 
 
-def _one_kind(scaled: ScaledProblem, run: Run, asked: StopCondition) -> Result:
-    """The list of one kind of linkage: what theory bounds and encloses, then the search."""
+def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) -> Result:
+    """The list of one kind of linkage: bounds and regions from theory, then the search."""
     with run.timed("proving"):
         bounds = bounds_before(scaled, run.proving)
         if bounds is not None and bounds.none:
-            return conclude(scaled, nothing_to_search(scaled, run), run, asked, bounds)
+            return conclude(scaled, nothing_to_search(scaled, run), run, stop_condition, bounds)
         dyads = certified_of(scaled) if bounds is None else None
         atlas, known = None, None
-        with suppress(StopRequested):  # the finder has a quick pass for those in haste
+        with suppress(StopRequested):  # the finder has a quick pass in place of it
             atlas = None if bounds is None else atlas_of(scaled, bounds)
             known = None if atlas is None else round_of_regions(scaled, atlas, run.search.enough)
     ledgers = searches(scaled, run, known)
@@ -156,4 +155,4 @@ def _one_kind(scaled: ScaledProblem, run: Run, asked: StopCondition) -> Result:
     if proven is not None and proven is not bounds and proven.found is not None:
         solve([proven.found.linkage], ledgers[0], run)
     bounds = proven
-    return conclude(scaled, ledgers, run, asked, bounds or dyads, atlas)
+    return conclude(scaled, ledgers, run, stop_condition, bounds or dyads, atlas)

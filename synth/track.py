@@ -1,4 +1,4 @@
-"""Designs that follow their problem: solved again from where they are, when a target or a limit moves."""
+"""Designs that follow their problem: solved again from their place when a target or a limit moves."""
 
 from __future__ import annotations
 
@@ -11,17 +11,16 @@ from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.linkages.mechanisms import is_of
-from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.scores import same_error
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.whole_designs import WholeDesigns
 
-_TRADED = 1.001  # times the least error: designs of more were made better at something else
+_TRADED = 1.001  # times the least error: designs with more traded it for something else
 
 
 def track(
@@ -31,7 +30,7 @@ def track(
     constraints: Sequence[Constraint] = (),
     objective: OwnObjective | None = None,
 ) -> tuple[Candidate, ...]:
-    """Designs of one problem, moved to do another one that differs by a little.
+    """Designs of one problem, moved to do another one that differs slightly.
 
     Parameters
     ----------
@@ -45,19 +44,19 @@ def track(
     -------
     tuple of Candidate
         One for each design, in their order, judged for `problem`. A lost design has defects, `verdict.ok` is
-        False: it is what the solver came to, or where that is no linkage the design as it was.
+        False: it is the result of the solver, or where that is not a linkage the design as it was.
 
     Raises
     ------
     ProblemError
-        An argument is invalid, or the problem does not ask for the kind of a design.
+        An argument is invalid, or the problem does not request the kind of a design.
 
     Notes
     -----
     One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. A design moves no
-    farther than it has to where all targets are to be met, and in least squares where it has more error than
-    another one for the sake of its size or transmission: then it may err as much as before, or as many times
-    the least error. Others move to the least error near them.
+    farther than necessary where all targets are to be met, and in least squares where it has more error than
+    another one in exchange for its size or transmission: its error may then be as large as before, or as many
+    times the least error. Others move to the least error near them.
 
     Examples
     --------
@@ -96,21 +95,21 @@ def track(
 
 
 def _kinds_of(designs: Sequence[Candidate], problem: Problem) -> list[str]:
-    """Kinds of linkage among the designs, each of which the problem has to ask for."""
+    """Kinds of linkage among the designs, each of which the problem has to request."""
     kinds: dict[str, None] = {}
     for number, design in enumerate(designs):
         if not isinstance(design, Candidate):
             raise wrong_value(f"designs[{number}]", design, "a Candidate, as results list them")
         kind = design.linkage.mechanism.word
         if not is_of(design.linkage, problem.mechanism):
-            asked = ", ".join(problem.mechanism)
-            raise ProblemError(f"designs[{number}] is a {kind}; the problem asks for {asked}")
+            requested = ", ".join(problem.mechanism)
+            raise ProblemError(f"designs[{number}] is a {kind}; the problem requests {requested}")
         kinds[kind] = None
     return list(kinds)
 
 
 def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: float) -> Candidate:
-    """A design after one solve from where it is; one that traded error for more may err as much again.
+    """A design after one solve from its place; one that traded error may have as much again.
 
     Of a function or a stroke: the design of the new task that is nearest to it.
     """

@@ -31,12 +31,14 @@ SMALL: dict[str, dict[str, Any]] = {
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Studies are slow; of a test marked `quick` all cases but those that it names are studies."""
+    """Studies are slow; cases that a `quick` test does not name are studies; tests in a browser are extra."""
     known: dict[str, set[str]] = {}
     named: dict[str, set[str]] = {}
     for item in items:
         if item.get_closest_marker("study"):
             item.add_marker(pytest.mark.slow)
+        if "browser" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.extra)
         test, _, case = item.nodeid.removesuffix("]").partition("[")
         for mark in item.iter_markers("quick"):
             known.setdefault(test, set()).add(case)

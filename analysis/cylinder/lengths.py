@@ -1,18 +1,23 @@
-"""Length, rate and lever of a cylinder, and their extremes over a motion."""
+"""Length, rate, lever angle and force of a cylinder, and their extremes over a motion."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from grashof.analysis.cylinder.travel import Travel
+from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.loads import AppliedForce, Loads
+from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.analysis.mechanism.position import Position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 
+_ROUNDS, _SECANTS, _SETTLED = 60, 30, 1e-13
 _NOTHING = 1e-13  # share of the lengths about it: a shorter way is rounding
 
 
@@ -30,7 +35,7 @@ class CylinderState:
         dL/dtheta2; infinite in dead positions of link 2.
     lever : ndarray, shape (...)
         |dL| / |dQ|: the sine of the angle between cylinder and arm, signed as dL in the motion of the linkage
-        around its circuit; 0 where Q stands or lies in C.
+        around its circuit; 0 where Q is at rest or lies in C.
     """
 
     pivot: FloatArray
@@ -49,9 +54,9 @@ class CylinderState:
 
 @dataclass(frozen=True, slots=True)
 class CylinderFigures:
-    """Least and greatest length over a motion, and the least lever angle, rad.
+    """Least and greatest length over a motion, and the least lever angle, rad; 0 unless `monotone`.
 
-    `monotone`: the length goes one way and nowhere stands, so that the cylinder drives; else the angle is 0.
+    `monotone`: the length changes in one sense and is nowhere stationary, so that the cylinder drives.
     """
 
     closed: float
@@ -117,8 +122,7 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
     """Extremes of a cylinder over a motion, right to rounding, from ever closer samples.
 
-    The lever changes its sign where the length turns back, so that the least of it, signed, decides whether
-    the length goes one way.
+    The lever changes its sign where the length turns back: its least value, signed, decides on `monotone`.
     """
 
     def curves(places: FloatArray) -> FloatArray:
@@ -133,6 +137,61 @@ def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
     driven = bool(np.isfinite([high, low, longest, shortest]).all() and least > 0)
     angle = float(np.arcsin(min(least, 1.0))) if driven else 0.0
     return CylinderFigures(float(-shortest), float(longest), angle, driven)
+
+
+def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads: Loads) -> FloatArray:
+    """Force of a cylinder without mass or friction of its own, shape (...), in newtons over the metre.
+
+    Positive where it pushes; infinite where its length is stationary, or friction locks it. Virtual work
+    (Norton, *Design of Machinery*, sec. 11.10): F dL/dtheta2 = T, the torque on link 2. Friction that grows
+    with joint forces depends on the drive: there F acts on the link and is corrected until no torque is left.
+    """
+    found = cylinder_state(cylinder, state.linkage, state)
+    out = found.pivot - np.asarray(cylinder.base)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        force: FloatArray = inverse_dynamics(state, masses, loads).torque / found.rate
+        if not loads.friction.of(state.linkage, "radius").any():
+            return force
+        push = out / found.length[..., None]
+
+        def step(tried: FloatArray) -> FloatArray:
+            """The correction against the torque that some forces leave, with the friction there."""
+            pushed = AppliedForce(cylinder.link, cylinder.point, tried[..., None] * push)
+            left = inverse_dynamics(state, masses, replace(loads, forces=(*loads.forces, pushed))).torque
+            return np.asarray(left / found.rate)
+
+        for _ in range(_ROUNDS):
+            before, last = force, step(force)
+            force = force + last
+            settled = np.abs(last) <= _SETTLED * np.abs(force)
+            if settled.all():
+                return force
+        settled, force = _by_secants(step, settled, (before, last), force)
+        return np.where(settled | np.isnan(force), force, np.inf)
+
+
+def _by_secants(
+    step: Callable[[FloatArray], FloatArray],
+    settled: BoolArray,
+    known: tuple[FloatArray, FloatArray],
+    force: FloatArray,
+) -> tuple[BoolArray, FloatArray]:
+    """Forces where friction nearly balances the cylinder, so that single steps converge slowly.
+
+    Friction that grows faster than the force, so that more force leaves more torque, locks.
+    """
+    before, last = known
+    moving = ~settled
+    for _ in range(_SECANTS):
+        now = step(force)
+        slope = (now - last) / (force - before)
+        there = moving & (np.abs(now) <= _SETTLED * np.abs(force))
+        settled, moving = settled | there, moving & ~there & (slope < 0)
+        before, last = np.where(moving, force, before), np.where(moving, now, last)
+        force = np.where(moving, force - now / slope, force)
+        if not moving.any():
+            break
+    return settled, force
 
 
 def _complex(place: FloatArray) -> ComplexArray:

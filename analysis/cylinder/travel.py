@@ -19,7 +19,7 @@ from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 
-_STEADY = 1e-9  # rad: a step so small counts as none
+_STEADY = 1e-9  # rad: a smaller step counts as none
 _SAMPLES = 361
 
 

@@ -1,1 +1,1 @@
-"""Masses and loads: what drives a linkage, and what it does to its joints and frame."""
+"""Masses and loads: the drive of a linkage, and the forces in its joints and frame."""

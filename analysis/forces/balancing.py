@@ -20,10 +20,9 @@ from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
 from grashof.analysis.numerics.quadrature import Curve
-from grashof.problems import AssemblyError, ProblemError, SolverError
+from grashof.problems import AssemblyError, Linkage, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,7 +91,7 @@ def balance_force(
     Linearly independent vectors (Berkof & Lowen 1969, *A new method for completely force balancing
     simple linkages*): with the coupler's direction eliminated by the loop equation, the system's
     centre of mass stays where it is when the factors of the two remaining directions vanish. The rod of
-    an inverted slider-crank turns with its block, so that there its direction needs not be eliminated.
+    an inverted slider-crank turns with its block, so that its direction need not be eliminated there.
     Shaking moment and drive torque usually grow.
 
     Examples
@@ -110,15 +109,15 @@ def balance_force(
     sizes = dyad_of(linkage)
     default = sizes.n if isinstance(sizes, Pins) else linkage.r2
     output_weight = _counterweight(-output, default if output_radius is None else output_radius)
-    whole = masses.with_body(2, crank_weight).with_body(4, output_weight)
-    return ForceBalance(crank_weight, output_weight, whole)
+    return ForceBalance(
+        crank_weight, output_weight, masses.with_body(2, crank_weight).with_body(4, output_weight)
+    )
 
 
 def _unbalanced(linkage: Linkage, masses: Masses) -> tuple[ComplexArray, ComplexArray]:
     """Factors of the directions of links 2 and 4 in the moment of all masses, in the frames of these."""
-    crank = masses.crank.mass * _complex(masses.crank.centre)
-    output = masses.output.mass * _complex(masses.output.centre)
-    own = _complex(masses.coupler.centre)
+    at_crank, own, at_output = (body.centre @ np.array([1, 1j]) for body in masses.bodies[:3])
+    crank, output = masses.crank.mass * at_crank, masses.output.mass * at_output
     kind = linkage.mechanism
     if len(kind.dyads) > 1:
         raise ProblemError(
@@ -151,7 +150,7 @@ def balance_torque(
         One linkage over a turn of its driver at steady speed, in equal steps.
     masses : Masses
     loads : Loads
-        With gravity, which is what the counterweight works by.
+        With gravity, by which the counterweight works.
     radius : float, length
         Its distance from O2.
     measure : str
@@ -170,7 +169,7 @@ def balance_torque(
     -----
     At steady speed a weight on the crank adds -(r x m g) to the torque, linear in the two
     components of m r: least squares, or a linear programme for the peak. With friction in
-    proportion to the joint forces the result is optimal only nearly.
+    proportion to the joint forces the result is only nearly optimal.
     """
     gravity = _acting(loads)
     if np.ndim(state.theta2) != 1 or np.any(state.alpha2 != 0):
@@ -265,9 +264,9 @@ def _balanced(
     state: Kinematics, masses: Masses, loads: Loads, moment: FloatArray, radius: float
 ) -> TorqueBalance:
     weight = _counterweight(moment[0] + 1j * moment[1], radius)
-    whole = masses.with_body(2, weight)
-    before, after = (inverse_dynamics(state, each, loads).torque for each in (masses, whole))
-    return TorqueBalance(weight, whole, before, after)
+    balanced = masses.with_body(2, weight)
+    before, after = (inverse_dynamics(state, each, loads).torque for each in (masses, balanced))
+    return TorqueBalance(weight, balanced, before, after)
 
 
 def _least_rms(linkage: Linkage, torque: Curve, effects: Curve) -> FloatArray:
@@ -317,7 +316,3 @@ def _counterweight(moment: ComplexArray, radius: npt.ArrayLike) -> Body:
         raise ProblemError(f"the counterweight's radius is {radius}; it must be greater than zero")
     place = radius * np.exp(1j * np.angle(moment))
     return Body(np.abs(moment) / radius, 0.0, np.stack([place.real, place.imag], axis=-1))
-
-
-def _complex(at: FloatArray) -> ComplexArray:
-    return at[..., 0] + 1j * at[..., 1]

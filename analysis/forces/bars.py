@@ -1,4 +1,4 @@
-"""Which links are straight bars, and where on its link each begins and ends."""
+"""Links that are straight bars, and the ends of each on its link."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inverse dynamics: the drive torque and joint forces that a motion takes, and what a motor gives for it."""
+"""Inverse dynamics: the drive torque and joint forces of a motion, and the torque of its motor."""
 
 from __future__ import annotations
 
@@ -171,8 +171,8 @@ def virtual_work_torque(
 
     Notes
     -----
-    For a unit of virtual driver rotation, the drive works against inertia, less what all forces
-    and moments do (d'Alembert; Norton, *Design of Machinery*, sec. 11.10).
+    For a unit of virtual driver rotation, the drive works against inertia, less the work of all forces
+    and moments (d'Alembert; Norton, *Design of Machinery*, sec. 11.10).
     """
     per_turn = solve_kinematics(state.linkage, state.theta2)  # velocities for 1 rad/s
     outside, gravity = wrenches(state, loads), loads.gravity_vector()
@@ -246,7 +246,7 @@ def friction_and_springs(
 def _need(
     state: Kinematics, frames: Frames, link: int, body: Body, outside: Wrench, gravity: FloatArray
 ) -> Need:
-    """What inertia asks of the joints and the drive of a link, less what loads do."""
+    """Inertia of a link less its loads: the need of its joints and drive."""
     push, mass = state.point(link, body.centre).acceleration, np.asarray(body.mass)
     x, y = mass * (push[..., 0] - gravity[0]), mass * (push[..., 1] - gravity[1])
     arm_x, arm_y = frames.arm(link, (body.centre[..., 0], body.centre[..., 1]))
@@ -255,7 +255,7 @@ def _need(
 
 
 def _shaking(frames: Frames, ground: Wrench, moments: FloatArray, found: JointForces) -> Wrench:
-    """What all that is fixed to the ground does to it: force, and moment about O2."""
+    """Shaking force on the ground, and moment about O2, of everything fixed to it."""
     x, y = found.forces[0]
     force_x, force_y = ground.force[..., 0] - x, ground.force[..., 1] - y
     turning = ground.moment - found.torque - moments[0]
@@ -280,7 +280,7 @@ def _stacked(forces: list[Vector]) -> FloatArray:
 
 
 def _pressing(found: JointForces, slide_length: float) -> FloatArray:
-    """What friction in the joints grows with: the forces, in a slide that across it; shape (J, ...), N."""
+    """Forces that friction in the joints grows with, in a slide that across it; shape (J, ...), N."""
     sizes = [np.hypot(x, y) for x, y in found.forces]
     for joint, (across, moment) in found.slides.items():
         sizes[joint] = np.abs(across)

@@ -1,4 +1,4 @@
-"""The energy in a moving linkage, and who gives and takes it."""
+"""The energy in a moving linkage, and the powers that change it."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Energies:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Powers:
-    """What changes the energy of a linkage; each of shape (...), N length/s, negative where it takes.
+    """Powers that change the energy of a linkage, each of shape (...), N length/s; negative is taken out.
 
     Parameters
     ----------

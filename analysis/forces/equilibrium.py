@@ -1,9 +1,10 @@
-"""Where a linkage stays at rest by itself, whether it comes back there, and how fast it swings about it."""
+"""Equilibrium positions of a linkage, their stability, and the frequency of small swings about them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy
@@ -14,28 +15,28 @@ from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power, virtual_power
 from grashof.analysis.mechanism.kinematics import virtual_motion
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 _SAMPLES = 721
-_NOTHING = 1e-12  # share of what the loads do at most: no torque
+_NOTHING = 1e-12  # share of the greatest power of the loads: no torque
 _WINDOW = 0.02  # rad, about an equilibrium, in which the torque is a polynomial
 _DEGREE = 10
 _NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
-_SAME = 1e-9  # rad: roots so close are one
+_SAME = 1e-9  # rad: roots closer than this are one
 Curve = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Equilibria:
-    """Driver angles at which weights, springs and loads need nothing that holds them.
+    """Driver angles at which weights, springs and loads are in balance.
 
     Parameters
     ----------
     theta2 : ndarray, shape (N,), rad
         Rising.
     stiffness : ndarray, shape (N,), N length/rad
-        By which the torque that brings the driver back grows; negative where it goes on falling.
+        By which the torque that brings the driver back grows; negative where it moves away.
     inertia : ndarray, shape (N,), kg length^2
         That the driver feels.
     everywhere : bool
@@ -49,7 +50,7 @@ class Equilibria:
 
     @property
     def frequency(self) -> FloatArray:
-        """Natural frequency of small swings, shape (N,), Hz; NaN where it does not come back."""
+        """Natural frequency of small swings, shape (N,), Hz; NaN where it is unstable."""
         with np.errstate(invalid="ignore", divide="ignore"):
             found = np.sqrt(self.stiffness / self.inertia) / (2 * np.pi)
         return np.where(np.isfinite(found) & (self.stiffness > 0), found, np.nan)
@@ -118,20 +119,17 @@ def equilibria(
 
 
 def _work(linkage: Linkage, masses: Masses, loads: Loads, places: FloatArray) -> float:
-    """What the power comes to where its parts do not balance each other."""
+    """Greatest power of all loads if their parts did not balance each other."""
     virtual, rest = virtual_motion(linkage, places)
     gravity = float(np.hypot(*loads.gravity_vector()))
     parts = [
         body.mass * gravity * virtual.point(link, body.centre).speed
         for link, body in masses.by_link(linkage).items()
     ]
-    alone = [
-        *(Loads(forces=(each,)) for each in loads.forces),
-        *(Loads(moments=(each,)) for each in loads.moments),
-        *(Loads(springs=(each,)) for each in loads.springs),
-        *(Loads(torsion_springs=(each,)) for each in loads.torsion_springs),
-    ]
-    parts += [np.abs(load_power(virtual, rest, each)) for each in alone]
+    for kind in ("forces", "moments", "springs", "torsion_springs"):
+        for each in getattr(loads, kind):
+            alone: dict[str, Any] = {kind: (each,)}
+            parts.append(np.abs(load_power(virtual, rest, Loads(**alone))))
     return float(np.nanmax(np.sum(parts, axis=0), initial=0.0))
 
 

@@ -1,4 +1,4 @@
-"""The flywheel that keeps a driver's speed even, and how the speed goes up and down with it."""
+"""The flywheel for an even speed of the driver, and the fluctuation of the speed with it."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.quadrature import Curve, Panels, gauss_legendre, held, integrate
-from grashof.problems import AssemblyError, ProblemError
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 _PANELS = 36
 _HALVINGS = 60
@@ -31,7 +30,7 @@ class Flywheel:
     energy : float, N length
         That it takes up and gives back each turn.
     mean_torque : float, N length
-        What a drive of constant torque has to give.
+        Of a drive of constant torque.
     slowest, fastest : float, rad
         Driver angles at which the speed is least and largest.
     """
@@ -97,7 +96,7 @@ def size_flywheel(
     mean = held(float(panels.total) / TURN, 2 * float(panels.error) / TURN)
     samples = np.concatenate([[0.0], gauss_legendre(panels.edges)[0], [1.0]])
     at = np.append(0.0, _passages(lambda share: mean - torque(share), samples))
-    # What the drive gives beyond what the turn takes, added up, is the energy of the flywheel.
+    # The integral of the torque of the drive less that of the turn is the energy of the flywheel.
     theta2 = motion.theta2(at)
     gained = mean * theta2 - taken(at)
     least, most = (int(choose(gained)) for choose in (np.argmin, np.argmax))
@@ -164,7 +163,7 @@ def flywheel_speed(
 def _turn(
     linkage: Linkage, masses: Masses, omega2: float, loads: Loads | None
 ) -> tuple[EvenMotion, Curve, Panels, Curve]:
-    """A steady turn; by shares of it the torque that it takes, panels of the work, and the work so far."""
+    """A steady turn; by shares of it the torque required, panels of the work, and the work up to there."""
     motion = even_motion(linkage, 0.0, TURN)
 
     def torque(share: FloatArray) -> FloatArray:

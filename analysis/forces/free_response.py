@@ -1,4 +1,4 @@
-"""The motion that a given drive torque makes."""
+"""The motion of a linkage under a given drive torque."""
 
 from __future__ import annotations
 
@@ -18,16 +18,15 @@ from grashof.analysis.forces.mass import Masses
 from grashof.analysis.forces.statics import load_power
 from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, Turning, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
-from grashof.problems import AssemblyError, DeadPositionWarning, ProblemError
+from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 Drive = float | Callable[[float, float, float], float]
 
 # Margin of a loop at which a motion towards a dead position ends: beyond it the driver angle no
 # longer shows how the linkage moves on.
 _DEAD_END = 1e-3
-_AHEAD = 1e-6  # rad of the driver: so far ahead it is seen in which sense a joint is about to turn
+_AHEAD = 1e-6  # rad of the driver, by which to look ahead for the sense in which a joint is about to turn
 _PARTS = 10_000  # of a motion with friction, between which a joint changes its sense
 _ROUNDS = 50  # of friction that depends on the acceleration, where a driver sets off
 
@@ -47,7 +46,7 @@ class FreeResponse:
     Parameters
     ----------
     time : ndarray, shape (N,), s
-        The times asked for, as far as the motion went.
+        The requested times, as far as the motion went.
     state : Kinematics
         Of shape (N,).
     energy : ndarray, shape (N,), N length
@@ -74,7 +73,7 @@ def free_response(
     loads: Loads | None = None,
     tolerance: float = 1e-10,
 ) -> FreeResponse:
-    """Motion of a linkage that a drive torque, weights and springs are left to move.
+    """Motion of a linkage under a drive torque, weights, springs and friction.
 
     Parameters
     ----------
@@ -99,7 +98,7 @@ def free_response(
     Raises
     ------
     AssemblyError
-        The linkage cannot close at the start, or stands in a dead position.
+        The linkage cannot close at the start, or is in a dead position.
     ProblemError
         The links have no inertia, or the times do not rise.
     SolverError
@@ -111,7 +110,7 @@ def free_response(
     T = I(theta2) alpha2 + T0(theta2, omega2), where T0 is the torque without driver acceleration.
     Friction in proportion to the joint forces, which depend on alpha2, is found along with it.
     Integrated by collocation at 16 points of each step; while the driver turns one way friction has
-    one sign, so that steps end where it comes to rest.
+    one sign, so that steps end where it stops.
 
     Examples
     --------
@@ -148,8 +147,8 @@ def free_response(
         path, ending = _moved(rates, at, theta2, omega2, tolerance, _Rubbing.of(linkage, loads))
         end = path[-1].end
         reached = at if ending is Ending.TIME else at[at <= end]
-        whole = Path(tuple(panel for part in path for panel in part.panels), None)
-        state = solve_kinematics(linkage, *whole.at(reached))
+        joined = Path(tuple(panel for part in path for panel in part.panels), None)
+        state = solve_kinematics(linkage, *joined.at(reached))
     return FreeResponse(reached, state, mechanical_energy(state, masses, loads), ending, end)
 
 
@@ -191,7 +190,7 @@ class _Rubbing:
         return np.array([sense * np.sign(joint_motion(unit, joint)[1][0]) for joint in joints])
 
     def events(self, sense: int, senses: FloatArray | None) -> Events:
-        """What ends a part of the motion: a dead position near, rest, a joint that turns back."""
+        """Ends of a part of the motion: near a dead position, at rest, where a joint turns back."""
 
         def values(theta2: FloatArray, omega2: FloatArray) -> FloatArray:
             unit = solve_kinematics(self.linkage, theta2)
@@ -213,7 +212,7 @@ def _moved(
     tolerance: float,
     rubbing: _Rubbing,
 ) -> tuple[list[Path], Ending]:
-    """The motion, in parts in which each joint turns in one sense where that matters; how it ended."""
+    """Parts of the motion, in each of which joints with friction turn in one sense, and how it ended."""
     now, last, path = float(time[0]), float(time[-1]), list[Path]()
     fastest = abs(omega2)
     while True:
@@ -237,7 +236,7 @@ def _moved(
 def _sets_off(
     rates: Callable[[FloatArray | None], Acceleration], now: float, theta2: float, rubbing: _Rubbing
 ) -> int:
-    """The sense in which a driver at rest begins to turn against friction; 0 where that holds it."""
+    """The sense in which a driver at rest begins to turn against friction; 0 where friction holds it."""
     for sense in (1, -1):
         alpha, state = np.zeros(1), (np.array([now]), np.array([theta2]), np.zeros(1))
         begin = rates(rubbing.senses(theta2, sense))
@@ -298,11 +297,9 @@ def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinemat
 
 
 def _check_start(linkage: Linkage, masses: Masses, theta2: float) -> None:
-    start = solve_kinematics(linkage, theta2)  # names an angle at which the linkage cannot close
+    start = solve_kinematics(linkage, theta2)  # AssemblyError where the linkage cannot close
     if not min(map(abs, start.margins)) > _DEAD_END:
-        raise AssemblyError(
-            f"the linkage stands in a dead position at driver angle {np.degrees(theta2):.6g} deg"
-        )
+        raise AssemblyError(f"the linkage is in a dead position at driver angle {np.degrees(theta2):.6g} deg")
     bodies = masses.by_link(linkage).values()
     if not any(np.any(body.mass > 0) or np.any(body.inertia > 0) for body in bodies):
         raise ProblemError("the links have no inertia, so no torque gives them a motion")

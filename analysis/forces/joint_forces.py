@@ -15,24 +15,21 @@ from grashof.problems.values.linkages.mechanism import DyadKind
 
 
 class Need(NamedTuple):
-    """What joints and drive must exert on a link: a force, and a moment about the origin of its frame."""
+    """The force, and moment about the origin of its frame, that joints and drive must exert on a link."""
 
     x: FloatArray
     y: FloatArray
     turn: FloatArray
 
     def eased(self, arm: Vector, force: Vector, moment: FloatArray) -> Need:
-        """What is left to them where a force on an arm from the origin, and a moment, act besides."""
+        """The rest where a force on an arm from the origin, and a moment, act besides."""
         return Need(
             self.x - force[0], self.y - force[1], self.turn - (arm[0] * force[1] - arm[1] * force[0]) - moment
         )
 
 
-class Standing(NamedTuple):
-    """A dyad in a motion.
-
-    The arms are of C and D (of a slide E) from the origins of their hosts' frames, on the ground from O2.
-    """
+class PlacedDyad(NamedTuple):
+    """A dyad in a motion; arms of C and D (of a slide E) from the origins of their hosts' frames, or O2."""
 
     dyad: HostedDyad
     closed: Closed
@@ -43,7 +40,7 @@ class Frames(NamedTuple):
     """How the links of a motion lie: directions of the u-axes of their frames, and the dyads."""
 
     axes: dict[int, Vector]
-    dyads: list[Standing]
+    dyads: list[PlacedDyad]
 
     def arm(self, link: int, at: Vector) -> Vector:
         """A point of a moving link from the origin of its frame, in global axes."""
@@ -71,7 +68,7 @@ def frames_of(state: Kinematics) -> Frames:
             host = dyad.row.hosts[1]
             d = dyad.at[1] if host == 1 else frames.arm(host, dyad.at[1])
         closed = Closed(cos3, sin3, cos4, sin4, state.margins[loop], reach)
-        frames.dyads.append(Standing(dyad, closed, (c, d)))
+        frames.dyads.append(PlacedDyad(dyad, closed, (c, d)))
     return frames
 
 
@@ -87,7 +84,7 @@ def joint_forces(frames: Frames, needs: Mapping[int, Need], moments: FloatArray)
     """Forces in the joints that meet the needs of all moving links; `moments` (J, ...) as in `Dynamics`.
 
     Of a dyad the balance of both links gives the force between them (`grashof.analysis.mechanism.dyad`);
-    those on its hosts follow, and ease what these need.
+    those on its hosts follow, and reduce the needs of these.
     """
     left, on_links, slides = dict(needs), list[Vector](), dict[int, Vector]()
     for loop in reversed(range(len(frames.dyads))):

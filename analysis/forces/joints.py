@@ -16,7 +16,7 @@ class Joint(IntEnum):
     """The joints, in the order of arrays that have an axis for them; linkages of one loop have four.
 
     One of those at B and O4 is a slide in slider kinds: the ground guides the slider of a slider-crank,
-    which has no O4; the block of an inverted one, which turns about O4, guides the rod, so that B is no pin.
+    which has no O4; the block of an inverted one, which turns about O4, guides the rod, so that B is a slide.
     The slider of a six-bar has its slide at D.
     """
 

@@ -1,4 +1,4 @@
-"""What acts on a linkage: gravity, forces, moments, springs, friction; and the wrench each link feels."""
+"""Loads on a linkage: gravity, forces, moments, springs, friction; and the wrench that acts on each link."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.joints import Joint, joined, joint_motion, joints_of, slides_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
-from grashof.problems import ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.linkage import Linkage
 
 Varying: TypeAlias = npt.ArrayLike | Callable[[Kinematics], npt.ArrayLike]
 Pair: TypeAlias = tuple[float, float]
@@ -103,14 +102,14 @@ class TorsionSpring:
     free_angle: float = 0.0
 
     def wound(self, angle: FloatArray) -> FloatArray:
-        """By how much it is wound at an angle between the links, in [-pi, pi), rad."""
+        """The angle by which it is wound, in [-pi, pi), rad, at an angle between the links."""
         wound: FloatArray = (angle - self.free_angle + np.pi) % (2 * np.pi) - np.pi
         return wound
 
 
 @dataclass(frozen=True, slots=True)
 class Friction:
-    """Friction in the joints O2, A, B, O4, of six-bars C, E, D, too; a single number is meant for each.
+    """Friction in the joints O2, A, B, O4, of six-bars C, E, D, too; a single number holds for each.
 
     Parameters
     ----------
@@ -180,7 +179,7 @@ class Friction:
 
 # How many joints linkages have.
 _COUNTS = {4: "four", 7: "seven"}
-# By the name of what pins have.
+# By the name of the friction of pins.
 _OF_SLIDES = {"viscous": "slide_viscous", "coulomb": "slide_coulomb", "radius": "slide_mu"}
 
 
@@ -269,7 +268,7 @@ def placed_loads(state: Kinematics, loads: Loads) -> Iterator[PlacedLoad]:
 
 
 def wrenches(state: Kinematics, loads: Loads) -> dict[int, Wrench]:
-    """What every link, 1 to 4, of a six-bar to 6, feels from forces, moments and springs, not from weight."""
+    """Wrench on every link, 1 to 4, of a six-bar to 6, of forces, moments and springs, without weight."""
     found = {link.number: Wrench(np.zeros(2), np.zeros(())) for link in state.linkage.mechanism.links}
     for load in placed_loads(state, loads):
         wrench = found[load.link]

@@ -1,4 +1,4 @@
-"""What the moving links weigh: masses, centres, inertias, and the centre of mass of them all."""
+"""Masses, centres and inertias of the moving links, and their common centre of mass."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ import numpy.typing as npt
 
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
-from grashof.problems import ProblemError
+from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.value_bases import ReadOnly
 
 
@@ -77,7 +76,7 @@ class Body(ReadOnly):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
 class Masses:
-    """The moving links as bodies; what hangs at P belongs to the link that carries it.
+    """The moving links as bodies; a load at P belongs to the link that carries it.
 
     Parameters
     ----------
@@ -235,8 +234,8 @@ def uniform_bars(
     )
     bodies = dict.fromkeys(links, Body(0.0))
     for link, bar in bars_of(linkage).items():
-        whole = uniform_bar(bar.reach, each[link - 2], wide[link - 2])
-        bodies[link] = Body(whole.mass, whole.inertia, bar.middle)  # where it lies on its link
+        body = uniform_bar(bar.reach, each[link - 2], wide[link - 2])
+        bodies[link] = Body(body.mass, body.inertia, bar.middle)  # where it lies on its link
     bars = Masses(*bodies.values())
     return loaded(bars, linkage, payload) if np.any(np.asarray(payload) != 0) else bars
 

@@ -32,7 +32,7 @@ class ReciprocatingBalance:
     masses : Masses
         The links with it.
     rotating, reciprocating : ndarray, shape (...), kg
-        Masses that go with A and with B: the rod's are shared by its centre of mass.
+        Masses that move with A and with B: that of the rod is shared by its centre of mass.
     """
 
     crank_weight: Body
@@ -44,7 +44,7 @@ class ReciprocatingBalance:
 def balance_reciprocating(
     linkage: Linkage, masses: Masses, share: float = 0.5, radius: npt.ArrayLike | None = None
 ) -> ReciprocatingBalance:
-    """A counterweight on the crank against all that turns with it and a share of what goes to and fro.
+    """A counterweight on the crank against the rotating mass and a share of the reciprocating mass.
 
     Parameters
     ----------

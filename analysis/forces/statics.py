@@ -1,4 +1,4 @@
-"""What holds a linkage at rest, and what a drive torque is worth at the output and at P."""
+"""Torques and forces that hold a linkage at rest, and its mechanical advantage at the output and at P."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from grashof.analysis.forces.joints import joint_motion, joints_of, output_rate
 from grashof.analysis.forces.loads import Friction, Loads, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
+from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Advantage:
-    """What the linkage makes of a speed or a torque of its driver, friction left out; each of shape (...).
+    """Ratios of output to driver in speed, torque and force, without friction; each of shape (...).
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ class Advantage:
         omega4 / omega2, of a six-bar that of link 6; infinite in a dead position of the driver. Of a slider
         its velocity over omega2, length/rad.
     torque_ratio : ndarray
-        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 (6) stands. Of a slider
+        T4 / T2 = omega2 / omega4, the mechanical advantage; infinite where link 4 (6) is at rest. Of a slider
         the force on it along its slide for a unit of torque, rad/length.
     way : ndarray, length/rad
         Of P for each radian of the driver.
     force_ratio : ndarray
-        Force at P along its path for a force on A across link 2; infinite where P stands.
+        Force at P along its path for a force on A across link 2; infinite where P is at rest.
     """
 
     velocity_ratio: FloatArray
@@ -41,7 +41,7 @@ class Advantage:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Holding:
-    """What keeps a linkage at rest against its weight and loads, each by itself; friction left out.
+    """Torque, moment or force, each by itself, that holds a linkage against weight and loads; no friction.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Holding:
     force : ndarray, shape (...), N
         At P, along `direction`.
     direction : ndarray, shape (..., 2)
-        Of the path of P as the driver turns counter-clockwise; NaN where P stands.
+        Of the path of P as the driver turns counter-clockwise; NaN where P is at rest.
     """
 
     torque: FloatArray
@@ -99,7 +99,7 @@ def advantage(linkage: Linkage, theta2: npt.ArrayLike) -> Advantage:
 
 
 def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Loads) -> Holding:
-    """What keeps a linkage at rest at given driver angles: a torque, a moment on the last link, a force at P.
+    """The torque, the moment on the last link, or the force at P that holds a linkage at given driver angles.
 
     Parameters
     ----------
@@ -112,8 +112,8 @@ def holding(linkage: Linkage, theta2: npt.ArrayLike, masses: Masses, loads: Load
     Returns
     -------
     Holding
-        NaN where the linkage cannot close. Infinite where what is to hold it cannot: a torque in a
-        dead position of the driver, a moment on the last link where this stands.
+        NaN where the linkage cannot close. Infinite where it cannot be held: by a torque in a dead
+        position of the driver, by a moment on the last link where this is at rest.
 
     Notes
     -----
@@ -155,7 +155,7 @@ def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads:
 
 
 def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
-    """The same of forces, moments, springs and what is known of friction alone, without weights."""
+    """The same of forces, moments, springs and known friction alone, without weights."""
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in range(2, len(outside) + 1):
         power = power + outside[link].moment * virtual.angular(link)[1]

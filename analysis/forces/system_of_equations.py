@@ -28,7 +28,7 @@ class SystemOfEquations:
         Rows as `equations`, columns as `unknowns`: 1 and -1 of forces (cosines of forces across a slide),
         arms (length) of moments. Nine of each; of a six-bar fifteen.
     right_side : ndarray, shape (..., N), N and N length
-        Inertia less all that is known: weight, outer forces, springs, friction.
+        Inertia less the known loads: weight, outer forces, springs, friction.
     unknowns : tuple of str
         Forces and the drive torque, `UNKNOWNS` of a linkage of one loop; of a slide the force across it (n,
         to its left) and the moment on the slider or block, M14 or M34, instead of two components.
@@ -58,7 +58,7 @@ class SystemOfEquations:
 def system_of_equations(
     state: Kinematics, masses: Masses, loads: Loads | None = None, joint_moments: FloatArray | None = None
 ) -> SystemOfEquations:
-    """The system of equations whose solution is what `inverse_dynamics` finds.
+    """The system of equations that `inverse_dynamics` solves in order.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def system_of_equations(
     Notes
     -----
     Norton, *Design of Machinery*, sec. 11.4: of each link the sum of forces is m a, and the moments of the
-    joint forces about its centre of mass, R x F = Rx Fy - Ry Fx, with what else turns it, are I alpha.
+    joint forces about its centre of mass, R x F = Rx Fy - Ry Fx, with all other moments, are I alpha.
 
     Examples
     --------
@@ -131,7 +131,7 @@ class _Column(NamedTuple):
     along: FloatArray | None  # of a slide
 
     def unknown_on(self, link: int, arm: FloatArray) -> FloatArray:
-        """What a unit of each unknown does to a link: x, y and moment about its centre, shape (..., 3, 2)."""
+        """Effect of a unit of each unknown on a link: x, y and moment about its centre, shape (..., 3, 2)."""
         sign, turn = (1.0 if link == one else -1.0 for one in (self.on, self.links[1]))
         found = np.zeros((*arm.shape[:-1], 3, 2))
         for column, force in enumerate(self.forces):
@@ -141,7 +141,7 @@ class _Column(NamedTuple):
         return found
 
     def known_on(self, link: int, arm: FloatArray, moment: FloatArray) -> FloatArray:
-        """What the moment of a pin, or the friction along a slide, does to it; shape (..., 3)."""
+        """The same of the moment of a pin, or of the friction along a slide; shape (..., 3)."""
         own = moment if link == self.links[1] else -moment
         if self.along is None:
             return np.stack([np.zeros_like(own), np.zeros_like(own), own], axis=-1)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.curve_through import curve_through
+from grashof.analysis.forces.from_spec import curve_through
 from grashof.analysis.forces.statics import advantage
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.mechanism.position import solve_position

@@ -1,27 +1,34 @@
-"""What a user's own functions see of a design: the same names on numbers and on symbols."""
+"""A design as the user's own functions see it, on numbers and on CasADi symbols."""
 
 from __future__ import annotations
 
 import reprlib
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from functools import wraps
+from threading import RLock
+from traceback import clear_frames
+from typing import Any, ParamSpec, TypeAlias, TypeVar
 
 import numpy as np
 
-from grashof.analysis.judge.one_at_a_time import one_at_a_time
 from grashof.analysis.judge.verdict import Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import FourBar, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray, IntArray
 
+P = ParamSpec("P")
+T = TypeVar("T")
+_LOCK = RLock()
+
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """A linkage at its targets, in the problem's unit; numbers, or the symbols that stand for them.
+    """A linkage at its targets, in the problem's unit; numbers, or symbols in their place.
 
-    What its kind has not is None: o4, r1 and r4 of a slider-crank, r3 and r4 of an inverted one, offset and
-    slide_angle of a four-bar.
+    Fields that its kind lacks are None: o4, r1 and r4 of a slider-crank, r3 and r4 of an inverted one, offset
+    and slide_angle of a four-bar.
 
     Parameters
     ----------
@@ -90,10 +97,38 @@ Constraint: TypeAlias = Callable[[Design], Any]
 OwnObjective: TypeAlias = Callable[[Design], Any]  # smaller is better; a scalar
 
 
+def one_at_a_time(function: Callable[P, T]) -> Callable[P, T]:
+    """A function that may use CasADi, entered by one thread at a time: two in one solver crash.
+
+    Its result must not hold anything of CasADi; an error that leaves it does not keep its symbols, which
+    would otherwise end outside the lock.
+    """
+
+    @wraps(function)
+    def alone(*args: P.args, **kwargs: P.kwargs) -> T:
+        with _LOCK:
+            handled = sys.exception()
+            try:
+                return function(*args, **kwargs)
+            finally:
+                _clear(sys.exception(), handled)
+
+    return alone
+
+
+def _clear(error: BaseException | None, handled: BaseException | None) -> None:
+    """Clear the variables of the frames of an error, and of those it arose from since one was handled."""
+    seen = {id(handled)}
+    while error is not None and id(error) not in seen:
+        seen.add(id(error))
+        clear_frames(error.__traceback__)
+        error = error.__cause__ or error.__context__
+
+
 @one_at_a_time
 def greatest(constraint: Constraint, design: Design, what: str = "constraint") -> float:
-    """Greatest value of a constraint or objective; NaN when one is, ProblemError where not numbers."""
-    with np.errstate(all="ignore"):  # where it has no value it is missed; no news to be warned of
+    """Greatest value of a constraint or objective; NaN when one is, ProblemError if they are not numbers."""
+    with np.errstate(all="ignore"):  # where it has no value it is missed, without a warning
         values = constraint(design)
     try:
         return float(np.max(np.asarray(values, dtype=np.float64)))
@@ -105,5 +140,5 @@ def greatest(constraint: Constraint, design: Design, what: str = "constraint") -
 
 
 def name_of(constraint: Constraint) -> str:
-    """What a constraint is called in messages."""
+    """The name of a constraint in messages."""
     return getattr(constraint, "__name__", type(constraint).__name__)

@@ -1,4 +1,4 @@
-"""What the judge accepted, shown over the whole motion by intervals of the driver angle."""
+"""Designs that the judge accepted, verified over the entire motion by intervals of the driver angle."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ import numpy as np
 
 from grashof.analysis.enclosure.closure import Least, Places, least_transmission, places
 from grashof.analysis.enclosure.interval import EPS, Interval, crank, unit
-from grashof.analysis.judge.limits import SLACK
-from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.measures import SLACK, Values
 from grashof.analysis.judge.meeting.task_motion import STEADY
-from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Linkage, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -22,11 +21,11 @@ from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.requirements.function_ground import grounded
 
 _AT_ONCE = 100  # linkages, so that memory is bounded
-_OPEN = 1e-8  # share of the margins: an open loop, beyond what the judge takes for rounding
+_OPEN = 1e-8  # share of the margins: an open loop, beyond the rounding of the judge
 
 
 class _Shown(IntEnum):
-    """What became of a claim; the worst of several counts."""
+    """Outcome of a claim; of several the worst counts."""
 
     TRUE = 0
     OPEN = 1
@@ -77,27 +76,30 @@ def enclose(
 def _of_kind(
     linkages: list[Linkage], verdicts: list[Verdict], task: Task, wanted: Requirements
 ) -> Iterator[Enclosure]:
-    """Each linkage twice: over the task motion, and over the turn if it is asked for."""
-    whole = wanted.rotatability is not Rotatability.ANY or task.closed
+    """Each linkage twice: over the task motion, and over the turn if that is required."""
+    full = wanted.rotatability is not Rotatability.ANY or task.closed
     cycle = wanted.transmission_over == "cycle"
     ends = np.array([motion_ends(task, verdict) for verdict in verdicts])
-    if whole or cycle:
+    if full or cycle:
         ends = np.concatenate([ends, ends[:, :1] + [0.0, TURN + 1e-14]])
     count = len(linkages)
     batch = linkages[0].stacked(linkages)
     over = batch[np.arange(len(ends)) % count]
-    asked = np.arange(len(ends)) // count == int(cycle)
-    required = np.where(asked, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
+    limited = np.arange(len(ends)) // count == int(cycle)
+    required = np.where(limited, np.radians(wanted.transmission_min_deg) - SLACK, np.nan)
     least = least_transmission(over, ends[:, 0], ends[:, 1], required)
-    at = _at_targets(batch, verdicts)
+    theta2, sign = (np.stack([getattr(v, name) for v in verdicts]) for name in ("theta2", "assembly"))
+    # Where all are at the targets, shape (linkages, targets).
+    at = places(batch[:, None], sign.astype(np.float64), crank(theta2, np.zeros_like(theta2)))
     for k, verdict in enumerate(verdicts):
         row = count + k if cycle else k
-        joined = verdict.branch_ok or whole
+        joined = verdict.branch_ok or full
         claims = [_closes(least, k, "the task motion")] if joined else [_UNJOINED]
-        if whole:
+        transmits = _compared(-least.hi[row], -least.lo[row], -required[row])
+        if full:
             claims.append(_closes(least, count + k, "the turn"))
         claims += [
-            *([_at_least(least.lo[row], least.hi[row], required[row])] if joined or cycle else []),
+            *([_Claim("the transmission angle at its limit", transmits)] if joined or cycle else []),
             *_order(verdict, wanted),
             *_met(at, k, batch, task, wanted),
             *_boxed(at, k, task, wanted),
@@ -117,13 +119,8 @@ def _closes(least: Least, row: int, motion: str) -> _Claim:
     return _Claim(f"closure without a dead position over {motion}", shown)
 
 
-def _at_least(lo: float, hi: float, required: float) -> _Claim:
-    shown = _compared(-hi, -lo, -required)
-    return _Claim("the transmission angle at its limit", shown)
-
-
 def _compared(lo: float, hi: float, most: float, beyond: float = 1e-12) -> _Shown:
-    """Whether a number in [lo, hi] is at most so much; false where it is more by what no rounding makes."""
+    """Whether a number in [lo, hi] is at most `most`; false where it is more by over `beyond`, a rounding."""
     return _Shown.TRUE if hi <= most else _Shown.FALSE if lo > most + beyond else _Shown.OPEN
 
 
@@ -135,13 +132,6 @@ def _order(verdict: Verdict, wanted: Requirements) -> Iterator[_Claim]:
         turned = abs(verdict.theta2[-1] - verdict.theta2[0])
         held = (step >= -2 * STEADY).all() and turned <= TURN + 2 * STEADY
         yield _Claim("the order of the targets", _Shown.TRUE if held else _Shown.FALSE)
-
-
-def _at_targets(batch: Linkage, verdicts: list[Verdict]) -> Places:
-    """Where all are at the targets, shape (linkages, targets)."""
-    theta2 = np.stack([verdict.theta2 for verdict in verdicts])
-    sign = np.stack([verdict.assembly for verdict in verdicts]).astype(np.float64)
-    return places(batch[:, None], sign, crank(theta2, np.zeros_like(theta2)))
 
 
 def _met(at: Places, k: int, batch: Linkage, task: Task, wanted: Requirements) -> Iterator[_Claim]:

@@ -19,38 +19,10 @@ _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
 
 
-@dataclass(frozen=True, slots=True)
-class StructuralError:
-    """Output less what is wanted, in rad or length.
-
-    With its sign at each pair (N,), its greatest magnitude and root mean square over the range, and at which
-    driver rotation (rad) it is greatest. `zero` is theta4 or the travel for which the wanted output 0 stands,
-    `sense` -1 where the output is the opposite of what is wanted.
-    """
-
-    at_pairs: FloatArray
-    max: float
-    rms: float
-    at: float
-    zero: float
-    sense: int
-
-    @property
-    def figures(self) -> dict[str, Any]:
-        """What a verdict has of it."""
-        return {
-            "structural_error_max": self.max,
-            "structural_error_rms": self.rms,
-            "structural_error_at": self.at,
-            "output_zero": self.zero,
-            "output_sense": self.sense,
-        }
-
-
 def output_error(
     linkage: Linkage, task: Task, begun: Beginning, turned: FloatArray, sense: int
 ) -> FloatArray:
-    """Output less what is wanted but for a constant, at growing driver rotations (K,), rad or length.
+    """Generated less wanted output but for a constant, at growing driver rotations (K,), rad or length.
 
     Positive where the output is ahead in the sense of the driver; NaN where the linkage cannot be assembled.
     """
@@ -59,12 +31,14 @@ def output_error(
     return found
 
 
-def structural_error(linkage: Linkage, task: Task, begun: Beginning, exact: bool) -> StructuralError | None:
-    """The structural error over the whole range; None where the linkage cannot be assembled all over it.
+def structural_error(
+    linkage: Linkage, task: Task, begun: Beginning, exact: bool
+) -> tuple[FloatArray, dict[str, Any]] | None:
+    """Generated less wanted output at the pairs (N,), rad or length, and the figures of a verdict.
 
-    Extremes are refined, the mean square is a Gauss-Legendre sum between samples and pairs. The output's zero
-    is the mean of the errors at the pairs, or the middle of the extremes where the greatest counts and pairs
-    need not be met.
+    None where the linkage cannot be assembled all over the range. Extremes are refined, the mean square is
+    a Gauss-Legendre sum between samples and pairs. The output's zero is the mean of the errors at the pairs,
+    or the middle of the extremes where the greatest counts and pairs need not be met.
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
@@ -83,7 +57,9 @@ def structural_error(linkage: Linkage, task: Task, begun: Beginning, exact: bool
         order = np.argsort(turned, kind="stable")
         errors = np.empty(len(turned))
         found = output_error(linkage, task, begun, turned[order], sense)
-        errors[order] = found if task.travels else _near(found, turned[order], dense, off)
+        if not task.travels:  # without the full turns by which they may differ from the dense samples
+            found = found - TURN * np.round((found - np.interp(turned[order], dense, off)) / TURN)
+        errors[order] = found
         return np.stack([errors, -errors])
 
     (high, low), (high_at, low_at) = (each.tolist() for each in peaks(curves, [dense]))
@@ -96,40 +72,38 @@ def structural_error(linkage: Linkage, task: Task, begun: Beginning, exact: bool
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
     above, below = high - zero, low + zero
     worst, at = (above, high_at) if above >= below else (below, low_at)
-    rms, way = float(np.sqrt(square)), way_of(task, begun.direction)
-    return StructuralError(at_pairs - zero, worst, rms, at, way * zero, sense)
-
-
-def _near(errors: FloatArray, turned: FloatArray, dense: FloatArray, off: FloatArray) -> FloatArray:
-    """Errors without the whole turns by which they may differ from those of the dense samples."""
-    whole = np.round((errors - np.interp(turned, dense, off)) / TURN)
-    near: FloatArray = errors - TURN * whole
-    return near
+    return at_pairs - zero, {
+        "structural_error_max": worst,
+        "structural_error_rms": float(np.sqrt(square)),
+        "structural_error_at": at,
+        "output_zero": way_of(task, begun.direction) * zero,
+        "output_sense": sense,
+    }
 
 
 def met_as_function(
     linkage: Linkage, task: Task, wanted: Requirements
-) -> tuple[Targets, TaskMotion, StructuralError | None]:
-    """Driver angle and error at each pair, the motion, and the structural error, or None without one."""
+) -> tuple[Targets, TaskMotion, dict[str, Any] | None]:
+    """Driver angle and error at each pair, the motion, and the figures of the error, or None without one."""
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
     limited = start is None and wanted.transmission_over is TransmissionOver.TASK
     least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
     begun = begins(linkage, task, exact, start, senses, least)
-    # What misses a requirement from every start is reported where it errs least.
+    # A linkage that misses a requirement from every start is reported where it errs least.
     begun = begun or begins(linkage, task, exact, start, senses) or begins(linkage, task, exact, start)
     met = begun or Beginning(start or 0.0, 1)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
     met = Beginning(float(first), met.direction)
     theta2 = met.theta2 + met.direction * task.driver_turns
-    error = structural_error(linkage, task, met, exact) if begun else None
+    found = structural_error(linkage, task, met, exact) if begun else None
+    errors, figures = (np.full(len(task), np.inf), None) if found is None else found
     free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
-    at_pairs = np.full(len(task), np.inf) if error is None else np.abs(error.at_pairs)
     low, high = task.span
     motion = TaskMotion.ordered(theta2, met.direction)
     motion = replace(motion, start=met.theta2 + met.direction * low, end=met.theta2 + met.direction * high)
-    return Targets(theta2, own, free, free, at_pairs), motion, error
+    return Targets(theta2, own, free, free, np.abs(errors)), motion, figures
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +127,7 @@ class FunctionCurves:
 def function_curves(
     linkage: Linkage, task: Task, verdict: Verdict, count: int = 361, at: FloatArray | None = None
 ) -> FunctionCurves | None:
-    """What a judged linkage puts out over the range of its function, or at given driver rotations.
+    """Output of a judged linkage over the range of its function, or at given driver rotations.
 
     None where it does not cover the range.
 

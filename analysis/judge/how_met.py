@@ -1,28 +1,32 @@
-"""How each kind of task is met, and what is asked of it besides: a row for a kind that needs one."""
+"""How each kind of task is met, and its own requirements: a row for each kind that differs."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from grashof.analysis.judge.function_output import met_as_function
-from grashof.analysis.judge.limit_positions import at_limits, stroke_defects
-from grashof.analysis.judge.meet import meet
-from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
+from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
+from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
+from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
 from grashof.analysis.judge.verdict import Defect
+from grashof.analysis.mechanism.mobility import branch_index
+from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import FunctionTask, Linkage, Requirements, StrokeTask, Task
-from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+
+_EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
 @dataclass(frozen=True, slots=True)
 class Met:
     """A linkage at the targets of a task, and its motion.
 
-    It has to stand on one circuit, and branch, at `theta2` (K,), rad, with `assembly` (K,); `covered` if it
-    can be assembled all over what is asked for. `figures` are what a verdict has besides, by its fields.
+    It must be on one circuit, and branch, at `theta2` (K,), rad, with `assembly` (K,); `covered` if it can be
+    assembled over the entire range of the task. `figures` are further fields of the verdict.
     """
 
     targets: Targets
@@ -33,16 +37,40 @@ class Met:
     figures: Mapping[str, Any] = field(default_factory=dict)
 
 
-def _nothing_else(_linkage: Linkage, _task: Task, _wanted: Requirements) -> Iterable[Defect]:
-    return ()
+def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    """Driver angle, assembly and error at each target, and the motion, of the least weighted squares.
+
+    With `order` in sequence in either sense within one turn, otherwise each by itself; with `same_branch`
+    points keep to the own assembly and one range; of equal motions the shortest. Points and timed targets
+    begin at `theta2_start_deg`, where it is given.
+    """
+    if task.is_timed or task.only_points:
+        targets, motion = _points_or_timed(linkage, task, wanted)
+    else:
+        targets, motion = _poses(linkage, task, wanted)
+    return targets, motion.closed() if task.closed else motion
 
 
-@dataclass(frozen=True, slots=True)
-class HowMet:
-    """How a kind of task is met, and what it asks for that no requirement states."""
+def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
+    method = met_in_time if task.is_timed else met_in_order if wanted.order else met_singly
+    anywhere = (start or 0.0) + np.nan_to_num(task.driver_turns), np.full(len(task), int(linkage.assembly)), 1
+    theta2, assembly, sense = method(linkage, task, wanted.same_branch, start) or anywhere
+    if start is None:
+        theta2 = theta2 - TURN * np.round(theta2[0] / TURN)
+    motion = TaskMotion.ordered(theta2, sense) if sense else task_motion(linkage, theta2, False)
+    return Targets.of(linkage, task, theta2, assembly), motion
 
-    met: Callable[[Linkage, Any, Requirements], Met]
-    defects: Callable[[Linkage, Any, Requirements], Iterable[Defect]] = _nothing_else
+
+def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
+    targets = nearest_to_poses(linkage, task)
+    motion = task_motion(linkage, targets.theta2, wanted.order)
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+        branch = branch_index(linkage, targets.theta2, targets.assembly)
+        joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
+        if not motion.in_order or (wanted.same_branch and not joined):
+            return poses_in_order(linkage, task, targets, motion)
+    return targets, motion
 
 
 def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
@@ -51,21 +79,67 @@ def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
 
 
 def _as_function(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
-    """The whole range counts, not only its pairs."""
-    targets, motion, error = met_as_function(linkage, task, wanted)
+    """The entire range counts, not only its pairs."""
+    targets, motion, figures = met_as_function(linkage, task, wanted)
     theta2 = np.array([motion.start, *targets.theta2, motion.end])
     assembly = np.full(len(theta2), int(linkage.assembly))
-    figures = {} if error is None else error.figures
-    return Met(targets, motion, theta2, assembly, covered=error is not None, figures=figures)
+    return Met(targets, motion, theta2, assembly, covered=figures is not None, figures=figures or {})
 
 
 def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
-    targets, motion = at_limits(linkage, task, wanted)
-    return Met(targets, motion.closed(), targets.theta2, targets.assembly)
+    """The limit positions of a linkage on its own assembly, and the turn that begins with the slow stroke.
+
+    A full turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
+    swing and time ratio.
+    """
+    sense = -1 if wanted.driver_sense == "cw" else 1
+    stretched, folded = np.nan_to_num(output_stroke(linkage).theta2, nan=0.0).tolist()
+    there = sense * (folded - stretched) % TURN
+    first, way = (stretched, there) if there > np.pi - _EVEN else (folded, TURN - there)
+    first -= TURN * np.ceil((first - np.pi) / TURN)
+    theta2, assembly = np.array([first, first + sense * way]), np.full(2, int(linkage.assembly))
+    motion = TaskMotion.ordered(theta2, sense).closed()
+    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly)
+
+
+def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
+    """Misses of the swing (by `tolerance` in rad), stroke and time ratio (by that share of them)."""
+    found = output_stroke(linkage)
+    ratio = float(found.time_ratio)
+    if task.stroke is None:
+        swing = float(found.swing)
+        if np.isnan(swing):  # link 4 does not turn back
+            swing, ratio = TURN, task.time_ratio
+        first = ("the swing in deg", swing, task.swing or 0.0, float(np.degrees(1.0)), 1.0)
+    elif lacking := int(np.isnan(found.theta2).sum()):
+        yield Defect("exact", "the number of limit positions", 2 - lacking, "2", 1.0)
+        return
+    else:
+        first = ("the stroke", float(found.chord), task.stroke, 1.0, task.stroke)
+    for what, value, wish, unit, scale in (
+        first,
+        ("the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio),
+    ):
+        miss = abs(value - wish) / scale if np.isfinite(value) else np.inf
+        if not miss <= wanted.tolerance:
+            within = f"{wish * unit:.6g} within {wanted.tolerance * scale * unit:.2g}"
+            yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)
+
+
+def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements) -> Iterable[Defect]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class HowMet:
+    """How a kind of task is met, and the defects against its own requirements."""
+
+    met: Callable[[Linkage, Any, Requirements], Met]
+    defects: Callable[[Linkage, Any, Requirements], Iterable[Defect]] = _no_defects
 
 
 HOW_MET: Mapping[type, HowMet] = {
     Task: HowMet(_in_plane),
     FunctionTask: HowMet(_as_function),
-    StrokeTask: HowMet(_between_limits, stroke_defects),
+    StrokeTask: HowMet(_between_limits, _stroke_defects),
 }

@@ -1,10 +1,10 @@
-"""How deep the parts of a linkage reach into areas that are kept out."""
+"""Depth to which the parts of a linkage reach into areas that are kept out."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import TypeAlias, cast
 
 import numpy as np
 import shapely
@@ -19,10 +19,12 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
 _SAMPLES = 541
 _ALONG = 33  # samples along the piece of a link that lies inside
-_PEAKS = 3  # of the depth over the motion that are looked at more closely
+_PEAKS = 3  # of the depth over the motion that are refined
 _ROUNDS, _NEARBY = 18, np.linspace(-1, 1, 7)  # each three times as close
 SLACK = 1e-9  # sizes: rounding
 _ROUGH = 5  # rounds along a link, while looking for the driver angles where it reaches deepest
+
+DepthAt: TypeAlias = Callable[[FloatArray, int], FloatArray]  # by driver angles (n,) and rounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,12 +38,12 @@ class Area:
     @classmethod
     def of(cls, polygons: Sequence[FloatArray]) -> Area:
         """The area that polygons cover."""
-        whole = solid(polygons)
-        rings = shapely.get_rings(shapely.get_parts(whole))
+        covered = solid(polygons)
+        rings = shapely.get_rings(shapely.get_parts(covered))
         corners, ring = shapely.get_coordinates(rings, return_index=True)
         corner = corners @ np.array([1, 1j])
         same = ring[:-1] == ring[1:]
-        return cls(whole, corner[:-1][same], corner[1:][same])
+        return cls(covered, corner[:-1][same], corner[1:][same])
 
     def from_boundary(self, points: ComplexArray) -> FloatArray:
         """Distance of complex points, shape (...), from the boundary."""
@@ -60,7 +62,7 @@ def depth(area: Area, points: FloatArray) -> FloatArray:
 
 
 def segment_depth(area: Area, begin: FloatArray, end: FloatArray, rounds: int = 18) -> FloatArray:
-    """How deep the deepest point of each segment (n, 2) lies inside an area, as `depth` gives it.
+    """Depth of the deepest point of each segment (n, 2) inside an area, as `depth` gives it.
 
     The part inside is cut out exactly, so that no shallow corner is overlooked, and sampled, in each of
     `rounds` three times as close about the deepest.
@@ -89,33 +91,32 @@ def intrusions(
 ) -> dict[str, float]:
     """The greatest depth (length) of each part that reaches into an area kept out, as "O2" or "link AB".
 
-    Over the whole motion, or at the targets alone where none joins them. Samples are closer towards its ends,
+    Over the motion, or at the targets alone where none joins them. Samples are closer towards its ends,
     where near a dead position the linkage runs away from the driver, and ever closer about the deepest, also
     where none of the first lies inside.
     """
-    area, deepest = Area.of(wanted.keep_out), dict[str, float]()
-    parts: dict[str, tuple[str, ...]] = {}
+    area, assembly = Area.of(wanted.keep_out), targets.assembly[:1] if joined else targets.assembly
+
+    def over(at: DepthAt) -> float:
+        return (
+            _deepest_over(at, motion.start, motion.end)
+            if joined
+            else float(at(targets.theta2, _ROUNDS).max())
+        )
+
+    deepest, parts = dict[str, float](), dict[str, tuple[str, ...]]()
     for name in wanted.keep_out_for:
-        if name not in (*linkage.mechanism.points, "links", "body"):  # O4 of a slider-crank
-            continue
-        if name != "body":
-            parts |= _lines(linkage) if name == "links" else {name.upper(): (name,)}
-        elif task.body is not None:
-            at = _body_depth(area, linkage, task.body, targets.assembly[:1] if joined else targets.assembly)
-            over = (
-                _deepest_over(at, motion.start, motion.end) if joined else at(targets.theta2, _ROUNDS).max()
-            )
-            deepest["the body"] = float(over)
+        if name == "body" and task.body is not None:
+            deepest["the body"] = over(_body_depth(area, linkage, task.body, assembly))
+        elif name == "links":
+            parts |= _lines(linkage)
+        elif name in linkage.mechanism.points:  # not O4 of a slider-crank
+            parts[name.upper()] = (name,)
     for part, ends in parts.items():
         if set(ends) <= set(linkage.mechanism.ground):
             deepest[part] = float(depth(area, getattr(linkage, ends[0])))
-            continue
-        if joined:
-            at = _depth_of(area, linkage, ends, targets.assembly[:1])
-            deepest[part] = _deepest_over(at, motion.start, motion.end)
         else:
-            at = _depth_of(area, linkage, ends, targets.assembly)
-            deepest[part] = float(at(targets.theta2, _ROUNDS).max())
+            deepest[part] = over(_depth_of(area, linkage, ends, assembly))
     return {part: found for part, found in deepest.items() if found > SLACK * task.size}
 
 
@@ -132,9 +133,7 @@ def _lines(linkage: Linkage) -> dict[str, tuple[str, ...]]:
     return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 
 
-def _depth_of(
-    area: Area, linkage: Linkage, ends: tuple[str, ...], assembly: IntArray
-) -> Callable[[FloatArray, int], FloatArray]:
+def _depth_of(area: Area, linkage: Linkage, ends: tuple[str, ...], assembly: IntArray) -> DepthAt:
     """Depth of a point, or of the link between two, by driver angles of shape (n,) and rounds."""
 
     def at(theta2: FloatArray, rounds: int) -> FloatArray:
@@ -149,9 +148,7 @@ def _depth_of(
     return at
 
 
-def _body_depth(
-    area: Area, linkage: Linkage, outline: FloatArray, assembly: IntArray
-) -> Callable[[FloatArray, int], FloatArray]:
+def _body_depth(area: Area, linkage: Linkage, outline: FloatArray, assembly: IntArray) -> DepthAt:
     """Depth of the body's closed outline in an area, or of an area's corners in the body."""
     corner = outline @ np.array([1, 1j])
     body = Area.of([outline]) if len(outline) > 2 else None
@@ -177,7 +174,7 @@ def _body_depth(
     return at
 
 
-def _deepest_over(at: Callable[[FloatArray, int], FloatArray], start: float, end: float) -> float:
+def _deepest_over(at: DepthAt, start: float, end: float) -> float:
     """Greatest depth between two driver angles."""
     angle = closer_at_ends(start, end, _SAMPLES)
     found = at(angle, _ROUGH)

@@ -1,4 +1,4 @@
-"""What a judged linkage measures: a value of every quantity, by the judge's own means."""
+"""The value of every quantity of a judged linkage, by the judge's own means, and the check of its limits."""
 
 from __future__ import annotations
 
@@ -11,33 +11,36 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
-from grashof.analysis.judge.driven import cylinder_force_peak, figures_of
-from grashof.analysis.judge.over_task import OverTask, over_task
-from grashof.analysis.judge.sampled_motion import motion_ends
-from grashof.analysis.judge.task_peaks import task_peaks
+from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
+from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
-from grashof.analysis.judge.verdict import Enclosure, Verdict
+from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
-from grashof.problems import Cylinder, Linkage, Problem
-from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
+from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.requirements.quantities import Needs
+from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
+from grashof.problems.values.units import Unit
+
+# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
+SLACK = 1e-9
+_OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 
 
 class Values(Mapping[str, float]):
-    """The values of a design by the keys of their quantities, each measured when asked for.
+    """The values of a design by the keys of their quantities, each measured on first use.
 
-    In rad, N, N m and the problem's unit of length. NaN where the problem does not state what one needs, or
-    the linkage has no such value.
+    In rad, N, N m and the problem's unit of length. NaN where the problem lacks the data for one, or the
+    linkage has no such value.
     """
 
     def __init__(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> None:
         self.linkage, self.verdict, self.problem = linkage, verdict, problem
         self._known: dict[str, float] = {}
         self._peaks: FloatArray | None = None
-        self.enclosure: Enclosure | None = None  # once `find_enclosures` has looked at it
+        self.enclosure: Enclosure | None = None  # once `find_enclosures` has made it
 
     def __getitem__(self, key: str) -> float:
         if key not in self._known:
@@ -98,7 +101,7 @@ class Values(Mapping[str, float]):
 
     @cached_property
     def cylinder(self) -> CylinderFigures | None:
-        """What the cylinder does that drives it; None without one."""
+        """Figures of the cylinder that drives it; None without one."""
         return figures_of(self.linkage, self.problem.task, self.verdict)
 
     @cached_property
@@ -110,7 +113,7 @@ class Values(Mapping[str, float]):
 
 
 def find_peaks(designs: Sequence[Values]) -> None:
-    """Find the greatest speeds and loads of designs of a problem at once, for when they are asked for."""
+    """Find the greatest speeds and loads of designs of a problem at once, before they are needed."""
     wanted = [each for each in designs if each._peaks is None and "over_task" not in vars(each)]
     if wanted:
         linkages, verdicts = zip(*((each.linkage, each.verdict) for each in wanted), strict=True)
@@ -119,7 +122,7 @@ def find_peaks(designs: Sequence[Values]) -> None:
 
 
 def _angle_error(number: Callable[[FloatArray], float], values: Values) -> float:
-    """A number of the angle errors; NaN where no angle is asked for."""
+    """A number of the angle errors; NaN where the task has no angle."""
     errors = values.verdict.angle_error
     return np.nan if np.isnan(errors).all() else number(errors)
 
@@ -280,3 +283,56 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "a_on_body": partial(_on_body, True),
     "b_on_body": partial(_on_body, False),
 }
+
+
+def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
+    """A defect for every limit of resolved requirements missed, in order of fields.
+
+    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
+    """
+    limited = wanted.limited
+    verdict = values.verdict  # another defect reports that no motion joins the targets
+    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
+    for name, limit in limited.items():
+        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
+            continue
+        if limit.quantity.key in values.problem.task.without:  # a default
+            continue
+        if not values.problem.states(limit.quantity.needs):
+            raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
+        if limit.quantity.over is Scope.TASK and not joined:
+            continue
+        if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
+            continue  # that there is none is a defect by itself
+        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
+        for part, numbers in values.parts(quantity.key).items():
+            if part in limited:  # r1 and link_length: its own limits take their place
+                continue
+            allowed = ranges[part if part in ranges else ""]
+            for value in np.unique([numbers.min(), numbers.max()]).tolist():
+                miss = _miss(value, allowed, limit, values.problem)
+                if miss > SLACK:
+                    found = value * quantity.unit.shown
+                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
+
+
+def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
+    """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
+    low, high = allowed
+    if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
+        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
+    if limit.kind.is_angle:
+        return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
+    miss = max(low - value, value - high)
+    if limit.quantity.unit is Unit.ANGLE:
+        return miss
+    if limit.quantity.unit is Unit.RATIO:
+        return miss / (abs(high if value > high else low) or 1.0)
+    return miss / problem.scale(limit.quantity)
+
+
+def _what(quantity: Quantity, part: str) -> str:
+    if part in ("x", "y"):
+        return f"{quantity.key}.{part}"
+    deg = " in deg" if quantity.unit is Unit.ANGLE else ""
+    return part or (quantity.key if quantity.words == quantity.key else f"the {quantity.words}{deg}")

@@ -1,20 +1,34 @@
-"""What a linkage does in its task motion: greatest speeds, forces and torque."""
+"""The task motion of judged linkages, and their greatest speeds, forces and torque in it."""
 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from grashof.analysis.curves.fit import coupler_fit_r2
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
-from grashof.analysis.judge.task_peaks import load_curves, task_peaks
+from grashof.analysis.forces.dynamics import inverse_dynamics
+from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
+from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.verdict import Verdict
-from grashof.analysis.mechanism.driver_law import DriverLaw, mean_in_time
-from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem
-from grashof.problems.values.arrays import FloatArray
+from grashof.analysis.mechanism.driver_law import DriverLaw, SteadyDrivers, mean_in_time
+from grashof.analysis.mechanism.even_motion import close_samples
+from grashof.analysis.mechanism.kinematics import solve_kinematics
+from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.numerics.peaks import peaks
+from grashof.problems import DeadPositionWarning, DynamicsSpec, Linkage, Problem, Task
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.linkages.linkage import by_kind
+
+_SAMPLES = 361
+_TOGETHER = 32  # linkages in a batch; more are no faster
+
+Curves = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +44,7 @@ class OverTask:
     point_speed_max, point_acceleration_max : float, length/s and length/s^2
         Of P.
     coupler_fit_r2 : float
-        Of a polynomial of degree 4 in the driver angle that stands for the path of P.
+        Of a polynomial of degree 4 in the driver angle fitted to the path of P.
     torque_peak, torque_rms : float, N m
         Greatest magnitude of the drive torque, and its root mean square over time; NaN without
         dynamics.
@@ -47,7 +61,39 @@ class OverTask:
     joint_force_peak: float = np.nan
 
 
-_NONE = OverTask(np.nan, np.nan, np.nan, np.nan)
+def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
+    """The linkage on the assembly on which it meets the first target."""
+    used = np.asarray(verdict.assembly[0], dtype=np.float64)
+    return linkage if used == linkage.assembly else linkage.changed(assembly=used)
+
+
+def joins(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
+    """Whether a motion joins the targets; at its very ends rounding may open the loop."""
+    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
+
+
+def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
+    """Driver angles at which the motion from the first target to the last begins and ends, rad."""
+    low, high = float(verdict.theta2.min()), float(verdict.theta2.max())
+    before, after = task.beyond
+    start, end = (low, high) if verdict.direction > 0 else (high, low)
+    start, end = start - verdict.direction * before, end + verdict.direction * after
+    if task.closed:
+        end = start + verdict.direction * TURN
+    return start, end
+
+
+def driver_law(problem: Problem, start: float, end: float) -> DriverLaw:
+    """The driver's motion from one angle to the other, by the dynamics of the problem."""
+    spec, rotation = problem.dynamics, end - start
+    omega2 = np.copysign(1.0 if spec is None else spec.omega2, rotation)
+    motor = spec.motor if spec is not None and rotation else None
+    return DriverLaw(start, rotation, float(omega2), motor or MotorSpec())
+
+
+def sampled(linkage: Linkage, start: float, end: float) -> FloatArray:
+    """Driver angles from the lower end to the upper, close where a dead position is near."""
+    return close_samples(linkage, start, end, _SAMPLES, second=False)
 
 
 def over_task(
@@ -89,18 +135,105 @@ def over_task(
     known = task_peaks([linkage], problem, [verdict])[0] if greatest is None else greatest
     omega4, speed, acceleration, torque, force = known.tolist()
     if np.isnan(omega4):
-        return _NONE
+        return OverTask(np.nan, np.nan, np.nan, np.nan)
     linkage, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
     fit, rms = float(coupler_fit_r2(linkage, *ends)), torque
     if problem.dynamics is not None and np.isfinite(torque):
-        rms = _torque_rms(linkage, problem.dynamics, metres(problem.length_unit), driver_law(problem, *ends))
+        law = driver_law(problem, *ends)
+        curves = load_curves(linkage, problem.dynamics, metres(problem.length_unit), law)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeadPositionWarning)
+            mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
+        rms = float(np.sqrt(mean))
     return OverTask(omega4, speed, acceleration, fit, torque, rms, force)
 
 
-def _torque_rms(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw) -> float:
-    """Root mean square of the torque over time, N m."""
-    curves = load_curves(linkage, spec, metre, law)
+class _Motion(NamedTuple):
+    linkage: Linkage
+    law: DriverLaw
+    theta2: FloatArray
+
+
+def task_peaks(
+    linkages: Sequence[Linkage], problem: Problem, verdicts: Sequence[Verdict], *, torque_alone: bool = False
+) -> FloatArray:
+    """Greatest magnitudes over the task motions, shape (n, 5).
+
+    omega4 in rad/s, speed and acceleration of P, torque in N m and force in any joint in N; all but the
+    torque NaN with `torque_alone`. At the speed of the problem's dynamics, else 1 rad/s; NaN where no motion
+    joins the targets, of the last two also without dynamics or where a slide travels beyond the rows of a
+    load.
+    """
+    found = np.full((len(linkages), 5), np.nan)
+    motions = {}
+    for k, (linkage, verdict) in enumerate(zip(linkages, verdicts, strict=True)):
+        used, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
+        theta2 = sampled(used, *ends)
+        if joins(used, verdict, theta2):
+            motions[k] = _Motion(used, driver_law(problem, *ends), theta2)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
-        mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
-    return float(np.sqrt(mean))
+        for group in _groups(motions):
+            some = [motions[k] for k in group]
+            if not torque_alone:
+                batch, law, stretches = _together(some)
+                found[group, :3] = peaks(_speeds(batch, law), stretches)[0].reshape(3, -1).T
+            if problem.dynamics is not None:
+                metre, rows = metres(problem.length_unit), 1 if torque_alone else 2
+                found[group, 3 : 3 + rows] = _loads(some, problem.dynamics, metre, rows).T
+    return found
+
+
+def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverLaw | SteadyDrivers) -> Curves:
+    """|torque| in N m and the greatest joint force in N, each a row, over places of the law."""
+    masses = stated_masses(linkage, spec, metre)
+    loads = stated_loads(spec, metre, lambda state: law.time_at(state.theta2))
+
+    def curves(place: FloatArray) -> FloatArray:
+        found = inverse_dynamics(solve_kinematics(linkage, *law.at_place(place)), masses, loads)
+        force = np.max([found.joint_force(joint) for joint in joints_of(linkage)], axis=0)
+        return np.stack([metre**2 * np.abs(found.torque), metre * force])
+
+    return curves
+
+
+def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers) -> Curves:
+    """|omega4|, speed and acceleration of P, each a row, over places of the law."""
+
+    def curves(place: FloatArray) -> FloatArray:
+        state = solve_kinematics(linkage, *law.at_place(place))
+        return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
+
+    return curves
+
+
+def _loads(some: Sequence[_Motion], spec: DynamicsSpec, metre: float, rows: int) -> FloatArray:
+    """The first rows of `load_curves` where they are greatest, shape (rows, n)."""
+    batch, law, stretches = _together(some)
+    try:
+        curves = load_curves(batch, spec, metre, law)
+        return peaks(lambda place: curves(place)[:rows], stretches)[0].reshape(rows, -1)
+    except BeyondLoadError:  # a defect by itself, of one of them
+        each = np.full((rows, 1), np.nan)
+        return each if len(some) == 1 else np.hstack([_loads([one], spec, metre, rows) for one in some])
+
+
+def _groups(motions: Mapping[int, _Motion]) -> Iterator[list[int]]:
+    """Those of a kind in batches; each by itself where the driver is not steady."""
+    steady = [k for k, motion in motions.items() if motion.law.motor.steady]
+    groups = [[steady[row] for row in rows] for rows in by_kind([motions[k].linkage for k in steady])]
+    for group in (*groups, *([k] for k in motions if k not in set(steady))):
+        for first in range(0, len(group), _TOGETHER):
+            yield group[first : first + _TOGETHER]
+
+
+def _together(some: Sequence[_Motion]) -> tuple[Linkage, DriverLaw | SteadyDrivers, list[FloatArray]]:
+    """Linkages as a batch with its driver and its samples, shape (n, N); rows repeat their last sample."""
+    linkage, law, theta2 = some[0]
+    if not law.motor.steady:
+        return linkage, law, law.stretches(theta2)
+    batch = linkage.stacked([each.linkage for each in some])[:, None]
+    start, omega2 = np.array([(each.law.start, each.law.omega2) for each in some]).T[..., None]
+    most = max(len(each.theta2) for each in some)
+    rows = [np.pad(each.theta2, (0, most - len(each.theta2)), mode="edge") for each in some]
+    return batch, SteadyDrivers(start, omega2), [np.stack(rows)]

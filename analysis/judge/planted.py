@@ -1,4 +1,4 @@
-"""Planted tasks: random linkages and tasks that they are known to do, for tests and benchmarks."""
+"""Planted tasks: random linkages and tasks that they do exactly, for tests and benchmarks."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def random_full_crank(rng: np.random.Generator) -> FourBar:
 
 
 def _placed(rng: np.random.Generator, scale: float) -> tuple[FloatArray, float, dict[str, Any]]:
-    """O2, the direction of the ground line or slide, and what all kinds have besides."""
+    """O2, the direction of the ground line or slide, and the other fields of all kinds."""
     o2, direction = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
     coupler_point, assembly = rng.normal(0, 0.7 * scale, 2), rng.choice([-1, 1])
     body_angle = rng.uniform(-np.pi, np.pi)

@@ -1,4 +1,4 @@
-"""The judge's verdict on a linkage: what it does with a task, and what it misses."""
+"""The judge's verdict on a linkage: how it does a task, and its defects."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Defect:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What a linkage does with a task, and every defect.
+    """How a linkage does a task, and every defect.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Verdict:
     angle_error : ndarray, shape (N,), rad
         NaN where a target has no angle.
     square : float, length squared
-        What least squares makes small: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
+        The objective of least squares: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
     direction : int
         Sense of the driver, +1 counter-clockwise.
     grashof_class : GrashofClass
@@ -63,18 +63,18 @@ class Verdict:
     size : float, length
         Diagonal of the box around O2, O4 and all that A, B and P reach in it.
     defects : tuple of Defect
-        Empty for a design that does what is required.
+        Empty for a design that meets all requirements.
     cylinder : Cylinder, optional
         That drives it, where one does.
     output_error : ndarray, shape (N,), rad
-        Of the output of a function at its pairs; empty where none is asked for.
+        Of the output of a function at its pairs; empty for other tasks.
     structural_error_max, structural_error_rms, structural_error_at : float, rad
         Over the range of a function: greatest, root mean square, and the driver rotation from the first
-        pair to the greatest; NaN where none is asked for, or the motion does not cover the range.
+        pair to the greatest; NaN for other tasks, or where the motion does not cover the range.
     output_zero : float, rad
-        Direction theta4 that the wanted output zero stands for.
+        Direction theta4 at the wanted output zero.
     output_sense : int
-        -1 where the output is the opposite of what is wanted.
+        -1 where the output is the opposite of the wanted one.
     """
 
     theta2: FloatArray
@@ -107,7 +107,7 @@ class Verdict:
 
     @property
     def error_max(self) -> float:
-        """Greatest distance from a target position; NaN where no position is asked for."""
+        """Greatest distance from a target position; NaN where the task has no position."""
         return np.nan if self._unplaced else float(np.nanmax(self.position_error))
 
     @property
@@ -122,18 +122,18 @@ class Verdict:
 
     @property
     def _unplaced(self) -> bool:
-        """Whether no position is asked for."""
+        """Whether the task has no position."""
         return bool(np.isnan(self.position_error).all())
 
 
 @dataclass(frozen=True, slots=True)
 class Enclosure:
-    """What intervals of the driver angle show of a design that the judge accepted.
+    """Verification of a design that the judge accepted, by intervals of the driver angle.
 
     `holds` if closure over the required motion on one branch without a dead position, transmission, order,
     targets and places there are proven, every rounding enclosed. `transmission` (rad) holds the least min(mu,
-    pi - mu) over the motion asked for; `intervals` is how many it took, `why` what is not shown, empty where
-    all is; `contradicts` shows the judge wrong, a defect of this program.
+    pi - mu) over the required motion; `intervals` is their number, `why` the claims not shown, empty where
+    all are; `contradicts` shows the judge wrong, a defect of this program.
     """
 
     holds: bool

@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis.forces.stated import TRAVEL_ROUNDING
+from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING
+from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_travel
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
-from grashof.analysis.judge.driven import cylinder_defects, driven_travel
 from grashof.analysis.judge.how_met import HOW_MET
-from grashof.analysis.judge.limits import SLACK, missed
-from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.measures import SLACK, Values, missed
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
-from grashof.analysis.judge.sampled_motion import as_used, joins, motion_ends, sampled
+from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
@@ -28,14 +27,7 @@ from grashof.analysis.mechanism.mobility import (
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import (
-    Cylinder,
-    Linkage,
-    Problem,
-    Requirements,
-    Rotatability,
-    Task,
-)
+from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.tasks.task import row_of
@@ -62,11 +54,11 @@ def verify(
     constraints : sequence of callable
         The user's own: functions of a `Design`, zero or negative where met.
     most_square : float, length squared
-        Up to which `Verdict.square` is allowed: what ``error_factor`` makes of the least one found.
+        Greatest `Verdict.square` allowed: the least one found by ``error_factor``.
     problem : Problem, optional
-        That the task is of: what limits of torques, forces or made linkages need.
+        That the task is of: needed for limits of torques, forces or made linkages.
     cylinder : Cylinder, optional
-        That drives the linkage, where the problem asks for one.
+        That drives the linkage, where the problem requires one.
 
     Returns
     -------
@@ -75,7 +67,7 @@ def verify(
     Notes
     -----
     Circuit, branch and order defects as Chase & Mirth (1993) define them. With ``order = false``
-    the task motion is the shortest that holds all targets; of a closed task it is the whole turn.
+    the task motion is the shortest that holds all targets; of a closed task it is the full turn.
 
     Examples
     --------
@@ -92,8 +84,7 @@ def verify(
     targets, motion = met.targets, met.motion
     circuits = circuit_index(linkage, met.theta2, met.assembly)
     branches = branch_index(linkage, met.theta2, met.assembly)
-    circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0)
-    circuit_ok = circuit_ok and met.covered
+    circuit_ok = bool((circuits == circuits[0]).all() and circuits[0] >= 0) and met.covered
     branch_ok = circuit_ok and bool((branches == branches[0]).all())
     branch_ok = branch_ok and not passes_change_point(linkage, motion.start, motion.end)
     # Without a motion that joins the targets nothing is transmitted.
@@ -124,7 +115,7 @@ def verify(
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
         *how.defects(linkage, task, wanted),
         *_zones(targets, task),
-        *_whole_error(targets, task, most_square),
+        *_total_error(targets, task, most_square),
         *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
@@ -150,7 +141,10 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     errors = (
         ("position error", targets.position_error, allowed, task.size, 1.0),
         ("angle error in deg", targets.angle_error, allowed / task.angle_length, 1.0, deg),
-        _of_output(task, targets.output_error, wanted.tolerance),
+        # Of the output of a function: rad, or as a share of its entire travel.
+        ("output error at the pairs", targets.output_error, allowed, task.size, 1.0)
+        if task.travels
+        else ("output error in deg at the pairs", targets.output_error, wanted.tolerance, 1.0, deg),
     )
     return [
         Defect(
@@ -161,20 +155,10 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
     ]
 
 
-def _of_output(
-    task: Task, error: FloatArray, tolerance: float
-) -> tuple[str, FloatArray, float, float, float]:
-    """The same of the output of a function: rad, or as a share of its whole travel."""
-    if task.travels:
-        return "output error at the pairs", error, tolerance * task.size, task.size, 1.0
-    return "output error in deg at the pairs", error, tolerance, 1.0, float(np.degrees(1.0))
-
-
-def _zones(targets: Targets, task: Task) -> list[Defect]:
-    """Targets that are missed by more than each of them may be."""
+def _zones(targets: Targets, task: Task) -> Iterator[Defect]:
+    """Targets that are missed by more than each allows."""
     if task.zones is None:
-        return []
-    defects = []
+        return
     misses = (targets.position_error, targets.angle_error)
     for what, miss, zone, size in zip(
         ("position", "angle"), misses, task.zones, (task.size, 1.0), strict=True
@@ -186,16 +170,14 @@ def _zones(targets: Targets, task: Task) -> list[Defect]:
             key, deg = ("angle_within_deg", " in deg") if what == "angle" else ("within", "")
             found, allowed = unit * float(miss[worst]), f"up to {unit * zone[worst]:.6g}"
             where = f"the {what} error{deg} at target {worst + 1}"
-            defects.append(Defect(key, where, found, allowed, float(over[worst])))
-    return defects
+            yield Defect(key, where, found, allowed, float(over[worst]))
 
 
-def _whole_error(targets: Targets, task: Task, most_square: float) -> list[Defect]:
+def _total_error(targets: Targets, task: Task, most_square: float) -> Iterator[Defect]:
     found, most = (float(np.sqrt(square / len(task))) for square in (_square(targets, task), most_square))
     miss = (found - most) / task.size
-    if not miss > SLACK:
-        return []
-    return [Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)]
+    if miss > SLACK:
+        yield Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)
 
 
 def _drive(
@@ -207,9 +189,9 @@ def _drive(
     motion: TaskMotion,
     problem: Problem | None,
 ) -> list[Defect]:
-    """Branch and order, of the driver that there is; and what a cylinder misses."""
+    """Defects of branch and order, of the actual driver, and of its cylinder."""
     spec = None if problem is None else problem.driver
-    moved = driven_travel(linkage, task, verdict) if spec is not None else None
+    moved = cylinder_travel(linkage, task, verdict) if spec is not None else None
     through = moved is not None and not verdict.branch_ok  # a cylinder, through dead positions of link 2
     by_link2 = [] if through else [
         *_same_branch(verdict.circuit_ok, verdict.branch_ok, int(linkage.assembly), targets, wanted),
@@ -222,65 +204,55 @@ def _drive(
 
 def _same_branch(
     circuit_ok: bool, branch_ok: bool, declared: int, targets: Targets, wanted: Requirements
-) -> list[Defect]:
-    if not wanted.same_branch:
-        return []
-    if not branch_ok:
-        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
-        return [Defect("same_branch", f"the number of {what}", 2, "1", 1.0)]
+) -> Iterator[Defect]:
     used = int(targets.assembly[0])
-    if used != declared:
+    if wanted.same_branch and not branch_ok:
+        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
+        yield Defect("same_branch", f"the number of {what}", 2, "1", 1.0)
+    elif wanted.same_branch and used != declared:
         allowed = f"{declared:+d}, the linkage's own"
-        return [Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)]
-    return []
+        yield Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)
 
 
-def _order(motion: TaskMotion, wanted: Requirements) -> list[Defect]:
+def _order(motion: TaskMotion, wanted: Requirements) -> Iterator[Defect]:
     if not wanted.order or motion.in_order:
-        return []
+        return
     turns = abs(motion.end - motion.start) / (2 * np.pi)
     if turns > 1:
-        what = "turns of the driver to meet the targets in sequence"
-        return [Defect("order", what, turns, "up to 1", 1.0)]
-    step = np.diff(motion.theta2)
-    reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
-    return [Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)]
+        yield Defect("order", "turns of the driver to meet the targets in sequence", turns, "up to 1", 1.0)
+    else:
+        step = np.diff(motion.theta2)
+        reversals = int(np.count_nonzero(np.diff(np.sign(step[np.abs(step) > STEADY]))))
+        yield Defect("order", "the number of reversals of the driver between targets", reversals, "0", 1.0)
 
 
-def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> list[Defect]:
+def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
     margin, why = wanted.rotatability_margin, str(wanted.rotatability)
     if wanted.rotatability is Rotatability.ANY:
         if not task.closed:
-            return []
-        margin, why = 0.0, f"a closed {task.kind} takes a whole turn"
+            return
+        margin, why = 0.0, f"a closed {task.kind} takes a full turn"
     least = float(rotatability(linkage).min())
-    defects = []
     if least < margin - SLACK:
-        miss = margin - least
         allowed = f"from {margin:g} ({why})"
-        defects.append(Defect("rotatability", "the margin of full rotation", least, allowed, miss))
+        yield Defect("rotatability", "the margin of full rotation", least, allowed, margin - least)
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
     # As far as O4 of a slider-crank: it lies at infinity.
     difference = float(getattr(linkage, "r1", np.inf) - linkage.r2)
     miss = -kind * difference / float(linkage.lengths.sum())
     if miss > SLACK:
-        which = "greater" if kind > 0 else "less"
-        allowed = f"{which} than 0 ({wanted.rotatability})"
-        defects.append(Defect("rotatability", "r1 - r2", difference, allowed, miss))
-    return defects
+        allowed = f"{'greater' if kind > 0 else 'less'} than 0 ({wanted.rotatability})"
+        yield Defect("rotatability", "r1 - r2", difference, allowed, miss)
 
 
 def _covered(targets: Targets) -> list[Defect]:
-    missed = int(np.count_nonzero(np.isinf(targets.position_error)))
-    missed += int(np.count_nonzero(np.isinf(targets.output_error)))
-    if not missed:
-        return []
+    open_at = sum(int(np.isinf(error).sum()) for error in (targets.position_error, targets.output_error))
     what = "the number of targets at which the linkage cannot be assembled"
-    return [Defect("rotatability", what, missed, "0", 1.0)]
+    return [Defect("rotatability", what, open_at, "0", 1.0)] if open_at else []
 
 
 def _loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Defect]:
-    """Loads over the travel of a slide that do not say what they are all the way."""
+    """Loads over the travel of a slide that do not cover all of it."""
     loads = () if problem.dynamics is None else problem.dynamics.loads
     over = {index: load.values for index, load in enumerate(loads) if load.over == "travel" and load.values}
     if not over or not linkage.mechanism.slides:
@@ -306,11 +278,10 @@ def _loads(linkage: Linkage, problem: Problem, verdict: Verdict) -> Iterator[Def
                 )
 
 
-def _own(design: Design, constraints: Sequence[Constraint]) -> list[Defect]:
-    values = [(name_of(constraint), greatest(constraint, design)) for constraint in constraints]
-    return [
-        Defect("constraints", name, value, "up to 0", value) for name, value in values if not value <= SLACK
-    ]
+def _own(design: Design, constraints: Sequence[Constraint]) -> Iterator[Defect]:
+    for constraint in constraints:
+        if not (value := greatest(constraint, design)) <= SLACK:
+            yield Defect("constraints", name_of(constraint), value, "up to 0", value)
 
 
 def _kept_out(

@@ -1,4 +1,4 @@
-"""Where along a bar something is greatest, and how the bar bends."""
+"""Greatest values along a bar, and its deflection."""
 
 from __future__ import annotations
 
@@ -24,22 +24,17 @@ class Along(NamedTuple):
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def greatest(bar: BarForces, terms: FloatArray, spans: BoolArray | None = None) -> Along:
-    """Greatest value of polynomials of degree three at most, coefficients (..., K - 1, N) as those of `bar`.
+def greatest(
+    bar: BarForces, *polynomials: FloatArray, size: bool = False, spans: BoolArray | None = None
+) -> Along:
+    """Greatest value or size of some polynomials up to degree 3, coefficients (..., K - 1, N) as in `bar`.
 
-    It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) says which
-    count; by default all that there are.
+    It lies at an end of a span or where the derivative, a quadratic, is zero. `spans` (..., K - 1) states
+    which count; by default all that exist.
     """
-    places = _candidates(bar, terms)
-    return _best(bar, polynomial(terms, places), places, spans)[0]
-
-
-@np.errstate(divide="ignore", invalid="ignore", over="ignore")
-def greatest_size(bar: BarForces, *polynomials: FloatArray) -> Along:
-    """Greatest magnitude of any of several polynomials, as for `greatest`."""
     places = [_candidates(bar, terms) for terms in polynomials]
-    sizes = [np.abs(polynomial(terms, at)) for terms, at in zip(polynomials, places, strict=True)]
-    return _best(bar, np.concatenate(sizes, axis=-1), np.concatenate(places, axis=-1))[0]
+    values = np.concatenate([polynomial(*each) for each in zip(polynomials, places, strict=True)], axis=-1)
+    return _best(bar, np.abs(values) if size else values, np.concatenate(places, axis=-1), spans)[0]
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -52,17 +47,17 @@ def greatest_of(bar: BarForces, value: Callable[..., FloatArray], *pieces: Float
     places = _cells(bar)
     (_, at), span = _best(bar, of(pieces, places), places)
     own = [np.take_along_axis(terms, span[..., None, None], axis=-2)[..., 0, :] for terms in pieces]
-    whole = np.take_along_axis(bar.spans, span[..., None], axis=-1)
+    full = np.take_along_axis(bar.spans, span[..., None], axis=-1)
     start = np.take_along_axis(bar.stations, span[..., None], axis=-1)[..., 0]
-    inside, step = at - start, whole[..., 0] / _CELLS
+    inside, step = at - start, full[..., 0] / _CELLS
     for _ in range(_ZOOMS):
-        near = np.clip(inside[..., None] + step[..., None] * np.linspace(-1, 1, _CELLS + 1), 0, whole)
+        near = np.clip(inside[..., None] + step[..., None] * np.linspace(-1, 1, _CELLS + 1), 0, full)
         heights = of(own, near)
         top = heights.argmax(axis=-1)[..., None]
         inside = np.take_along_axis(near, top, axis=-1)[..., 0]
         step = step * 2 / _CELLS
     beside = [np.take_along_axis(heights, np.clip(top + k, 0, _CELLS), axis=-1) for k in (-1, 0, 1)]
-    last = np.clip(vertex(inside[..., None], step[..., None], *beside), 0, whole)
+    last = np.clip(vertex(inside[..., None], step[..., None], *beside), 0, full)
     height = of(own, last)
     higher = height > beside[1]
     inside = np.where(higher, last, inside[..., None])[..., 0]

@@ -21,7 +21,7 @@ _SAME = 1e-9  # share of a link's length within which places on it are one
 
 
 class SectionForce(NamedTuple):
-    """What the part of a bar beyond a cut exerts on the part before it.
+    """Force and moment that the part of a bar beyond a cut exerts on the part before it.
 
     Parameters
     ----------
@@ -91,14 +91,14 @@ class BarForces:
         Parameters
         ----------
         u : array_like, shape (S,) or (..., S), length
-            Distances from the link's origin; there is no bar beyond the first and last station.
+            Distances from the link's origin; the bar ends at the first and last station.
         before : bool
             Where a load acts at the very cut: just before it, else just beyond it.
 
         Returns
         -------
         SectionForce, each of shape (..., S)
-            NaN where there is no bar.
+            NaN beyond the bar.
         """
         cuts = np.broadcast_to(np.asarray(u, dtype=np.float64), (*self.length.shape, np.shape(u)[-1]))
         starts = self.stations[..., None, :-1]
@@ -153,19 +153,19 @@ def section_forces(
     Raises
     ------
     ProblemError
-        A link that is no bar.
+        A link that is not a bar.
 
     Notes
     -----
-    Each link is a straight bar along the line of its joints. What acts beside that line acts through a
-    rigid arm on the bar, square to it; beyond a joint the bar goes on as far as loads lie on it, such as
-    a horsehead or a counterweight. A load that lies further beside the line than beyond the joint hangs
+    Each link is a straight bar along the line of its joints. A load beside that line acts through a
+    rigid arm on the bar, square to it; beyond a joint the bar continues as far as loads lie on it, such as
+    a horsehead or a counterweight. A load that lies further beside the line than beyond the joint acts
     on an arm from the joint instead. That changes nothing between the joints.
 
     A body of mass m and inertia I about its centre is spread evenly over the stretch of the bar that
     reaches h = sqrt(3 I / m) from the centre to both sides, but no further than its farther end; that
     is a uniform bar exactly, and a point mass where I = 0. Inertia that is left resists as that of wide
-    sections does: by an evenly distributed couple. Force and moment are those of the whole body in any
+    sections does: by an evenly distributed couple. Force and moment are those of the entire body in any
     case. `Body.parts` are spread one by one, so that a payload stays a point.
 
     The drive and torsion springs act in the joints, and so does friction.
@@ -233,7 +233,7 @@ class _BarFrame(NamedTuple):
         return turned(np.asarray(force), -self.theta) * self.sign[..., None]
 
     def foot(self, at: FloatArray) -> FloatArray:
-        """Where a point (u, v) of the bar's frame hangs on the bar, shape (...)."""
+        """The place on the bar of the arm to a point (u, v) of its frame, shape (...)."""
         (u, v), same = (at[..., 0], at[..., 1]), _SAME * (self.high - self.low)
         nearest = np.clip(u, self.low, self.high)
         beyond = np.abs(u - nearest)
@@ -269,14 +269,14 @@ def _checked(state: Kinematics, links: Sequence[int] | None) -> Sequence[int]:
     for link in links or ():
         if link not in bars:
             raise ProblemError(
-                f"link {link} of a {state.linkage.mechanism.word} is no bar; "
+                f"link {link} of a {state.linkage.mechanism.word} is not a bar; "
                 f"section forces are of links {bars}"
             )
     return bars if links is None else links
 
 
 def _joint_loads(state: Kinematics, found: Dynamics, link: int, bar: _BarFrame) -> Iterator[_Point]:
-    """What the joints of a link exert on it, the drive with them."""
+    """Loads of the joints of a link on it, the drive with them."""
     linkage = state.linkage
     points = linkage.mechanism.links[link - 1].points
     for number, joint in enumerate(linkage.mechanism.every_joint):
@@ -312,20 +312,20 @@ def _spread(state: Kinematics, link: int, bar: _BarFrame, body: Body, gravity: F
     arm = np.stack(np.broadcast_arrays(arm_u, arm_v), axis=-1)
 
     def inertial(share: FloatArray, u: FloatArray, couple: FloatArray) -> FloatArray:
-        """Load of a share of the mass that hangs on the bar at u, with a couple."""
+        """Load of a share of the mass that is attached to the bar at u, with a couple."""
         x, y = u + arm_u, arm_v
         push = [origin[..., 0] - alpha * y - pull * x, origin[..., 1] + alpha * x - pull * y]
         force = share[..., None] * -np.stack(push, axis=-1)
         return _load(force, cross(arm, force) - couple)
 
     slope = line[..., None] * np.stack([pull, -alpha], axis=-1)
-    whole = np.where((half > 0)[..., None], 0.0, inertial(mass, foot, np.zeros(())))
+    lumped = np.where((half > 0)[..., None], 0.0, inertial(mass, foot, np.zeros(())))
     return _Spread(
         foot - half,
         foot + half,
         inertial(line, np.zeros(()), turn * alpha),
         _load(slope, cross(arm, slope)),
-        _Point(foot - half, whole),
+        _Point(foot - half, lumped),
     )
 
 
@@ -356,8 +356,8 @@ def _cut(
         beyond = [polynomial(piece[-1], steps[..., span, None])[..., 0] for piece in pieces]
         values = np.stack(beyond) + jumps[..., span + 1]
     along_bar, across_bar, bending = (np.stack(piece, axis=-2) for piece in pieces)
-    whole_length = np.broadcast_to(length, shape)
-    return BarForces(link, whole_length, stations, along_bar, across_bar, bending, SectionForce(*values))
+    rest = SectionForce(*values)
+    return BarForces(link, np.broadcast_to(length, shape), stations, along_bar, across_bar, bending, rest)
 
 
 def _loaded(stations: FloatArray, spreads: list[_Spread]) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What the bars and pins of a linkage bear at a driver angle: stress, pressure, deflection."""
+"""Stress, pressure and deflection in the bars and pins of a linkage at a driver angle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from grashof.analysis.strength.along_bar import (
     greatest,
     greatest_deflection,
     greatest_of,
-    greatest_size,
 )
 from grashof.analysis.strength.section_forces import BarForces, section_forces
 from grashof.analysis.strength.structure import MEASURES, Structure
@@ -29,7 +28,7 @@ _ROUNDING = 1e-12  # share of the greatest force in a bar below which other forc
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StrengthHistory:
-    """What bars and pins bear at driver angles; not finite where joint forces are not.
+    """Loads on bars and pins at driver angles; not finite where joint forces are not.
 
     Parameters
     ----------
@@ -45,8 +44,8 @@ class StrengthHistory:
 
     @property
     def worst_link(self) -> FloatArray:
-        """The link of which most is asked (see `most_telling`), shape (...); NaN where it is not known."""
-        key = most_telling(next(iter(self.bars.values())))
+        """The link under the greatest load (by `governing_measure`), shape (...); NaN where unknown."""
+        key = governing_measure(next(iter(self.bars.values())))
         sizes = np.stack([measures[key].value for measures in self.bars.values()])
         worst = np.array(list(self.bars), dtype=np.float64)[sizes.argmax(axis=0)]
         return np.where(np.isnan(sizes).any(axis=0), np.nan, worst)
@@ -56,7 +55,7 @@ class StrengthHistory:
 def strength_at(
     state: Kinematics, structure: Structure, found: Dynamics | None = None, links: Sequence[int] | None = None
 ) -> StrengthHistory:
-    """What bars and pins bear at every driver angle.
+    """Loads on bars and pins at every driver angle.
 
     Parameters
     ----------
@@ -65,7 +64,7 @@ def strength_at(
     found : Dynamics, optional
         Of `inverse_dynamics` for them; by default it is computed.
     links : sequence of int, optional
-        Whose bars are looked at; all by default.
+        The bars to examine; all by default.
 
     Returns
     -------
@@ -92,15 +91,15 @@ def strength_at(
     return StrengthHistory(bars, pin_measures(state.linkage, in_pins, structure))
 
 
-def most_telling(keys: Container[str]) -> str:
-    """Which measure tells best how much is asked of a bar: strength in use, else stress, else moment."""
+def governing_measure(keys: Container[str]) -> str:
+    """The measure that governs a bar: the share of its strength in use, else stress, else moment."""
     return next(key for key in ("utilisation", "stress", "moment") if key in keys)
 
 
 def pin_measures(
     linkage: Linkage, forces: Mapping[Joint, FloatArray], structure: Structure
 ) -> dict[Joint, dict[str, FloatArray]]:
-    """What pins bear, in the units of `PIN_MEASURES`, of forces in kg, s and the length unit."""
+    """Measures of pins, in the units of `PIN_MEASURES`, from forces in kg, s and the length unit."""
     return {
         joint: {"pin_force": force * structure.in_si("N")}
         | {
@@ -116,9 +115,9 @@ def _bar_measures(bar: BarForces, structure: Structure) -> dict[str, Along]:
     found = {
         "tension": greatest(bar, bar.normal),
         "compression": greatest(bar, -bar.normal),
-        "thrust": greatest(bar, -bar.normal, bar.between_joints),
-        "shear": greatest_size(bar, bar.shear),
-        "moment": greatest_size(bar, bar.moment),
+        "thrust": greatest(bar, -bar.normal, spans=bar.between_joints),
+        "shear": greatest(bar, bar.shear, size=True),
+        "moment": greatest(bar, bar.moment, size=True),
     }
     reach = bar.stations[..., -1] - bar.stations[..., 0]
     sizes = [found[key].value for key in ("tension", "compression", "shear")]
@@ -146,12 +145,12 @@ def _stresses(bar: BarForces, section: CrossSection) -> dict[str, Along]:
     axial, shear = bar.normal / section.area, bar.shear * (section.shear_factor / section.area)
     bending = bar.moment * (section.extreme_fibre / section.inertia)
     pulled = np.concatenate([axial, np.zeros_like(axial[..., :1])], axis=-1)
-    normal = greatest_size(bar, pulled + bending, pulled - bending)
+    normal = greatest(bar, pulled + bending, pulled - bending, size=True)
     # In fibres further inside, and where it is greatest in the outermost, exactly.
     inner = greatest_of(bar, lambda *stresses: von_mises(*map(np.abs, stresses)), axial, bending, shear)
     deeper = inner.value > normal.value
     stress = Along(np.where(deeper, inner.value, normal.value), np.where(deeper, inner.at, normal.at))
-    return {"normal_stress": normal, "shear_stress": greatest_size(bar, shear), "stress": stress}
+    return {"normal_stress": normal, "shear_stress": greatest(bar, shear, size=True), "stress": stress}
 
 
 @np.errstate(divide="ignore", invalid="ignore", over="ignore")
@@ -175,5 +174,5 @@ def von_mises(axial: FloatArray, bending: FloatArray, shear: FloatArray) -> Floa
 
 
 def _above(along: Along, least: FloatArray) -> Along:
-    """What is borne, nothing where it is less than could be rounding."""
+    """A measure along a bar, zero where it may be rounding."""
     return Along(np.where(along.value <= least, 0.0, along.value), along.at)

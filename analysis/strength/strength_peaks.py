@@ -1,4 +1,4 @@
-"""The greatest of what the bars and pins of a linkage bear in its motion, and how safe they are."""
+"""The greatest loads on the bars and pins of a linkage in its motion, and their safety factors."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.numerics.peaks import peaks
 from grashof.analysis.strength.along_bar import Along
-from grashof.analysis.strength.strength import most_telling, pin_measures, strength_at
+from grashof.analysis.strength.strength import governing_measure, pin_measures, strength_at
 from grashof.analysis.strength.structure import MEASURES, Structure
-from grashof.problems import AssemblyError, DeadPositionWarning
+from grashof.problems import AssemblyError, DeadPositionWarning, Linkage
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.linkages.linkage import Linkage
 
 Motion = Callable[[FloatArray], Kinematics]
 _BUCKLING = {
@@ -40,7 +39,7 @@ class StrengthPeak:
     value : float
         Infinite where the motion touches a dead position.
     place : float
-        What the motion is a function of: driver angle, rad.
+        The argument of the motion: driver angle, rad.
     at : float, length
         Where along the bar, from its link's origin; NaN of a pin, and of an infinite value.
     """
@@ -56,7 +55,7 @@ class StrengthPeak:
 
 @dataclass(frozen=True, slots=True)
 class SafetyFactor:
-    """What a part stands over what it bears at most in the motion.
+    """The strength of a part over its greatest load in the motion.
 
     Parameters
     ----------
@@ -65,9 +64,9 @@ class SafetyFactor:
     part : str
         "link 2" or "O2".
     value : float
-        Above 1 it holds; infinite where nothing is borne.
+        Above 1 it holds; infinite without load.
     limit : float
-        What it stands, Pa or N.
+        Its strength, Pa or N.
     place : float
         Where in the motion, as of a `StrengthPeak`.
     at : float, length
@@ -105,8 +104,8 @@ class StrengthSummary:
 
     @property
     def worst_bar(self) -> StrengthPeak:
-        """The peak of `most_telling` in the bar where it is highest."""
-        key = most_telling({peak.key for peak in self.peaks})
+        """The peak of `governing_measure` in the bar where it is highest."""
+        key = governing_measure({peak.key for peak in self.peaks})
         return max((peak for peak in self.peaks if peak.key == key), key=lambda peak: peak.value)
 
     def peak(self, key: str, part: str) -> StrengthPeak:
@@ -115,7 +114,7 @@ class StrengthSummary:
 
 
 def strength_over(structure: Structure, motion: Motion, stretches: Sequence[FloatArray]) -> StrengthSummary:
-    """Greatest of what bars and pins bear in a motion, and how safe they are.
+    """Greatest loads on bars and pins in a motion, and their safety factors.
 
     Parameters
     ----------
@@ -207,7 +206,7 @@ def _pin_peaks(
 def _factors(
     structure: Structure, lengths: Mapping[int, float], pins: Sequence[Joint], peaks: Sequence[StrengthPeak]
 ) -> Iterator[SafetyFactor]:
-    """Of all that the strength limits, by links (of lengths between their joints) and pins in turn."""
+    """Safety factors of the links (of lengths between their joints), then of the pins."""
     strength, by_part = structure.strength, {(peak.part, peak.key): peak for peak in peaks}
     if strength is None:
         return

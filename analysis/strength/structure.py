@@ -1,4 +1,4 @@
-"""The bars of a linkage, what is known of them, and the loads at which they fail."""
+"""The bars of a linkage, their sections and strengths, and the loads at which they fail."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from grashof.problems.values.specs.dynamics_of_kind import without_place
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """What a bar (at most along it) or a pin bears: in N, N m, Pa, the linkage's "length", or "", a share."""
+    """Greatest measure along a bar, or of a pin: in N, N m, Pa, the linkage's "length", or "" for a share."""
 
     key: str
     label: str
     unit: str
 
 
-#: What is known of a bar at a position: forces, stresses, deflection, the share of its strength in use.
+#: Measures of a bar at a position: forces, stresses, deflection, the share of its strength in use.
 BAR_MEASURES = (
     Measure("tension", "tension", "N"),
     Measure("compression", "compression", "N"),
@@ -53,7 +53,7 @@ MEASURES = {measure.key: measure for measure in (*BAR_MEASURES, *PIN_MEASURES)}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """What is known of the bars of a linkage and of what acts on them.
+    """The bars of a linkage and their loads.
 
     Parameters
     ----------
@@ -83,12 +83,12 @@ class Structure:
         check_strength(self.section, self.strength)
 
     def in_si(self, unit: str) -> float:
-        """A unit of `Measure` as it is reckoned with (kg, s, length unit), in SI: the only conversion."""
+        """A unit of `Measure` in kg, s and the length unit, in SI: the only conversion."""
         return {"N": self.metre, "N m": self.metre**2, "Pa": 1 / self.metre}.get(unit, 1.0)
 
     @property
     def modulus(self) -> float | None:
-        """Elastic modulus in the units that are reckoned with; None where it is not known."""
+        """Elastic modulus in kg, s and the length unit; None where it is not known."""
         given = None if self.strength is None else self.strength.elastic_modulus
         return None if given is None else given / self.in_si("Pa")
 
@@ -98,7 +98,7 @@ class Structure:
         Notes
         -----
         Euler's, pi^2 E I / l^2, both ends pinned in the plane of motion and, on the safe side, out of it;
-        of bars so stocky that it exceeds half their yield load A Sy, Johnson's parabola,
+        of stocky bars, where it exceeds half the yield load A Sy, Johnson's parabola,
         A Sy (1 - A Sy / (4 Euler's)) (Shigley, *Mechanical Engineering Design*, secs. 4-12 and 4-13).
         """
         if self.section is None or self.strength is None or self.modulus is None:
@@ -156,5 +156,5 @@ class Structure:
 
 
 def _one_of(value: OneOrEach, index: int) -> float:
-    """One of a list, or what is meant for each."""
+    """One of a list, or the one value for all."""
     return float(value[index] if isinstance(value, Sequence) else value)

@@ -41,7 +41,7 @@ def check(problem: ProblemName) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
     from grashof.synth.proof.curve.asked import enclosed
-    from grashof.synth.results.advice import advice
+    from grashof.synth.results.explain import advice
     from grashof.synth.search.finder import refuse_unsearchable
     from grashof.wording.problem import summary
 

@@ -28,7 +28,7 @@ from grashof.problems.values.checks import counted
 if TYPE_CHECKING:
     from grashof.output.drawing import Drawer
     from grashof.synth import Result
-    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.run import Progress
 
 # Settings of a run that are arguments of `synthesize`.
@@ -54,7 +54,7 @@ def solve(problem: ProblemName, options: SolveOptions) -> ExitCode:
 
 def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> ExitCode:
     from grashof.output.drawing import drawer
-    from grashof.synth.results.so_far import SoFar
+    from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.history import StopReason
     from grashof.synth.search.journal import remove_record
 
@@ -77,7 +77,7 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
     ):
         deliver = partial(_deliver, text=text, settings=settings, folder=folder, drawings=options.drawings,
                           interrupted=interrupted, drawing=drawing)  # fmt: skip
-        so_far = SoFar(problem)
+        so_far = ReportedDesigns(problem)
         try:
             found = _found(problem, options, record, settings, interrupted, so_far)
         except Exception:  # it is reported after the list
@@ -94,7 +94,7 @@ def _found(
     record: Path,
     settings: dict[str, Any],
     interrupted: Interruption,
-    so_far: SoFar,
+    so_far: ReportedDesigns,
 ) -> Result:
     """The result of the search; `settings` gets the number of workers that a scheduler has."""
     from grashof.output.cluster import cluster
@@ -211,11 +211,11 @@ def _solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions
             stop=interrupted,
         )
     counts = f"{counted(made.solved, 'solve')}, {counted(made.designs, 'verified design')}"
-    next_step = f"grashof merge {folder} makes the list" if made.whole else "the same command continues it"
+    next_step = f"grashof merge {folder} makes the list" if made.complete else "the same command continues it"
     say(f"shard {shard}: {made.chunks} of {counted(made.of, 'chunk')}, {counts}; {next_step}", err=True)
     if interrupted():
         return interrupted.code
-    return ExitCode.OK if made.whole else ExitCode.NO_DESIGN
+    return ExitCode.OK if made.complete else ExitCode.NO_DESIGN
 
 
 def merge(

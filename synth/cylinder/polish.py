@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Plane, driven
-from grashof.synth.cylinder.room import Room
+from grashof.synth.cylinder.planes import Plane, Room, performance
 
 _STEP = 1e-7  # of differences
 _MOST = 60  # iterations of quadratic programmes
 _ROUNDS, _FIRST, _LEAST, _WIDEST = 40, 0.02, 1e-9, 0.3  # linear programmes, and their region of trust
-_GAIN = 1e-10  # sine of the lever angle; less is not worth another programme
+_GAIN = 1e-10  # sine of the lever angle; less does not justify another programme
 _WEIGHT = 300.0  # of a limit, in logarithms, against a lever
-_INSIDE = 1e-9  # limits are kept by so much in linear programmes, since they end on them
+_INSIDE = 1e-9  # margin to the limits in linear programmes, since they end on them
 
 Pivots = tuple[complex, complex]  # of the link, and the base
 
@@ -24,12 +23,12 @@ Pivots = tuple[complex, complex]  # of the link, and the base
 def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     """The least lever t made greatest with all levers at least t, by quadratic programmes (SLSQP).
 
-    The pivots that come of it may be beyond the limits.
+    The resulting pivots may be beyond the limits.
     """
     from scipy import optimize  # only here, and few problems have cylinders
 
     scale = _Scale.of(plane, room)
-    least = driven(plane, *(np.array([each]) for each in pivots)).least
+    least = performance(plane, *(np.array([each]) for each in pivots)).least
 
     def margins(z: FloatArray) -> FloatArray:
         levers, limits = scale.margins(z[:, :4])
@@ -63,12 +62,12 @@ def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     levers, limits = scale.margins(x[None])
     score = _score(levers, limits)
     for _ in range(_ROUNDS):
-        step, promised = _step(scale, x, trust, levers[0], limits[0])
-        if promised - score < _GAIN or trust < _LEAST:
+        step, predicted = _step(scale, x, trust, levers[0], limits[0])
+        if predicted - score < _GAIN or trust < _LEAST:
             break
         next_levers, next_limits = scale.margins((x + step)[None])
         reached = _score(next_levers, next_limits)
-        share = (reached - score) / (promised - score)
+        share = (reached - score) / (predicted - score)
         if share > 0:
             x, levers, limits, score = x + step, next_levers, next_limits, reached
         trust = trust / 3 if share < 0.25 else min(2 * trust, _WIDEST) if share > 0.75 else trust
@@ -82,7 +81,7 @@ def _score(levers: FloatArray, limits: FloatArray) -> float:
 def _step(
     scale: _Scale, x: FloatArray, trust: float, levers: FloatArray, limits: FloatArray
 ) -> tuple[FloatArray, float]:
-    """The step that is best where all is linear, and the score that it promises."""
+    """The best step of the linear model, and the score that it predicts."""
     from scipy import optimize
 
     count = len(limits)
@@ -147,9 +146,9 @@ class _Scale:
         return complex(points[0]), complex(bases[0])
 
     def margins(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Levers, and what the limits leave, of (N, 4) unknowns."""
+        """Levers, and margins to the limits, of (N, 4) unknowns."""
         points, bases = self.pivots(x)
-        found = driven(self.plane, points, bases)
+        found = performance(self.plane, points, bases)
         inside = 1 - (np.abs(points - self.room.middle) / self.room.reach) ** 2
         limits = np.concatenate([self.room.left(found), inside[:, None]], axis=1)
         return found.levers, np.clip(np.where(np.isnan(limits), 0.0, limits), -50.0, 50.0)

@@ -7,61 +7,57 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.cylinder.planes import Driven, Plane, driven
+from grashof.synth.cylinder.planes import Performance, Plane, Room, performance
 from grashof.synth.cylinder.polish import Pivots, by_linear, by_quadratic
-from grashof.synth.cylinder.room import Room
 from grashof.synth.theory.stopping import overdue
 
 _SAMPLES, _PARENTS, _CHILDREN, _ROUNDS = 6000, 48, 24, 24
-_FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and by how much it shrinks each round
+_FIRST, _NARROWER = 0.25, 0.78  # share of the room that a step spans, and its factor after each round
 _PENALTY = 10.0
 _BLOCK = 500
-_BEST, _APART = 2000, 0.12  # parents are so far apart, as a share of the room, and among the best
-_HOPELESS = -0.5  # score so far below zero is not mended
+_BEST, _APART = 2000, 0.12  # parents are among the best, and this far apart as a share of the room
+_HOPELESS = -0.5  # a lower score cannot be repaired
 _POLISHED, _AGAIN = 8, 3
 # Cylinders polished to the end, and how often linear programmes follow quadratic ones.
 _FINISHED, _TURNS = 2, 2
 _GAIN = 1e-9  # of the sine of the lever angle, below which a programme more is not worth it
-COARSE, FINE = 4, 2  # every so many samples are enough to compare, and to polish
-_OVER = 0.15  # of their box: so far beyond it bases are drawn, and put back on its sides, where the best are
+COARSE, FINE = 4, 2  # steps between samples that suffice to compare, and to polish
+_OVER = 0.15  # share of their box by which bases are drawn beyond it, to be put on its sides, as the best are
 _MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 
 
-def best_by_search(
-    plane: Plane, room: Room, seed: int, effort: float = 1.0
-) -> tuple[complex, complex, float] | None:
+def best_by_search(plane: Plane, room: Room, seed: int) -> tuple[complex, complex, float] | None:
     """Pivot of the link, base, and the sine of the worst lever angle, of the best cylinder found.
 
-    None where no sample, of which `effort` multiplies the number, and nothing near one drives the linkage
-    within the limits.
+    None where no sample, and nothing near one, drives the linkage within the limits.
     """
     rng = np.random.default_rng(seed)
-    found, near = _searched(plane, room, effort, rng)
+    found, near = _searched(plane, room, 1, rng)
     if found is None and near:
-        found, _ = _searched(plane, room, _MORE * effort, rng)
+        found, _ = _searched(plane, room, _MORE, rng)
     return found
 
 
 def _searched(
-    plane: Plane, room: Room, effort: float, rng: np.random.Generator
+    plane: Plane, room: Room, times: int, rng: np.random.Generator
 ) -> tuple[tuple[complex, complex, float] | None, bool]:
     """The best cylinder found, and where there is none, whether one came near."""
-    points, bases = _drawn(plane, room, round(_SAMPLES * effort), rng)
+    points, bases = _drawn(plane, room, _SAMPLES * times, rng)
     coarse, fine = _thinned(plane, COARSE), _thinned(plane, FINE)
     score = np.concatenate([
-        _score(room, driven(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
+        _score(room, performance(coarse, points[k : k + _BLOCK], bases[k : k + _BLOCK]))
         for k in range(0, len(points), _BLOCK)
     ])  # fmt: skip
-    best = np.argsort(-score)[: round(_BEST * effort)]
-    apart = _distinct(room, points[best], bases[best], round(_PARENTS * effort), _APART)
+    best = np.argsort(-score)[: _BEST * times]
+    apart = _distinct(room, points[best], bases[best], _PARENTS * times, _APART)
     best = best[apart]
     points, bases, score = _closed_in(coarse, room, points[best], bases[best], score[best], rng)
     if score[0] < _HOPELESS:
         return None, False
     tried = [(complex(points[k]), complex(bases[k])) for k in _distinct(room, points, bases, _POLISHED)]
     tried += [by_quadratic(coarse, room, pair) for pair in tried if not overdue()]
-    for _ in range(_AGAIN):  # it may go on from where it stopped
+    for _ in range(_AGAIN):  # it may continue from where it stopped
         tried += [by_quadratic(fine, room, pair) for pair in _best_of(fine, room, tried, 2) if not overdue()]
     for pair in _best_of(plane, room, tried, _FINISHED):  # between all samples
         tried += [] if overdue() else _finished(plane, room, pair)
@@ -73,32 +69,21 @@ def _searched(
 
 
 def _judged(plane: Plane, room: Room, tried: list[Pivots]) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-    """Cylinders put where they may be, and their least levers, negative beyond the limits."""
+    """Cylinders moved to where they are allowed, and their least levers, negative beyond the limits."""
     points, bases = room.kept(*(np.array(each) for each in zip(*tried, strict=True)))
-    found = driven(plane, points, bases)
+    found = performance(plane, points, bases)
     return points, bases, np.where(room.beyond(found) <= 0, found.least, -1.0)
 
 
 def _finished(plane: Plane, room: Room, first: Pivots) -> list[Pivots]:
-    """What linear programmes make of a cylinder, and quadratic ones in turn.
-
-    Linear ones are exact where many limits are active, and quadratic ones go on where few are.
-    """
+    """A cylinder after linear programmes (best where many limits are active) and quadratic ones (few)."""
     found = [by_linear(plane, room, first)]
-    for _ in range(_TURNS):
-        found.append(by_quadratic(plane, room, found[-1]))
-        if not _gains(plane, room, found):
-            break
-        found.append(by_linear(plane, room, found[-1]))
-        if not _gains(plane, room, found):
+    for programme in (by_quadratic, by_linear) * _TURNS:
+        found.append(programme(plane, room, found[-1]))
+        before, last = _judged(plane, room, found[-2:])[2]
+        if not last > before + _GAIN:
             break
     return found
-
-
-def _gains(plane: Plane, room: Room, found: list[Pivots]) -> bool:
-    """Whether the last cylinder is better than the one before."""
-    before, last = _judged(plane, room, found[-2:])[2]
-    return bool(last > before + _GAIN)
 
 
 def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[Pivots]:
@@ -106,12 +91,12 @@ def _best_of(plane: Plane, room: Room, tried: list[Pivots], count: int) -> list[
     return [tried[k] for k in np.argsort(-least, kind="stable")[:count]]
 
 
-def _score(room: Room, found: Driven) -> FloatArray:
+def _score(room: Room, found: Performance) -> FloatArray:
     return found.least - _PENALTY * room.beyond(found)
 
 
 def _thinned(plane: Plane, step: int) -> Plane:
-    """The plane at every so many samples, and at the last."""
+    """The plane at every `step`-th sample, and at the last."""
     kept = np.unique(np.append(np.arange(0, len(plane.axis), step), len(plane.axis) - 1))
     power = None if plane.power is None else plane.power[kept]
     frame = {name: getattr(plane, name)[kept] for name in ("origin", "axis", "slide", "turn")}
@@ -162,7 +147,7 @@ def _closed_in(
         tried_points = np.where(alone < 0.25, points[:, None], tried_points)
         tried_bases = np.where(alone > 0.75, bases[:, None], tried_bases)
         kept = room.kept(tried_points.ravel(), tried_bases.ravel())
-        found = _score(room, driven(plane, *kept)).reshape(shape)
+        found = _score(room, performance(plane, *kept)).reshape(shape)
         child = found.argmax(axis=1)
         better = found[parents, child] > score
         one, other = (each.reshape(shape)[parents, child] for each in kept)
@@ -176,7 +161,7 @@ def _closed_in(
 def _distinct(
     room: Room, points: ComplexArray, bases: ComplexArray, most: int, least: float = 0.02
 ) -> list[int]:
-    """At most so many cylinders that are not like a better one, in their order."""
+    """At most `most` cylinders, each at least `least` of the room from every better one, in their order."""
     size = float(np.hypot(*(room.high - room.low))) + room.reach
     kept: list[int] = []
     for k in range(len(points)):

@@ -1,1 +1,1 @@
-"""Designs: judged, ranked, told as tables."""
+"""Designs: judged, ranked, sorted into families, listed in tables."""

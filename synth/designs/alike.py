@@ -1,4 +1,4 @@
-"""Designs that do a task as another one does it: driven from its other side, or its cognates."""
+"""Designs that do a task exactly as another one: driven from its other side, or its cognates."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from grashof.synth.quantities.screening import (
 )
 from grashof.synth.theory.stopping import overdue
 
-# What one position does not know of.
+# Requirements that one position cannot show.
 _OF_MOTION = [
     GROUPS.index(name) for name in ("driver_sense", "driver_rotation_deg", "output_swing_deg", "stroke")
 ]
@@ -31,7 +31,7 @@ _OF_MOTION = [
 def verified_alike(
     scaled: ScaledProblem, candidate: Candidate, most_error: float = np.inf
 ) -> tuple[Candidate, ...]:
-    """Other linkages that lead the coupler point, or the body, as a verified design does; verified, too."""
+    """Verified linkages that lead the coupler point, or the body, as a verified design does."""
     start = Start.of_linkage(scaled, candidate.linkage, candidate.verdict)
     came_from: dict[str, Any] = {"start": candidate.start, "iterations": candidate.iterations}
     body, found = scaled.has_angles, list[Candidate]()
@@ -60,7 +60,7 @@ def _as_near(scaled: ScaledProblem, other: Candidate, candidate: Candidate) -> b
 
 
 def _at_once(scaled: ScaledProblem, points: ComplexArray) -> Screened:
-    """A linkage, screened where it stands: lengths, pivots, rotatability, which are cheap to know."""
+    """A linkage screened in one position: lengths, pivots, rotatability, which are cheap to compute."""
     o2, o4, a, b, p = points[:, None]
     one, none = np.zeros((1, 1), dtype=np.int64), np.zeros(1)
     theta2 = np.angle(a - o2)[:, None]

@@ -15,8 +15,9 @@ from grashof.analysis.judge.measures import Values
 from grashof.problems import Linkage, Problem
 from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
 from grashof.problems.values.value_bases import Displayed
-from grashof.synth.quantities.scores import same_error
 from grashof.synth.theory.distinct import signature
+
+SAME_ERROR = 1e-6  # sizes: least-squares errors up to it count as equal, or up to a greater tolerance
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -36,18 +37,18 @@ class Candidate(Displayed):
     cognate_of : str
         Id of the design whose coupler curve this one traces too; empty for the others.
     best_at : str
-        What a design of a list is best at, such as "least error", or "objective" where it does not come
+        The strength of a design in a list, such as "least error", or "objective" where it does not come
         first; empty for the others.
     caution : str
-        Why a design comes last in a list though it does all that is asked, such as its size; else empty.
+        Why a design comes last in a list though it meets all requirements, such as its size; else empty.
     family : str
         Id of the best design of those like it; empty before designs are sorted into families.
     region : int
         Number of the region that it lies in, from 1; 0 where regions are not known, or it lies in none.
     own_objective : float, optional
-        What the user's own objective makes of it, less is better; None where there is none.
+        Its value under the user's own objective, less is better; None without one.
     values : Values
-        Its quantities, by their keys; each is measured when it is asked for.
+        Its quantities, by their keys; each is measured when it is first read.
     """
 
     linkage: Linkage
@@ -94,10 +95,10 @@ class Candidate(Displayed):
         return f"{self.id}: {self.verdict.grashof_class}, {lengths}, mu {worst:.1f} deg over the task"
 
     def error(self, problem: Problem) -> float:
-        """What the design misses the task by, in sizes of the task.
+        """The error of the design, in sizes of the task.
 
-        The greatest position error where every target is to be met, or else the root mean square of
-        what least squares makes small. Of a function rad, or shares of the whole travel.
+        The greatest position error where every target is to be met, or else the root mean square that
+        least squares minimises. Of a function rad, or shares of the full travel.
         """
         if problem.task.has_output.any():
             return self._output_error(problem)
@@ -106,7 +107,7 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
 
     def _output_error(self, problem: Problem) -> float:
-        """Of a function: the greatest at the pairs that are to be met, or what its norm counts."""
+        """Error of a function: the greatest at the pairs that are to be met, or by its norm."""
         unit = problem.task.output_unit
         if problem.requirements.is_exact(problem.task):
             return float(self.verdict.output_error.max()) / unit
@@ -115,7 +116,7 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / unit
 
     def objective(self, problem: Problem) -> float:
-        """How good the design is by the objective, whatever its error; greater is better."""
+        """Score by the objective, whatever the error; greater is better."""
         score = sum(
             weight * goal.better * self.values[goal.key] / problem.scale(goal)
             for goal, weight in problem.goals
@@ -125,16 +126,16 @@ class Candidate(Displayed):
         return -np.inf if np.isnan(score) else float(score)
 
     def asked_by(self, problem: Problem) -> Candidate:
-        """The same with the values that another problem asks for; the verdict stays."""
+        """The design with the values of another problem; the verdict stays."""
         return self if problem is self.problem else replace(self, problem=problem)
 
     def valued(self, objective: Callable[[Design], Any]) -> Candidate:
-        """The same with what the user's own objective makes of it."""
+        """The design with its value under the user's own objective."""
         design = Design.judged(self.linkage, self.verdict)
         return replace(self, own_objective=greatest(objective, design, "objective"))
 
     def score(self, problem: Problem) -> float:
-        """How far a search has come with this design; greater is better.
+        """Score of the design in a search; greater is better.
 
         The objective, or in least squares the error, none up to `same_error`. Designs are ranked by
         `ranking_key`.
@@ -143,3 +144,9 @@ class Candidate(Displayed):
             return self.objective(problem)
         error = self.error(problem)
         return 0.0 if error <= same_error(problem) else -error
+
+
+def same_error(problem: Problem) -> float:
+    """Errors up to this one count as equal; in sizes of the task."""
+    tolerance = problem.requirements.tolerance
+    return tolerance if problem.requirements.is_exact(problem.task) else max(SAME_ERROR, tolerance)

@@ -1,4 +1,4 @@
-"""The cylinder of a design: the best one for its task motion, where the problem asks for one."""
+"""The cylinder of a design: the best one for its task motion, where the problem requests one."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from grashof.analysis import Verdict, inverse_dynamics, stated_loads, stated_masses
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.analysis.forces.stated import BeyondLoadError
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends
+from grashof.analysis.forces.from_spec import BeyondLoadError
+from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends
 from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -23,7 +23,7 @@ _OF_LINK2 = {"same_branch", "order"}  # and one on link 3 or 4 alone
 
 
 def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylinder | None:
-    """The best cylinder for a linkage judged without one, if one is asked for and found."""
+    """The best cylinder for a linkage judged without one, if one is requested and found."""
     left = {each.requirement for each in verdict.defects if not each.requirement.startswith(_OWN)}
     if problem.driver is None:
         return None

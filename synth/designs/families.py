@@ -7,13 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis import solve_position
-from grashof.problems import FourBar, Problem, Task
+from grashof.analysis import rotatability, solve_position
+from grashof.problems import FourBar, Objective, Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.requirements.requirements import Rotatability, TransmissionOver
+from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.caution import caution
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.theory.cognates import same_curve
 from grashof.synth.theory.distinct import apart, mirrored, signature
@@ -23,6 +24,8 @@ ALIKE = 0.05  # share of the largest number of two designs by which they differ 
 # Of the size of the task, between joints: near one another, and as good as in one place; deg.
 AKIN, SHARED, SAME_ANGLE = 0.15, 0.03, 1.0
 OBJECTIVE = "objective"
+# In sizes of the task; rad of the driver; rad over the turn of a full crank; as `rotatability_margin`.
+MOST_SIZE, LEAST_ROTATION, LEAST_TRANSMISSION, LEAST_MARGIN = 3.0, np.radians(15.0), np.radians(15.0), 0.01
 
 
 def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
@@ -45,7 +48,7 @@ def listed(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate
 
 
 def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
-    """Which design is the best of the family of each, shape (n,): it is like it or akin to it.
+    """Index of the best design of the family of each, shape (n,): one that is like it or akin to it.
 
     Like it are those of `best_alike`. Akin are four-bars whose pivots and moving joints at the first target
     are near those of the other, in sizes of the task, also with driver and output exchanged; and those that
@@ -65,7 +68,7 @@ def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
 
 
 def _akin(heads: Sequence[Candidate], size: float) -> IntArray:
-    """Which of some designs, best first, is the first that each one is akin to, shape (n,)."""
+    """Index of the first design, best first, that each one is akin to, shape (n,)."""
     dyads = np.array([_dyads(each) for each in heads]) / size
     mu = np.degrees([each.verdict.transmission_min_task for each in heads])
     best = np.arange(len(heads))
@@ -89,12 +92,12 @@ def _dyads(candidate: Candidate) -> FloatArray:
 
 
 def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mechanism) -> IntArray:
-    """Which design is the best of those like each one, all of one kind.
+    """Index of the best design of those like each one, all of one kind.
 
     Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same coupler
     curve (cognates); also when the one has first to be mirrored or turned as the task allows (`symmetries`).
-    All members of a family are like its best one; what is only like another member is not in it. Signatures
-    (n, 9), best first, have pivots measured from the middle of the task.
+    All members of a family are like its best one; a design like another member alone is not in it.
+    Signatures (n, 9), best first, have pivots measured from the middle of the task.
     """
     maps = symmetries(task)
     best = np.arange(len(signatures))
@@ -112,8 +115,8 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
 
 
 def _alike_in_shape(curves: FloatArray, others: FloatArray) -> BoolArray:
-    """Which of others (n, 9) any of the curves' (k, 9) may be like."""
-    # by what rotations and reflections leave as it is: far fewer are left for the closer look
+    """Whether any of the curves (k, 9) may be like each of others (n, 9)."""
+    # by invariants of rotations and reflections: far fewer are left for the full comparison
     (one, reach), (other, others_reach) = _shape(curves), _shape(others)
     differ = np.abs(one[:, None] - other).max(axis=-1)
     alike: BoolArray = (differ < ALIKE * np.maximum(reach[:, None], others_reach)).any(axis=0)
@@ -126,3 +129,29 @@ def _shape(signatures: FloatArray) -> tuple[FloatArray, FloatArray]:
     pivots = np.hypot(signatures[:, [0, 2]], signatures[:, [1, 3]])
     reach: FloatArray = np.abs(np.concatenate([shape, pivots], axis=1)).max(axis=1)
     return shape, reach
+
+
+def caution(problem: Problem, candidate: Candidate) -> str:
+    """Why a design is hard to build or to drive, in words; else empty. Such designs come last in a list."""
+    # designs for an objective that the user states are judged by that
+    if candidate.own_objective is not None or problem.objective not in (Objective(), SMALLEST):
+        return ""
+    wanted, verdict, found = problem.requirements, candidate.verdict, list[str]()
+    # functions and strokes have no size to compare with, lists by least squares offer small designs anyway
+    sized = problem.task.in_plane and problem.by_objective and wanted.size is None
+    if sized and verdict.size > MOST_SIZE * problem.task.size:
+        found.append(f"{verdict.size / problem.task.size:.1f} times the size of the task")
+    turned = float(np.ptp(verdict.theta2))
+    # quantities that the user limits are judged by those limits alone
+    chosen = wanted.driver_rotation_deg is not None or problem.task.is_timed
+    if not chosen and turned < LEAST_ROTATION:
+        found.append(f"the driver turns by {np.degrees(turned):.1f} deg alone")
+    if wanted.rotatability is not Rotatability.ANY and verdict.full_rotation:
+        limited = wanted.transmission_over is TransmissionOver.CYCLE and wanted.transmission_min_deg > 0
+        if not limited and verdict.transmission_min_cycle < LEAST_TRANSMISSION:
+            worst = np.degrees(verdict.transmission_min_cycle)
+            found.append(f"transmission angle {worst:.1f} deg somewhere in the turn")
+        margin = float(rotatability(candidate.linkage).min())
+        if wanted.rotatability_margin == problem.task.usual_margin and margin < LEAST_MARGIN:
+            found.append(f"it nearly folds: {margin:.4f} left of its lengths")
+    return "; ".join(found)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import Cylinder, Linkage, ProblemError
+from grashof.problems import Cylinder, Linkage, Problem, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.driving import cylinder_for
@@ -17,6 +17,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import overdue
 
 ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ
+MISSED = {"within", "angle_within_deg", "exact"}  # requirements of defects where a target is missed
 
 
 def judged(
@@ -32,8 +33,8 @@ def judged(
     """A design with the verdict on it; None where two pivots coincide.
 
     O2, O4, and A, B, P at the first target are (5,) and the error that is allowed (root mean square) is in
-    sizes, the body angle in rad. Whole poses do not need that: the first one fixes how the body stands to the
-    coupler. `start` and `iterations` are what it came from.
+    sizes, the body angle in rad; full poses ignore it, since the first one fixes the body on the coupler.
+    `start` and `iterations` state its origin.
     """
     given = None if scaled.motion is not None else np.array(body_angle)
     try:
@@ -57,7 +58,7 @@ def judged_linkage(
 def driven_verdict(
     scaled: ScaledProblem, linkage: Linkage, most_error: float = np.inf, known: Cylinder | None = None
 ) -> Verdict:
-    """The judge's verdict on a linkage with the cylinder known, or else the best, where one is asked for."""
+    """The judge's verdict on a linkage with the cylinder `known`, or else the best, where requested."""
     verdict = verdict_on(scaled, linkage, most_error, known)
     if known is not None or scaled.problem.driver is None:
         return verdict
@@ -84,7 +85,7 @@ def judged_again(scaled: ScaledProblem, candidate: Candidate, most_error: float 
 def judged_in_time(
     scaled: ScaledProblem, found: Sequence[Candidate], most_error: float = np.inf
 ) -> list[Candidate]:
-    """As `judged_again`, in their order; where that has to be left off, those of the least error."""
+    """As `judged_again`, in their order; where time runs out, those of the least error."""
     errors, judged = [one.error(one.problem) for one in found], dict[int, Candidate]()
     for k in sorted(range(len(found)), key=errors.__getitem__):
         if judged and overdue():
@@ -94,7 +95,7 @@ def judged_in_time(
 
 
 def alike(one: Verdict, other: Verdict, size: float) -> bool:
-    """Whether verdicts are the same but for rounding, which every kind of processor does in its own way."""
+    """Whether verdicts are the same but for rounding, which differs between processors."""
     scales = {"position_error": size, "size": size, "square": size**2}  # with which lengths are compared
 
     def near(x: Any, y: Any, scale: float) -> bool:
@@ -118,5 +119,12 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
 
 
 def _valued(scaled: ScaledProblem, candidate: Candidate) -> Candidate:
-    """The same with what the user's own objective makes of it, where there is one."""
+    """The design with its value under the user's own objective, where there is one."""
     return candidate if scaled.own_objective is None else candidate.valued(scaled.own_objective)
+
+
+def shares(problem: Problem, verdict: Verdict) -> tuple[float, float]:
+    """Greatest ratio of a miss to its zone, of positions and of angles."""
+    place, turn = np.ones((2, len(problem.task))) if problem.zones is None else problem.zones
+    turned = np.nanmax(verdict.angle_error / turn, initial=0.0)
+    return float(np.nanmax(verdict.position_error / place)), float(turned)

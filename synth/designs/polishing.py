@@ -1,4 +1,4 @@
-"""Polishing: starts and solves moved onto their targets by the least amount that does it."""
+"""Polishing: starts and solves moved onto their targets by the least amount."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from grashof.synth.theory.burmester import Dyads, polish
 from grashof.synth.theory.polish import Polished, Wish, polish_path
 
 NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
-CLOSE = 1e-4  # sizes: a least-squares design so near to its targets can be made exact
+CLOSE = 1e-4  # sizes: error up to which a least-squares design can be made exact
 
 
 def polished_start(scaled: ScaledProblem, start: Start) -> Start:
@@ -31,7 +31,7 @@ def polished_start(scaled: ScaledProblem, start: Start) -> Start:
 
 
 def polished_solve(scaled: ScaledProblem, start: Start, solve: Solve) -> Solve:
-    """A solve moved onto the targets; the same where that leads astray, or targets may be missed."""
+    """A solve moved onto the targets; unchanged where that leads astray, or targets may be missed."""
     if scaled.motion is not None:
         points = np.array(solve.points)
         dyads = polish(scaled.motion, Dyads(moving=points[2:4], ground=points[:2]))
@@ -58,7 +58,7 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
         assembly = np.ones(len(theta2))
     else:
         assembly = np.where((turned.conj() * (at_a + abs(b - a) * turned - o4)).imag >= 0, 1.0, -1.0)
-    wish = Wish(
+    targets = Wish(
         points=scaled.targets,
         has_point=scaled.weights > 0,
         turns=scaled.turns,
@@ -66,5 +66,5 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
         timed=scaled.timed,
         closure=scaled.kind.closure,
     )
-    polished = polish_path(points, theta2, linkage.body_angle, assembly, wish)
+    polished = polish_path(points, theta2, linkage.body_angle, assembly, targets)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None

@@ -8,29 +8,28 @@ from typing import Any
 import numpy as np
 
 from grashof.analysis import Design
-from grashof.analysis.judge.limits import SLACK
+from grashof.analysis.judge.measures import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.specs.problem import SMALLEST
-from grashof.synth.designs.candidate import Candidate
-from grashof.synth.quantities.scores import same_error
+from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.theory.distinct import DISTINCT, pick_apart, signature
 
 BLOCK = 256  # designs compared with all others at once
 # Digits that count, the others being rounding noise: of errors in sizes and of sizes, of objectives (a right
-# angle is 1, so that the last one is 1e-6 deg), and of what an engineer tells apart.
+# angle is 1, so that the last one is 1e-6 deg), and of quantities that an engineer distinguishes.
 DIGITS, _OBJECTIVE, _SHOWN = 9, 8, 6
 DEGREES = 1e-6  # up to which transmission angles count as equal
 
 
 def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
-    """What designs are sorted by, best first: the one place that decides which of two is better.
+    """The sort key of designs, best first: the one place that decides which of two is better.
 
-    The error, none up to `same_error`; the objective; the mechanical advantage where the transmission angle
-    is the greatest there is, as it always is at a slide through O4; the smaller size; and the dimensions,
-    so that no two designs tie. What differs by rounding alone ties: two processors rank alike.
+    The error, zero up to `same_error`; the objective; the mechanical advantage where the transmission angle
+    is a right angle, as it always is at a slide through O4; the smaller size; and the dimensions, so that no
+    two designs tie. Values that differ by rounding alone tie, so that two processors rank alike.
     """
     error, objective = candidate.error(problem), candidate.objective(problem)
     bounded = problem.by_objective and not problem.requirements.is_exact(problem.task)
@@ -45,7 +44,7 @@ def ranking_key(problem: Problem, candidate: Candidate) -> tuple[float, ...]:
 
 
 def _rounded(value: float, digits: int) -> float:
-    """A value to so many significant digits."""
+    """A value to some significant digits."""
     return float(f"{value:.{digits}g}")
 
 
@@ -56,7 +55,7 @@ def ranked(
 ) -> tuple[Candidate, ...]:
     """Distinct candidates, best first; of two that are not distinct the better one stays.
 
-    The user's own `objective` of a `Design` (smaller is better) stands in place of the problem's.
+    The user's own `objective` of a `Design` (smaller is better) replaces the problem's.
     """
     if objective is not None:
         candidates = [candidate.valued(objective) for candidate in candidates]  # they keep the values
@@ -67,7 +66,7 @@ def ranked(
 def distinct(
     problem: Problem, candidates: Sequence[Candidate], least: float, most: int
 ) -> tuple[Candidate, ...]:
-    """At most so many of some candidates that are at least so far apart, in their order."""
+    """At most `most` candidates, each at least `least` from the others, in their order."""
     if not candidates:
         return ()
     origin = problem.task.middle
@@ -77,14 +76,14 @@ def distinct(
 
 
 def pareto_goals(problem: Problem) -> list[Quantity]:
-    """What the Pareto mark is about besides the error: transmission, size, torque, and what is weighed."""
+    """The goals of the Pareto mark besides the error: transmission, size, torque, and weighted quantities."""
     keys = ["transmission", "size", *(["torque_peak"] if problem.dynamics is not None else [])]
     usual = [problem.requirements.as_required(QUANTITIES[key]) for key in keys]
     return list(dict.fromkeys([*usual, *(goal for goal, _ in problem.goals)]))
 
 
 def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArray:
-    """Which candidates (n,) no other one beats in error, from `same_error` up, and `pareto_goals`."""
+    """Whether each candidate (n,) is Pareto-optimal in error, from `same_error` up, and `pareto_goals`."""
     goals = pareto_goals(problem)
     costs = np.array([
         (
@@ -94,12 +93,12 @@ def pareto_optimal(problem: Problem, candidates: Sequence[Candidate]) -> BoolArr
         )
         for candidate in candidates
     ]).reshape(-1, 2 + len(goals))  # fmt: skip
-    costs[np.isnan(costs)] = np.inf  # what has no value is worst
+    costs[np.isnan(costs)] = np.inf  # a missing value is worst
     return ~_beaten(costs)
 
 
 def _beaten(costs: FloatArray) -> BoolArray:
-    """Which rows of costs (n, C) another one is no worse than in any and better than in some; shape (n,)."""
+    """Whether another row of costs (n, C) is no worse in any and better in some; shape (n,)."""
     beaten: BoolArray = np.zeros(len(costs), dtype=bool)
     for first in range(0, len(costs), BLOCK):  # all pairs at once take memory with the square of the list
         some = costs[first : first + BLOCK, None]

@@ -19,51 +19,52 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LISTED = tuple(quantity for quantity in QUANTITIES.values() if quantity.listed)
-# Columns that are not quantities and their names in words, by the quantity that follows them.
+# Columns that are not quantities by the quantity that follows them: their names in words, and explanations.
 _BEFORE = {
     "o2_x": {
-        "rank": "rank",
-        "id": "id",
-        "mechanism": "kind of linkage",
-        "family": "family",
-        "region": "region",
-        "grashof_class": "Grashof class",
-        "direction": "sense of the driver (+1 counter-clockwise)",
-        "assembly": "assembly mode (+1 or −1)",
+        "rank": ("rank", "place in the list, from 1"),
+        "id": ("id", "name of the design, the same in every list that has it: `candidates.json#df2467fa`"),
+        "mechanism": ("kind of linkage", ""),
+        "family": ("family", "id of the best of the designs that are like this one"),
+        "region": (
+            "region",
+            "number of the connected set of designs that contains it, from 1; of four poses of a four-bar",
+        ),
+        "grashof_class": (
+            "Grashof class",
+            "crank-rocker, double-crank and so on; with a slide crank-shaper, Whitworth and so on",
+        ),
+        "direction": ("sense of the driver (+1 counter-clockwise)", "from the first target to the last"),
+        "assembly": (
+            "assembly mode (+1 or −1)",
+            "B left (+1) or right (-1) of the line from A to O4",
+        ),
     },
-    "cylinder_base_x": {"cylinder_on": "cylinder, on link"},
+    "cylinder_base_x": {"cylinder_on": ("cylinder, on link", "")},
     "omega4_max": {
-        "circuit_ok": "all targets on one circuit",
-        "branch_ok": "all targets on one branch",
-        "order_ok": "targets in their order",
-        "full_rotation": "driver turns fully",
+        "circuit_ok": ("all targets on one circuit", ""),
+        "branch_ok": ("all targets on one branch", ""),
+        "order_ok": ("targets in their order", ""),
+        "full_rotation": ("driver turns fully", ""),
     },
     "hausdorff": {
-        "pareto": "Pareto-optimal",
-        "cognate_of": "cognate of",
-        "start": "start of the search",
-        "iterations": "iterations from that start",
-        "best_at": "best at",
-        "caution": "caution",
+        "pareto": ("Pareto-optimal", "nothing in the list is better in every goal"),
+        "cognate_of": ("cognate of", "id of the design that has the same coupler curve"),
+        "start": ("start of the search", "which one it came from"),
+        "iterations": ("iterations from that start", "that Ipopt needed"),
+        "best_at": (
+            "best at",
+            "the strength of a design, such as the least error; `objective` for the best one by the "
+            "objective where it does not come first",
+        ),
+        "caution": (
+            "caution",
+            "why a design comes after all others, such as its size; empty for those that do not",
+        ),
     },
 }
-# What those of them are that their words do not tell.
-ABOUT = {
-    "rank": "place in the list, from 1",
-    "id": "name of the design, the same in every list that has it: `candidates.json#df2467fa`",
-    "family": "id of the best of the designs that are like this one",
-    "region": "number of the connected set of designs that it lies in, from 1; of four poses of a four-bar",
-    "grashof_class": "crank-rocker, double-crank and so on; with a slide crank-shaper, Whitworth and so on",
-    "direction": "from the first target to the last",
-    "assembly": "B left (+1) or right (-1) of the line from A to O4",
-    "pareto": "nothing in the list is better in every goal",
-    "cognate_of": "id of the design that has the same coupler curve",
-    "start": "which one it came from",
-    "iterations": "that Ipopt needed",
-    "best_at": "what a design is best at, such as the least error; `objective` for the best one by the "
-    "objective where it does not come first",
-    "caution": "why a design comes after all others, such as its size; empty for those that do not",
-}
+_WORDS = {column: words for before in _BEFORE.values() for column, words in before.items()}
+ABOUT = {column: about for column, (_, about) in _WORDS.items() if about}
 # Columns without a meaning for a task stay empty.
 COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.key, ()), quantity.column))
 # The user's own objective, a last column where there is one.
@@ -72,7 +73,7 @@ OWN = Quantity(
 )
 # Every column in words; of nearest misses also what they miss.
 NAMES: dict[str, str] = {
-    **{column: words for before in _BEFORE.values() for column, words in before.items()},
+    **{column: name for column, (name, _) in _WORDS.items()},
     **{quantity.column: quantity.full for quantity in (*LISTED, OWN)},
     "misses": "misses",
 }
@@ -124,12 +125,12 @@ def to_frame(problem: Problem, candidates: Sequence[Candidate]) -> pd.DataFrame:
 
 
 def known(value: Any) -> bool:
-    """Whether a row has this; what is infinite is known."""
+    """Whether a row has this value; an infinite one is known."""
     return value is not None and value == value
 
 
 def facts(candidate: Candidate) -> dict[str, Any]:
-    """What a design is called and what it is like, by column; None where it is unknown."""
+    """Names and classes of a design, by column; None where unknown."""
     verdict = candidate.verdict
     driven = {} if verdict.cylinder is None else {"cylinder_on": verdict.cylinder.on}
     return {

@@ -1,1 +1,1 @@
-"""A linkage in the search: dyads, instants, and the numbers they are written for."""
+"""A linkage in the search: dyads, instants, and numbers with derivatives."""

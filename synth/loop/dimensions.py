@@ -1,4 +1,4 @@
-"""A loop by its dimensions, closed at many driver angles, and how it follows them."""
+"""A loop given by its dimensions, closed at many driver angles, with its derivatives by them."""
 
 from __future__ import annotations
 
@@ -14,39 +14,26 @@ from grashof.synth.loop.dyad import Bars, Block, ClosingDyad, Slider, as_complex
 
 @dataclass(frozen=True, slots=True)
 class SizedLoop:
-    """A loop at N driver angles, closed, and how it follows its dimensions; NaN where it is open.
+    """A loop closed at N driver angles, with its derivatives by the dimensions; NaN where it is open."""
 
-    Parameters
-    ----------
-    coupler : ndarray of complex, shape (N,)
-        From A to B.
-    e3, e4 : ndarray of complex, shape (N,)
-        Directions of the coupler, and of O4B or across what slides.
-    rod : ndarray, shape (N,)
-        From A to B along e3.
-    moved : tuple of ndarray, shape (N,)
-        For each of the dimensions (see `Closure.dimensions`) by how much B, moved with it, gets out of its
-        place along e4.
-    o4 : complex
-        Of a slider-crank the point of the slide's line that lies r3 ahead of B at the first angle.
-    """
-
-    coupler: ComplexArray
-    e3: ComplexArray
-    e4: ComplexArray
-    rod: FloatArray
+    coupler: ComplexArray  # (N,), from A to B
+    e3: ComplexArray  # (N,), direction of the coupler
+    e4: ComplexArray  # (N,), direction of O4B, or across what slides
+    rod: FloatArray  # (N,), from A to B along e3
+    # (N,) each: for every dimension (see `Closure.dimensions`) how far B, moved with it, leaves its place
+    # along e4
     moved: tuple[FloatArray | float, ...]
-    o4: complex
+    o4: complex  # of a slider-crank the point of the slide's line that lies r3 ahead of B at the first angle
 
 
 class Closure(ABC):
-    """How the loop of a kind of linkage follows its dimensions."""
+    """The closure of the loop of a kind of linkage by its dimensions."""
 
     dyad: ClassVar[ClosingDyad]
 
     @abstractmethod
     def dimensions(self, points: ComplexArray) -> FloatArray:
-        """What it is given by, from O2, O4, A, B, P (5,): O2 (2), O4 (2), r2, r3, r4; shape (7,).
+        """The dimensions, from O2, O4, A, B, P (5,): O2 (2), O4 (2), r2, r3, r4; shape (7,).
 
         Of slider kinds the offset in place of r4; of a slider-crank theta1 and nothing in place of O4, of an
         inverted one nothing in place of r3.

@@ -14,17 +14,9 @@ from grashof.problems.values.arrays import FloatArray
 class Dual(NDArrayOperatorsMixin):
     """Values (n, K) and their slopes (n, K, M) by M unknowns; K may be 1 in either where it is broadcast.
 
-    Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3). Slopes are
-    computed when they are asked for: of limits that are kept nobody does.
+    Forward differentiation (Griewank & Walther, *Evaluating Derivatives*, 2008, chapter 3). Slopes may be
+    functions, called when needed: those of limits that are kept are not.
 
-    Parameters
-    ----------
-    value : ndarray, shape (n, K)
-    slope : ndarray, shape (n, K, M), or callable
-        Callable: computes it.
-
-    Examples
-    --------
     >>> x = Dual(np.array([[3.0]]), np.array([[[1.0, 0.0]]]))
     >>> y = Dual(np.array([[4.0]]), np.array([[[0.0, 1.0]]]))
     >>> np.hypot(x, 2 * y - 4).slope.tolist()

@@ -47,8 +47,8 @@ class Sizes(Sized):
         self.double_crank = (r1 > 0) & (r2 > r1) if double_crank is None else double_crank
 
 
-class Standing(Sized):
-    """Lengths of a loop, and where it stands."""
+class PlacedLoop(Sized):
+    """Lengths of a loop, and its place."""
 
     o2: Vector
     o4: Vector  # where it is a pivot
@@ -71,7 +71,7 @@ class ClosingDyad(ABC):
 
     @property
     def one_assembly(self) -> bool:
-        """Whether the other is the same linkage with its slide, or its rod, taken the other way round."""
+        """Whether the other assembly is the same linkage with its slide, or its rod, reversed."""
         return self.bars < 2
 
     @abstractmethod
@@ -83,33 +83,33 @@ class ClosingDyad(ABC):
         The ground is O2O4, or the unit vector across a slide, to its left; the assembly is +1 or -1.
         """
 
-    def ground(self, at: Standing) -> Vector:
-        """As `closed` takes it."""
+    def ground(self, at: PlacedLoop) -> Vector:
+        """The ground of `closed`."""
         return at.o4 - at.o2
 
-    def b(self, at: Standing, a: Vector, along: Vector) -> Vector:
+    def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """B where link 3 has a direction, a unit vector, whether the loop closes or not."""
         placed: Vector = a + at.r3 * along
         return placed
 
     @abstractmethod
-    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+    def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         """From O4 to B, or the unit vector across what slides, where link 3 has a direction."""
 
     @abstractmethod
-    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:
-        """What is zero where the loop closes, with B and `across` where link 3 has a direction.
+    def gap(self, at: PlacedLoop, a: Vector, b: Vector, across: Vector) -> Any:
+        """The residual of the closure, with B and `across` where link 3 has a direction.
 
         Of the two equations theta4, or the travel of the slide, is eliminated.
         """
 
     @abstractmethod
-    def reach_at(self, at: Standing, a: Vector) -> Any:
-        """What `reach` gives, from the place of A."""
+    def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
+        """The value of `reach`, from the place of A."""
 
     @abstractmethod
     def most_lever(self, sizes: Sized) -> Any:
-        """What AB x `across`, whose sign is the assembly, comes to at its greatest, or of its order."""
+        """The greatest value of AB x `across`, whose sign is the assembly, or its order of magnitude."""
 
     @abstractmethod
     def rates(self, loop: Closed, crank: Vector, r4: Any) -> Rates:
@@ -121,19 +121,19 @@ class ClosingDyad(ABC):
 
     @abstractmethod
     def driven_by(self, loop: Closed, moved: Vector) -> Any:
-        """Derivative of the output by what moves B, held by link 3, by a vector; times the lever."""
+        """Change of the output as B, held by link 3, is moved by a vector; times the lever."""
 
     @abstractmethod
     def reach(self, sizes: Sized, angle: Any) -> Any:
-        """What decides the transmission angle, with O2A turned by an angle from the ground line."""
+        """The length that decides the transmission angle, with O2A at an angle from the ground line."""
 
     @abstractmethod
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
-        """The same with O2A folded over the ground line, and stretched along it."""
+        """The reach with O2A folded over the ground line, and stretched along it."""
 
     @abstractmethod
     def cos_mu(self, sizes: Sized, reach: Any) -> Any:
-        """Cosine of the transmission angle from there; beyond 1 the loop does not close."""
+        """Cosine of the transmission angle from the reach; beyond 1 the loop does not close."""
 
     @abstractmethod
     def margins(self, sizes: Sized) -> tuple[Any, ...]:
@@ -161,7 +161,7 @@ class _Pivoted(ClosingDyad):
     def reach(self, sizes: Sized, angle: Any) -> Any:
         return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
-    def reach_at(self, at: Standing, a: Vector) -> Any:
+    def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
         return (a - at.o4).square
 
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
@@ -184,10 +184,10 @@ class Bars(_Pivoted):
         output = coupler - diagonal
         return Closed(coupler, output, r3, height2)
 
-    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+    def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         return b - at.o4
 
-    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRR
+    def gap(self, at: PlacedLoop, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRR
         return (across.square - at.r4**2) / 2
 
     def most_lever(self, sizes: Sized) -> Any:
@@ -230,16 +230,16 @@ class Slider(ClosingDyad):
         coupler = apart * ground + (assembly * root(ahead2)) * -ground.left
         return Closed(coupler, ground, r3, ahead2)
 
-    def ground(self, at: Standing) -> Vector:
+    def ground(self, at: PlacedLoop) -> Vector:
         return at.normal
 
-    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+    def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         return at.normal
 
-    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRP
+    def gap(self, at: PlacedLoop, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RRP
         return (b - at.o2).dot(across) - at.offset
 
-    def reach_at(self, at: Standing, a: Vector) -> Any:
+    def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
         return at.offset - (a - at.o2).dot(at.normal)
 
     def most_lever(self, sizes: Sized) -> Any:
@@ -286,15 +286,15 @@ class Block(_Pivoted):
         along = (rod * diagonal + r4 * diagonal.left) / square
         return Closed(along, along.left, rod, rod2)
 
-    def b(self, at: Standing, a: Vector, along: Vector) -> Vector:
+    def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """The foot of O4 on the rod."""
         foot: Vector = at.o4 + at.offset * along.left
         return foot
 
-    def across(self, at: Standing, b: Vector, along: Vector) -> Vector:
+    def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         return along.left
 
-    def gap(self, at: Standing, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RPR
+    def gap(self, at: PlacedLoop, a: Vector, b: Vector, across: Vector) -> Any:  # closure: RPR
         return (a - at.o4).dot(across) - at.offset
 
     def most_lever(self, sizes: Sized) -> Any:
@@ -369,6 +369,6 @@ def coupler_of(
 
 
 def root_or_zero(square: FloatArray) -> FloatArray:
-    """Of what is negative zero: links that do not reach each other come as near as they can."""
+    """The root, zero of negative squares: links that do not reach each other come as near as possible."""
     root: FloatArray = np.sqrt(np.maximum(square, 0.0))
     return root

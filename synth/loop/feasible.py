@@ -1,8 +1,8 @@
-"""Lengths that are feasible by construction: the driver goes where it has to, as well as is demanded.
+"""Lengths that are feasible by construction.
 
-O2A is seen under an angle phi from the ground line, as `ClosingDyad.reach` has it. Whatever share of what is
-possible random numbers choose, the loop closes at every phi that is demanded, and its transmission angle mu
-is at least the one demanded there, without trial and error.
+O2A is seen under an angle phi from the ground line, as in `ClosingDyad.reach`. Random numbers choose shares
+of the possible lengths; the loop closes at every phi that is demanded, and its transmission angle mu is at
+least the one demanded there, without trial and error.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from grashof.synth.loop.dyad import Bars, Block, ClosingDyad, Sizes, Slider
 
 Numbers: TypeAlias = FloatArray | float
 
-INSIDE = 1e-6  # share of what is possible that is left at both ends: there are dead positions and no links
+INSIDE = 1e-6  # share left at both ends of the possible lengths: there are dead positions or zero lengths
 
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """What loops have to do, by numbers for all of a batch or for each; see `turning` and `covering`."""
+    """Demands on loops, by numbers for all of a batch or for each; see `turning` and `covering`."""
 
     transmission: Numbers  # least min(mu, pi - mu), rad, from 0 and below pi / 2
     margin: Numbers = 0.0  # of a driver that turns fully, as `ClosingDyad.margins` has it, below 1
@@ -53,7 +53,7 @@ class Demand:
         """r2 with r1 = 1, so that the least of the `diagonals` is at least that share of the greatest.
 
         With g = (r2 + 1 / r2) / 2 the square of the share is (g - most) / (g - least): g has a lower limit,
-        and r2 an upper one, or a lower one where the driver is to be longer. NaN where all is asked, or more.
+        and r2 an upper one, or a lower one where the driver is to be longer. NaN for shares from 1 on.
         """
         square = np.square(np.where(np.asarray(narrowest) < 1, narrowest, np.nan))
         bound = np.maximum(self.most + (self.most - self.least) * square / (1 - square), 1.0)
@@ -68,10 +68,10 @@ def _passes(low: Numbers, high: Numbers, at: float) -> BoolArray:
 
 
 def feasible(dyad: ClosingDyad, shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
-    """Lengths of loops, from random numbers in [0, 1), shape (..., 3), by which they are told apart.
+    """Lengths of loops from random numbers in [0, 1), shape (..., 3).
 
-    r1 = 1, of a slider-crank r3 = 1; `longer_driver`, shape (...), asks for r2 > r1 where O4 is a pivot. Of
-    dyads with a slide the last number decides nothing. NaN where no loop does what is demanded.
+    r1 = 1, of a slider-crank r3 = 1; `longer_driver`, shape (...), requires r2 > r1 where O4 is a pivot. Of
+    dyads with a slide the last number has no effect. NaN where no loop meets the demands.
     """
     return _LENGTHS[type(dyad)](INSIDE + (1 - 2 * INSIDE) * shares, longer_driver, demand)
 
@@ -79,11 +79,11 @@ def feasible(dyad: ClosingDyad, shares: FloatArray, longer_driver: BoolArray, de
 def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Sizes:
     """Two bars over a diagonal from `near` to `far`, by their sum T and difference D.
 
-    With h = mu / 2 the law of cosines, mu being least at the ends, asks for
+    With h = mu / 2 the law of cosines, mu being least at the ends, requires
 
         T^2 cos^2(h) + D^2 sin^2(h) >= far^2 and T^2 sin^2(h) + D^2 cos^2(h) <= near^2,
 
-    which can be had where near / far >= tan(h). A margin asks for T >= (1 + margin) / (1 - margin) far and
+    which is possible where near / far >= tan(h). A margin requires T >= (1 + margin) / (1 - margin) far and
     |D| <= near - margin (T + far) (Grashof's criterion, McCarthy & Soh 2011, section 2.2, with a margin).
     T is greatest by the right sides at D = 0, and least where the limits of |D| meet; that there are such T
     limits near / far, and so r2. Derived here; tests show that no loops are left out.

@@ -21,51 +21,26 @@ _TINY = 1e-30  # under roots
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Where the driver is, and how fast.
+    """Angle and velocity of the driver."""
 
-    Parameters
-    ----------
-    theta2 : rad
-    pace
-        Its velocity over the mean, signed.
-    gain : 1/rad
-        Its acceleration over the square of the mean velocity.
-    time : s
-        From the first target.
-    """
-
-    theta2: Any
-    pace: Any
-    gain: Any
-    time: Any
+    theta2: Any  # rad
+    pace: Any  # its velocity over the mean, signed
+    gain: Any  # its acceleration over the square of the mean velocity, 1/rad
+    time: Any  # from the first target, s
 
 
 @dataclass(frozen=True)
 class Instant(ABC):
-    """A linkage at a driver angle, or at many; rates are derivatives by theta2, lengths in sizes.
-
-    Parameters
-    ----------
-    o2 : Vector
-    ground : Vector
-        From O2 to O4; of a slider-crank the unit vector across its slide, to the left.
-    lengths : sequence of four
-        r1, r2, r3, r4; of slider kinds the offset in place of r4, and anything for what they lack.
-    arm : Vector
-        The coupler point (u, v).
-    assembly
-        +1 or -1.
-    driver : Moment
-    """
+    """A linkage at a driver angle, or at many; rates are derivatives by theta2, lengths in sizes."""
 
     dyad: ClassVar[ClosingDyad]
     slide: ClassVar[int | None] = None  # number of the joint that is one
 
     o2: Vector
-    ground: Vector
-    lengths: Any
-    arm: Vector
-    assembly: Any
+    ground: Vector  # from O2 to O4; of a slider-crank the unit vector across its slide, to the left
+    lengths: Any  # r1, r2, r3, r4; of slider kinds the offset in place of r4, any value where absent
+    arm: Vector  # the coupler point (u, v)
+    assembly: Any  # +1 or -1
     driver: Moment
 
     @cached_property
@@ -77,7 +52,7 @@ class Instant(ABC):
 
     @cached_property
     def loop(self) -> Closed:
-        """Where it does not close its numbers are NaN, and Ipopt shortens its step."""
+        """The closed loop; NaN where it does not close, so that Ipopt shortens its step."""
         _, _, r3, r4 = self.lengths
         return self.dyad.closed(self.ground, self.crank, r3, r4, self.assembly)
 
@@ -109,25 +84,19 @@ class Instant(ABC):
 
     @abstractmethod
     def force_in_b(self, force: dict[int, Any], about: dict[int, Any], sliding: Any) -> Vector:
-        """By link 4 on link 3.
+        """Force by link 4 on link 3.
 
-        Parameters
-        ----------
-        force : dict of int to Vector
-            That the joints have to give each link.
-        about : dict of int to scalar
-            The moment that they have to give links 3 and 4 about the origins of their frames.
-        sliding
-            Friction of the slide: force on link 4 along it.
+        From the forces that the joints exert on each link, their moments on links 3 and 4 about the origins
+        of their frames, and the friction force on link 4 along the slide.
         """
 
     @abstractmethod
     def pressing(self, in_b: Vector, force: dict[int, Any], about: dict[int, Any]) -> tuple[Any, Any]:
-        """The force across the slide and its moment, from the force in B; nothing without a slide."""
+        """The force across the slide and its moment, from the force in B; zero without a slide."""
 
     @property
     def travel(self) -> Any:
-        """How far the slide is: of B from the foot of O2, or from A along the rod, sizes."""
+        """Place of the slide: of B from the foot of O2, or from A along the rod, sizes."""
         return 0.0
 
     @property
@@ -294,7 +263,7 @@ class InvertedInstant(Instant):
 
     @cached_property
     def ends(self) -> tuple[Any, Any]:
-        """Where the rod begins and ends, u in its frame, sizes."""
+        """Beginning and end of the rod, u in its frame, sizes."""
         r1, r2, _, offset = self.lengths
         farthest = self.assembly * np.sqrt(np.maximum((r1 + r2) ** 2 - offset**2, 0.0) + _TINY)
         low, high = (pick(pick(0.0, farthest), self.arm.x) for pick in (np.minimum, np.maximum))

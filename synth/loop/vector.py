@@ -1,4 +1,4 @@
-"""Plane vectors of anything that can be added and multiplied: arrays, numbers with derivatives, symbols."""
+"""Plane vectors of arrays, numbers with derivatives, or symbols."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ import numpy as np
 class Vector:
     """A plane vector; x and y are scalars, arrays, `Dual` or symbols.
 
-    Examples
-    --------
     >>> (2 * Vector(3, 4) - Vector(1, 0).left).cross(Vector(1, 1))
     -1
     """

@@ -1,4 +1,4 @@
-"""The constraints of the programme: each requirement as the field writes it."""
+"""The constraints of the programme: closure, targets, order, branch, transmission and user functions."""
 
 from __future__ import annotations
 
@@ -12,24 +12,23 @@ from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
-from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
 from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
-from grashof.synth.programme.user_functions import magnitude_at
+from grashof.synth.programme.user_functions import magnitude_at, on_symbols
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements
 
-OWN_INSET = 1e-8  # the user's constraints are tightened by so much, so that the polished design keeps them
-MOST_ZONE = 0.5  # sizes, rad: greater ones leave the solver astray
+OWN_INSET = 1e-8  # by which the user's constraints are tightened, so that the polished design keeps them
+MOST_ZONE = 0.5  # sizes, rad: greater ones lead the solver astray
 ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class Positions:
     """A, B and P at every target, in the order of visit, and the vectors from A and B to P in one frame."""
 
     a: list[ca.SX]
@@ -37,14 +36,14 @@ class Places:
     p: list[ca.SX]
     ap: ca.SX
     bp: ca.SX
-    # `ClosingDyad.across` at a target. Made anew each time: what rows share changes the last digits of their
+    # `ClosingDyad.across` at a target. Made anew each time: shared expressions change the last digits of the
     # derivatives.
     across: Callable[[int], Vector]
     fixed: Fixed
 
 
 class Fixed(View):
-    """What of the design is the same at all targets."""
+    """Quantities of the design that are the same at all targets."""
 
     def __init__(self, form: Form, x: Unknowns) -> None:
         for name in form.kind.linkage.mechanism.ground:
@@ -57,7 +56,7 @@ class Fixed(View):
 class Symbols(Fixed):
     """The design as formulas see it."""
 
-    def __init__(self, form: Form, x: Unknowns, places: Places) -> None:
+    def __init__(self, form: Form, x: Unknowns, places: Positions) -> None:
         super().__init__(form, x)
         self.theta1, self.theta2_start = x.theta1, x.theta2_start
         self.ap, self.bp = vector(places.ap), vector(places.bp)
@@ -72,7 +71,7 @@ class Symbols(Fixed):
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """What the design has to meet, as parameters in the order of visit."""
+    """The targets as parameters in the order of visit."""
 
     points: list[ca.SX]  # (2,) each, sizes
     turns: ca.SX  # (N,), rad; angles of the body, moved by whole turns to be nearest to the start
@@ -94,7 +93,7 @@ class Targets:
         )
 
 
-def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
+def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Positions:
     """Points of the body are displaced with it; A and B stay at their distances from O2 and O4."""
     n = form.targets
     turned = build.parameter(
@@ -124,10 +123,10 @@ def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Places:
         build.zero(a[k] - x.o2 - x.r[1] * unit(x.theta2[k]))
         build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
     build.zero((ca.sumsqr(x.b - x.a) - x.r[2] ** 2) / 2)
-    return Places(a, b, p, body - x.a, body - x.b, across, fixed)
+    return Positions(a, b, p, body - x.a, body - x.b, across, fixed)
 
 
-def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Places:
+def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -> Positions:
     """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
     n, fixed, dyad = form.targets, Fixed(form, x), form.kind.dyad
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
@@ -151,10 +150,10 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     for point, at in ((x.a, a), (x.b, b)):
         if not point.is_empty():
             build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
-    return Places(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across, fixed)
+    return Positions(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across, fixed)
 
 
-def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
+def square(form: Form, x: Unknowns, places: Positions, targets: Targets) -> ca.SX:
     """Weighted sum of squared distances and turns from the targets."""
     cost = ca.SX(0)
     for k in range(form.targets):
@@ -165,7 +164,7 @@ def square(form: Form, x: Unknowns, places: Places, targets: Targets) -> ca.SX:
     return cost
 
 
-def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
+def require_modes(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """The ground line, the order of the targets, one branch, and a driver that turns fully."""
     for name in form.kind.linkage.mechanism.ground[1:]:  # O4, where it is a pivot
         build.zero(getattr(x, name) - x.o2 - x.r[0] * unit(x.theta1))
@@ -184,8 +183,8 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Places) -> No
         build.require(("rotatability",), *(share - margin for share in margins))
 
 
-def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
-    """The derivative of a target's square by its driver angle is zero, as the judge will have it."""
+def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Positions, targets: Targets) -> None:
+    """The derivative of a target's square by its driver angle is zero, where the judge will place it."""
     total = ca.SX(0)  # timed targets have one driver angle: the sum of their derivatives is zero
     for k in np.flatnonzero(form.nearest).tolist():
         a, b, p = places.a[k], places.b[k], places.p[k]
@@ -206,8 +205,8 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Places, targe
         build.zero(ca.sqrt(targets.error_scale) * total)
 
 
-def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets: Targets) -> None:
-    """The squares as a whole, or each target's, are bounded, as shares of their bounds."""
+def bound_error(build: Builder, form: Form, x: Unknowns, places: Positions, targets: Targets) -> None:
+    """The sum of the squares, or each target's, is bounded, as shares of their bounds."""
     if form.most_error:
         most = build.parameter(lambda _, start: min(start.terms.most_error, FAR) ** 2 * form.targets)
         build.row(1 - square(form, x, places, targets) / most)
@@ -221,7 +220,7 @@ def bound_error(build: Builder, form: Form, x: Unknowns, places: Places, targets
             build.require(("within",), 1 - (_off(x, targets, k) / zones[form.targets + k]) ** 2)
 
 
-def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
+def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """cos(tau) bounds |cos(mu)|, monotone between the ends of the task motion and the ground line."""
     design, dyad = Symbols(form, x, places), form.kind.dyad
 
@@ -265,8 +264,8 @@ def _bare(form: Form, scaled: ScaledProblem) -> bool:
     return form.fits and form.crank and scaled.wanted.transmission_min_deg == 0
 
 
-def keep_out(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
-    """Every half-plane of its free region holds each point that keeps out."""
+def keep_out(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
+    """Each point that keeps out lies in every half-plane of its free region."""
     where = {"o2": [x.o2], "o4": [x.o4], "a": places.a, "b": places.b, "p": places.p}
     held = [place for name in form.keep_out for place in where[name]]
     planes = build.parameter(_planes, 3 * PLANES * len(held)) if held else ca.SX(0, 1)
@@ -275,7 +274,7 @@ def keep_out(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
 
 
 def require_own(
-    build: Builder, form: Form, x: Unknowns, places: Places, constraints: Sequence[Constraint]
+    build: Builder, form: Form, x: Unknowns, places: Positions, constraints: Sequence[Constraint]
 ) -> None:
     """The user's own constraints, on the symbols of the design in the problem's unit."""
     for constraint in constraints:
@@ -284,13 +283,13 @@ def require_own(
             build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
 
 
-def own_goal(build: Builder, form: Form, x: Unknowns, places: Places, objective: OwnObjective) -> ca.SX:
+def own_goal(build: Builder, form: Form, x: Unknowns, places: Positions, objective: OwnObjective) -> ca.SX:
     """The user's own objective, in units of what it is at the start."""
     unit = build.parameter(lambda scaled, start: magnitude_at(scaled, start, objective))
     return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
 
-def arm_of(x: Unknowns, places: Places) -> ca.SX:
+def arm_of(x: Unknowns, places: Positions) -> ca.SX:
     """P in the coupler's frame, sizes."""
     if not x.arm.is_empty():
         return x.arm
@@ -298,8 +297,8 @@ def arm_of(x: Unknowns, places: Places) -> ca.SX:
     return ca.vertcat(ca.dot(coupler, to_p) / x.r[2], cross(coupler, to_p) / x.r[2])
 
 
-def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> Design:
-    """What a user's function sees of the unknowns."""
+def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Positions) -> Design:
+    """The argument of a user's function, made of the unknowns."""
     scale = build.parameter(lambda scaled, _: scaled.frame.scale)
     origin = build.parameter(lambda scaled, _: interleaved(scaled.frame.origin), 2)
     arm = arm_of(x, places)
@@ -310,7 +309,7 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Places) -> 
 
 
 def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
-    """By how much the body is turned from where a pose has it."""
+    """Angle of the body from a pose."""
     return x.theta3[k] + x.body_angle - targets.turns[k]
 
 
@@ -343,7 +342,7 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
     """How far each target may be missed, drawn in a little: sizes, then rad."""
     zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
-    kept = 1 - ZONE_INSET - start.terms.asks("within")
+    kept = 1 - ZONE_INSET - start.terms.tightened_by("within")
     return (np.minimum(zones, MOST_ZONE) * kept)[:, list(start.visit)].ravel()
 
 

@@ -1,4 +1,4 @@
-"""Room outside the areas kept out: how far points lack it, and a convex part of it about a point."""
+"""A convex region about a point, outside the areas kept out."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from grashof.problems.values.areas import solid
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES
-from grashof.synth.quantities.keep_out_depth import TOUCHING
+from grashof.synth.quantities.screening import TOUCHING
 
 _EVERY_PLANE = np.array([0.0, 0.0, -1.0])  # 0 x + 0 y >= -1: no limit
 
@@ -19,10 +19,10 @@ def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
     """Half-planes about a point whose intersection is free of an area (see `solid`).
 
     Rows (nx, ny, c), (PLANES, 3): nx x + ny y >= c in the free region, (nx, ny) a unit vector. For a point
-    inside the area its nearest boundary point stands. The side nearest to the point is drawn out to a
-    straight line; what of the area lies beyond it is cut off; and so on until nothing is left, or `PLANES`
-    are used up and some of the area farther away is left. (Deits & Tedrake, "Computing large convex regions
-    of obstacle-free space", 2015, take the same greedy cuts.)
+    inside the area its nearest boundary point is taken. The side nearest to the point is extended to a
+    straight line, and the area beyond it cut off; this is repeated until nothing is left, or `PLANES` are
+    used up and some of the area farther away is left. (Deits & Tedrake, "Computing large convex regions of
+    obstacle-free space", 2015, take the same greedy cuts.)
 
     >>> stairs = solid([np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]])])
     >>> half_planes(stairs, 3 + 1j)[:3].tolist()

@@ -12,7 +12,7 @@ from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Fixed, Places, Symbols, arm_of, vector
+from grashof.synth.programme.constraints import Fixed, Positions, Symbols, arm_of, vector
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
@@ -24,14 +24,14 @@ from grashof.synth.quantities.along_motion import (
     magnitudes,
     value_of,
 )
-from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.driver_motion import drive_of, driver_at
 from grashof.synth.quantities.formulas import Part, parts_of, range_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
 
-def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> None:
+def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows."""
     design = Symbols(form, x, places)
     for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
@@ -47,8 +47,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
         elif leaf:
             build.bound(value, _inset(allowed), gives=(name, part.name))
         if leaf or angle:
-            # where a start gives the bound up
-            build.require_if_given_up((name, part.name), *_rows(build, design, part, value, allowed))
+            build.require_if_relaxed((name, part.name), *_rows(build, design, part, value, allowed))
         else:
             build.require((name, part.name), *_rows(build, design, part, value, allowed))
     if build.slack is not None:
@@ -59,7 +58,7 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Places) -> N
 def _range(name: str, part: Part) -> Fill:
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
         low, high = range_of(scaled.wanted, name, part)
-        more, of_ratio = start.terms.asks(name), LIMITS[name].quantity.unit is Unit.RATIO
+        more, of_ratio = start.terms.tightened_by(name), LIMITS[name].quantity.unit is Unit.RATIO
         return near((low + more * (low if of_ratio else 1.0), high - more * (high if of_ratio else 1.0)))
 
     return limits
@@ -97,8 +96,8 @@ def _rows(build: Builder, design: Symbols, part: Part, value: ca.SX, allowed: Fi
     return [value - low, high - value]
 
 
-def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
-    """What is made least: the goals by their weights. What is limited along the motion is bounded, too."""
+def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.SX:
+    """The cost: the goals by their weights. Quantities limited along the motion are bounded, too."""
     weights = {key: build.parameter(_share(form, key)) for key in form.goals}
     cost, design = ca.SX(0), Symbols(form, x, places)
     size = diagonal(build, form, x, places) if "size" in (*form.goals, *form.limited) else ca.SX(0)
@@ -112,7 +111,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
     if "size" in form.limited:
         most = build.parameter(
-            lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.terms.asks("size")
+            lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.terms.tightened_by("size")
         )
         build.require(("size",), most - size)
     for key in form.along:
@@ -121,7 +120,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Places) -> ca
     return cost
 
 
-def diagonal(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
+def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.SX:
     """Diagonal of a box around the pivots at all targets."""
 
     def corner(pick: Callable[[FloatArray], FloatArray]) -> Fill:
@@ -141,8 +140,8 @@ def diagonal(build: Builder, form: Form, x: Unknowns, places: Places) -> ca.SX:
 _CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high": np.max}
 
 
-def _peak(build: Builder, form: Form, x: Unknowns, places: Places, key: str) -> ca.SX:
-    """What a magnitude does not exceed at any driver angle of an even grid, nor at those added to it."""
+def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) -> ca.SX:
+    """An upper bound of a magnitude at the driver angles of an even grid, and those added to it."""
     arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
     ground = form.kind.dyad.ground(Fixed(form, x))
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start

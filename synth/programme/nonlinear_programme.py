@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, OwnObjective
-from grashof.analysis.judge.one_at_a_time import one_at_a_time
-from grashof.synth.programme.builder import Builder, Programme, always
+from grashof.analysis.judge.design import Constraint, OwnObjective, one_at_a_time
+from grashof.synth.programme.builder import STOPPED, Builder, Programme, always
 from grashof.synth.programme.constraints import (
     Targets,
     bound_error,
@@ -26,20 +25,22 @@ from grashof.synth.programme.constraints import (
     square,
     stand_nearest,
 )
-from grashof.synth.programme.limits import cost_of_goals, peak_unit, require_limits
-from grashof.synth.programme.long_programme import STOPPED
-from grashof.synth.programme.on_symbols import numpy_on_symbols
+from grashof.synth.programme.limits import ADDED, cost_of_goals, peak_unit, require_limits
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
+from grashof.synth.programme.user_functions import numpy_on_symbols
+from grashof.synth.quantities.along_motion import overlooked
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.stopping import StopRequested, raise_if_stopped
+from grashof.synth.theory.stopping import StopRequested, raise_if_stopped, stop_requested
 
-LONG = 40  # targets: programmes of more can be stopped, and are not begun any more when asked to stop
+LONG = 40  # targets: programmes of more can be stopped, and are not begun after a request to stop
 MOST_ITERATIONS = 150
-MENDING = 60  # of a near miss to be mended in place: what can be mended takes a dozen
-PATIENCE = (250, 400)  # iterations where the error is bounded: of what a list offers, and where that is asked
+MENDING = 60  # iterations of a near miss mended in place, which takes a dozen where it succeeds
+PATIENCE = (250, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
 SLIGHT = 1e-6  # weight of the error beside the slack
+SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
+EXCHANGES = 4  # times at most that a solve is repeated
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     answer = np.asarray(programme.solver(**given)["x"]).ravel()
     stats = programme.solver.stats()
     status = str(stats["return_status"])
-    if programme.asking is not None and programme.asking.ended_by_another(status):
+    if programme.callback is not None and programme.callback.ended_by_another(status):
         raise KeyboardInterrupt
     found = {name: answer[place] for name, place in programme.places.items()}
     pivots = {name: complex(*found[name]) for name in form.kind.linkage.mechanism.pivots}
@@ -139,7 +140,7 @@ def _programme(
 def _stated(
     form: Form, constraints: tuple[Constraint, ...], own_objective: OwnObjective | None
 ) -> tuple[Builder, ca.SX]:
-    """Unknowns and rows of a programme, and what it makes least."""
+    """Unknowns and rows of a programme, and its cost."""
     build = Builder()
     x, targets = Unknowns.of(build, form), Targets.of(build, form)
     if form.elastic:
@@ -168,3 +169,31 @@ def _stated(
         if not form.exact:  # of equal slack the smaller error
             cost += SLIGHT * targets.error_scale * square(form, x, places, targets)
     return build, cost
+
+
+def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
+    """Solve; add driver angles where a bound is exceeded, and repeat from there.
+
+    An exchange method for a bound that holds over an interval (Hettich & Kortanek 1993, section 7).
+    """
+    solved = solve(scaled, start)
+    for _ in range(EXCHANGES):
+        if solved.status not in SOLVED or stop_requested():
+            break
+        points, theta2 = np.array(solved.points), np.array(solved.theta2)
+        ways = points, theta2, start.direction, start.assembly
+        found = {key: overlooked(scaled, key, *ways, bound) for key, bound in solved.peaks.items()}
+        if not any(found.values()):
+            break
+        added = {key: (*peaks, *start.terms.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}
+        start = begun_from(start, solved).under(peaks_at=added)
+        again = solve(scaled, start)
+        if again.status not in SOLVED:
+            break
+        solved = replace(again, iterations=solved.iterations + again.iterations)
+    return solved
+
+
+def begun_from(start: Start, solved: Solve) -> Start:
+    """A start where a solve ended."""
+    return start.at(solved.points, solved.theta2, solved.theta3, solved.body_angle)

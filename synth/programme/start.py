@@ -1,4 +1,4 @@
-"""A start: a linkage that nearly or fully does the task, and the discrete choices made with it."""
+"""A start: a linkage that nearly or fully does the task, and its discrete choices."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ UNSMOOTH = ("order", "same_branch")  # requirements that no smooth constraint ca
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What a solve is asked, besides the requirements."""
+    """The goal and the bounds of a solve, besides the requirements."""
 
-    objective: Objective | None = field(default_factory=Objective)  # what is made best; None: the user's own
+    objective: Objective | None = field(default_factory=Objective)  # None: the user's own
     radius: float = np.inf  # how far it may move each coordinate of the pivots
     stay: bool = False  # move no farther than the requirements make it, whatever the objective
     settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
-    # Requirements (fields), or parts ("o2.x"), that it may miss, coming as near as it can; all others hold.
+    # Requirements (fields), or parts ("o2.x"), that it may miss, but as little as possible; all others hold.
     relaxed: tuple[str, ...] = ()
-    # Where else what varies along the motion is bounded, as shares of it, by the key of the quantity.
+    # Further shares of the motion at which a quantity along it is bounded, by the key of the quantity.
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    # By how much more than required what each field limits is bounded, in the units of `Defect.miss`.
+    # By how much the limits of each field are tightened, in the units of `Defect.miss`.
     more: Mapping[str, float] = field(default_factory=dict)
-    loose: bool = False  # driver angles need not be where the judge will find them
+    loose: bool = False  # driver angles need not be those that the judge will find
     most_error: float = np.inf  # root mean square error up to which the objective decides
-    zoned: bool = False  # the objective decides as long as each target is missed by no more than it may
+    zoned: bool = False  # the objective decides while each target is missed by no more than it may
 
     @property
     def bounded(self) -> bool:
@@ -44,14 +44,14 @@ class Terms:
 
     @property
     def goals(self) -> Mapping[str, float]:
-        """Weights of the quantities that it makes best; none where the user's own objective is."""
+        """Weights of the quantities to be improved; none where the user's own objective decides."""
         return {} if self.objective is None else self.objective.goals
 
-    def asks(self, field: str) -> float:
-        """By how much more than required what a field limits is bounded."""
+    def tightened_by(self, field: str) -> float:
+        """By how much the limits of a field are tightened."""
         return self.more.get(field, 0.0)
 
-    def gives(self, *parts: str) -> bool:
+    def relaxes(self, *parts: str) -> bool:
         """Whether a requirement, or a part of it, may be missed."""
         return any(part in self.relaxed for part in parts)
 
@@ -60,8 +60,8 @@ class Terms:
 class Start:
     """Where a solve begins, in the frame of the search; lengths in sizes, angles in rad.
 
-    What cannot be a smooth constraint is fixed here: the order of visit, the sense of the driver, assembly,
-    which of r1 and r2 is longer, past which positions with O2A along the ground line the driver goes.
+    It fixes the discrete choices: the order of visit, the sense of the driver, assembly, which of r1 and r2
+    is longer, and the positions with O2A along the ground line that the driver passes.
     """
 
     o2: complex
@@ -81,7 +81,7 @@ class Start:
 
     @classmethod
     def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:
-        """The start that a linkage makes where the judge found it nearest to the targets, in order."""
+        """A start at a linkage where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
         o2, a, b, p = (
@@ -107,13 +107,13 @@ class Start:
     def at(
         self, points: Sequence[complex], theta2: Sequence[float], theta3: Sequence[float], body_angle: float
     ) -> Start:
-        """The same choices with another linkage, its angles in the order of visit."""
+        """The start with another linkage, its angles in the order of visit."""
         o2, o4, a, b, p = (complex(point) for point in points)
         moved = replace(self, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle)
         return replace(moved, theta2=tuple(theta2), theta3=tuple(theta3))
 
     def under(self, **terms: Any) -> Start:
-        """The same under other terms, by name."""
+        """The start under other terms, by name."""
         return replace(self, terms=replace(self.terms, **terms))
 
     @property
@@ -153,14 +153,14 @@ class Start:
 
     @property
     def half_turns(self) -> tuple[int, int]:
-        """In which half turn from the ground line, counted in pi, the driver starts and ends."""
+        """Numbers of the half turns from the ground line in which the driver starts and ends."""
         ends = (self.theta2[0], self.theta2[-1])
         first, last = (int(np.floor((angle - self.theta1) / np.pi)) for angle in ends)
         return first, last
 
     @classmethod
     def of_screened(cls, linkages: Screened, index: int, objective: Objective | None) -> Start:
-        """The start that entry `index` of screened linkages makes."""
+        """A start at entry `index` of screened linkages."""
         visit = linkages.visit[index]
         o2, o4, a, b, p = (complex(point) for point in linkages.points[index])
         return cls(
@@ -185,13 +185,13 @@ Proposal: TypeAlias = Start | Linkage  # a linkage is a design already: nothing 
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """What one round of a search proposes."""
+    """The starts of one round of a search."""
 
     starts: Sequence[Proposal]  # the most promising first
-    counts: Mapping[str, int]  # of what was looked at
+    counts: Mapping[str, int]  # of the linkages examined
     size: int = 1  # its work, in usual rounds
-    # Least squares: starts that promise more than so many times the least error found are not solved.
+    # Least squares: starts are not solved whose expected error exceeds this many times the least error found.
     prune: float = np.inf
-    free: bool = False  # no limit binds: what traces the same coupler curve is the same design or a cognate
-    together: bool = False  # all are judged before there are enough: their order does not tell which is best
-    skip: int = 0  # so many of the next rounds bring nothing new
+    free: bool = False  # no limit binds: starts with the same coupler curve are the same design or cognates
+    together: bool = False  # all are judged before there are enough: their order does not show the best one
+    skip: int = 0  # number of the next rounds that bring nothing new

@@ -1,4 +1,4 @@
-"""What a nonlinear programme contains: one is built, and kept, for each form."""
+"""The form of a nonlinear programme: one programme is built, and kept, for each form."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ from grashof.problems.values.requirements.quantities import Needs, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
-from grashof.synth.quantities.driver_way import drive_of
+from grashof.synth.quantities.driver_motion import drive_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import points_kept_out
 
 PLANES = 4  # half-planes that bound a free region
-STEPS = 24  # in every half turn, between driver angles at which what varies along the motion is bounded
+STEPS = 24  # of the driver in every half turn, at whose ends quantities along the motion are bounded
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """What the programme contains."""
+    """The contents of a programme."""
 
     kind: Kind
     targets: int
@@ -35,25 +36,25 @@ class Form:
     crank: bool  # the driver turns fully
     same_branch: bool
     over_task: bool  # transmission is judged over the task, not over the turn
-    limited: tuple[str, ...]  # fields of the requirements that limit something, those apart that cannot bind
+    limited: tuple[str, ...]  # fields of the requirements with limits that can bind
     goals: tuple[str, ...]  # keys of the quantities weighed; none where another objective comes first
     own_goal: bool  # the user's own objective decides
-    grid: int  # at how many instants what varies along the motion is bounded
-    loading: Loading | None  # what takes the torque and forces that are bounded; None where none are
-    motor: MotorSpec | None  # how the driver goes where anything is bounded along the motion
-    closed: bool  # the task motion is a whole turn
+    grid: int  # number of instants at which quantities along the motion are bounded
+    loading: Loading | None  # that causes the torque and forces that are bounded; None without them
+    motor: MotorSpec | None  # drive law where anything is bounded along the motion
+    closed: bool  # the task motion is a full turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
     stay: bool  # the distance from the start is the objective
     elastic: bool  # requirements may be missed; how far is the objective
-    # At which targets, in the order of visit, the driver stands where the miss is least, as the judge has it;
+    # Targets, in the order of visit, at which the driver has the angle of the least miss, as for the judge;
     # of timed targets, that of all together.
     nearest: tuple[bool, ...]
-    most_error: bool  # the error as a whole is bounded, and the problem's objective decides
+    most_error: bool  # the total error is bounded, and the problem's objective decides
     zoned: bool  # the error at every target is bounded, and the problem's objective decides
 
     @property
     def fits(self) -> bool:
-        """Whether the objective is the error, which comes before all others."""
+        """Whether the objective is the error, which precedes all others."""
         return not (self.exact or self.most_error or self.zoned)
 
     @property
@@ -64,7 +65,7 @@ class Form:
 
     @classmethod
     def of(cls, scaled: ScaledProblem, start: Start) -> Form:
-        """The form that a problem and a start call for."""
+        """The form for a problem and a start."""
         wanted, closed = scaled.wanted, scaled.closed
         plain = start.terms.stay or bool(start.terms.relaxed) or not (scaled.exact or start.terms.bounded)
         made = cls(
@@ -98,13 +99,9 @@ class Form:
         heavy = any(QUANTITIES[key].needs is Needs.DYNAMICS for key in made.along)
         return made if heavy else replace(made, loading=None)
 
-    def places_of(self, name: str) -> int:
-        """At how many places a point is held in free regions."""
-        return 1 if name in self.kind.linkage.mechanism.ground else self.targets
-
 
 def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
-    """Fields that limit something; the ratio of links cannot bind where lengths are close enough."""
+    """Fields whose limits can bind; the ratio of links cannot where lengths are close enough."""
     wanted, names = scaled.wanted, list(scaled.wanted.limited)
     low = min(limits[0] for limits in wanted.link_lengths)
     high = max(limits[1] for limits in wanted.link_lengths)
@@ -114,13 +111,13 @@ def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
 
 
 def _grid_size(start: Start, closed: bool) -> int:
-    """At how many driver angles what varies along the motion is bounded."""
+    """Number of driver angles at which quantities along the motion are bounded."""
     long = closed or abs(start.theta2[-1] - start.theta2[0]) > np.pi
     return (2 if long else 1) * STEPS + 1
 
 
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
-    """At which targets a limit, or the objective, depends on the driver angle that the judge finds."""
+    """Targets at which a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
     if scaled.exact or start.terms.relaxed or start.terms.loose:
         return (False,) * count
@@ -146,10 +143,6 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
 
 
 def points_held(scaled: ScaledProblem) -> tuple[str, ...]:
-    """Points that the programme can hold in free regions: P is where the targets have it."""
-    if not scaled.wanted.keep_out:
-        return ()
-    from grashof.synth.quantities.keep_out_depth import points_kept_out
-
+    """Points that the programme can hold in free regions, without a P that exact targets fix."""
     held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.mechanism.points)
     return tuple(name for name in held if name != "p" or not scaled.exact)

@@ -1,4 +1,4 @@
-"""The unknowns of the programme: pivots at the first target, lengths, angles, and what is worst."""
+"""The unknowns of the programme: pivots at the first target, lengths, angles, worst transmission angle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 FAR = 1e3  # sizes: stands for "no limit"
-INSET = 1e-8  # sizes, rad: limits are tightened by this much, so that the polished design keeps them
+INSET = 1e-8  # sizes, rad: by which limits are tightened, so that the polished design keeps them
 SHORTEST = 1e-6  # sizes, of a link
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
 LIFTED = 10 * np.pi  # rad: angles are unwrapped along the motion
@@ -24,7 +24,7 @@ LIFTED = 10 * np.pi  # rad: angles are unwrapped along the motion
 
 @dataclass(frozen=True, slots=True)
 class Unknowns:
-    """Symbols of a design: the unknowns, and the choices that a start makes once for all; sizes and rad.
+    """Symbols of a design: the unknowns, and the discrete choices of a start; sizes and rad.
 
     Angles are lifted, so that order is a linear constraint and no arc function is differentiated. `theta3`
     and `arm` (u, v) follow where whole poses are met exactly; `body_angle` is there for others. Pivots are
@@ -118,15 +118,19 @@ def _first_fixed(scaled: ScaledProblem, start: Start) -> tuple[FloatArray, Float
     """Driver angles are free, but at the first target where it is required."""
     low, high = np.full(len(start.visit), -LIFTED), np.full(len(start.visit), LIFTED)
     required = scaled.wanted.theta2_start_deg
-    if required is not None and not start.terms.gives("theta2_start_deg"):
+    if required is not None and not start.terms.relaxes("theta2_start_deg"):
         first = start.visit.index(0)
         low[first] = high[first] = lifted(np.radians(required), start.theta2[first])
     return low, high
 
 
 def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
-    least = np.radians(scaled.wanted.transmission_min_deg) + INSET + start.terms.asks("transmission_min_deg")
-    least = 0.0 if start.terms.gives("transmission_min_deg") else min(least, np.pi / 2 - INSET)
+    least = (
+        np.radians(scaled.wanted.transmission_min_deg)
+        + INSET
+        + start.terms.tightened_by("transmission_min_deg")
+    )
+    least = 0.0 if start.terms.relaxes("transmission_min_deg") else min(least, np.pi / 2 - INSET)
     return max(LEAST_TRANSMISSION, least), np.pi / 2
 
 
@@ -142,7 +146,7 @@ def _double_crank(scaled: ScaledProblem, start: Start) -> float:
 
 
 def inset(limits: Limits) -> Limits:
-    """Limits drawn in a little, where there is room between them."""
+    """Limits drawn in by `INSET`, where there is room between them."""
     low, high = limits
     return (low + INSET, high - INSET) if high - low > 4 * INSET else limits
 

@@ -1,41 +1,41 @@
-"""The user's own functions: are they usable, what are they of linkages, which starts have to be mended."""
+"""The user's own functions: checks, values for linkages, and starts that miss them."""
 
 from __future__ import annotations
 
 import pickle
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of
-from grashof.analysis.judge.one_at_a_time import one_at_a_time
+from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of, one_at_a_time
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.problem import NO_OBJECTIVE
-from grashof.synth.programme.on_symbols import on_symbols
 from grashof.synth.programme.start import Proposal, Start
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Many, Screened
 
-FAR = 1e3  # stands for an amount without bound
+FAR = 1e3  # in place of an unbounded amount
 NEAREST = 8  # starts that are tried for the closest miss
-# What makes an expression true or false; as a number, 1 where a condition holds.
+# Operations whose value is a truth value; as a number, 1 where a condition holds.
 _TRUTHS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_NOT, ca.OP_AND, ca.OP_OR)
-# Where in CasADi's source an error arose, which its messages begin with.
+# The place in CasADi's source with which its messages begin.
 _PLACE = re.compile(r'^\S+\.[ch]pp:\d+: (Assertion ".*?" failed: )?')
 WRONG = (TypeError, ValueError, AttributeError, IndexError, KeyError, RuntimeError, ArithmeticError)
+_WARNS, _SILENT = 0, -1  # modes of CasADi for NumPy functions that meet symbols; both do what 3.7.2 did
 
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """A sort of function: what it is called, what its value means, and whether it may be several."""
+    """A sort of function: its name, the meaning of its value, and whether it may have several values."""
 
     name: str
     value: str
@@ -47,7 +47,7 @@ _OBJECTIVE = _Kind("objective", "smaller where the design is better", several=Fa
 
 
 def refuse_no_list(constraints: object) -> None:
-    """Raise `ProblemError` where the user's constraints are no list."""
+    """Raise `ProblemError` where the user's constraints are not a list."""
     if isinstance(constraints, str) or not isinstance(constraints, Sequence):
         raise wrong_value("constraints", constraints, "a list of functions of a design")
 
@@ -82,21 +82,21 @@ def _refuse(scaled: ScaledProblem, function: Constraint, kind: _Kind, in_process
 
 
 def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """By how much linkages violate the user's constraints; shape (n,)."""
+    """Amounts by which linkages violate the user's constraints; shape (n,)."""
     amounts = _values(scaled, linkages, scaled.constraints)
     missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
     return missed
 
 
 def own_score(scaled: ScaledProblem, linkages: Screened, objective: OwnObjective) -> FloatArray:
-    """How good the user's own objective makes linkages, greater is better; shape (n,)."""
+    """Scores of linkages by the user's own objective, greater is better; shape (n,)."""
     score: FloatArray = np.nan_to_num(-_values(scaled, linkages, (objective,))[0], nan=-np.inf)
     return score
 
 
 @one_at_a_time
 def _values(scaled: ScaledProblem, linkages: Screened, functions: tuple[Constraint, ...]) -> FloatArray:
-    """What functions make of linkages, all evaluated at once, a row for each value."""
+    """Values of functions for linkages, all evaluated at once, a row for each value."""
     design, symbols = _symbols(scaled.kind, len(scaled.targets))
     values = ca.vertcat(
         *(ca.vec(ca.SX(one)) for own in functions for one in _several(on_symbols(own, design)))
@@ -123,7 +123,7 @@ def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Proposal]:
-    """Starts, those that miss a user's constraint free to move, and no farther than it makes them."""
+    """Starts; those that miss a user's constraint may move, but no farther than it requires."""
     if not scaled.constraints:
         return starts
     return [
@@ -135,7 +135,7 @@ def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Propos
 
 
 def relaxed_by_own(scaled: ScaledProblem, starts: Sequence[Proposal]) -> list[Start]:
-    """The first few starts, free to come as near to the user's constraints as they can."""
+    """The first few starts, free to miss the user's constraints by as little as possible."""
     if not scaled.constraints:
         return []
     return [
@@ -151,7 +151,7 @@ def _met(scaled: ScaledProblem, start: Start) -> bool:
 
 
 def magnitude_at(scaled: ScaledProblem, start: Start, objective: OwnObjective) -> float:
-    """The magnitude of the user's own objective at a start, to count it in; 1 where it is none."""
+    """The magnitude of the user's own objective at a start, as its unit; 1 where it is zero or infinite."""
     magnitude = abs(greatest(objective, _design(scaled, start), "objective"))
     return magnitude if 1e-9 < magnitude < np.inf else 1.0
 
@@ -206,7 +206,7 @@ def _try_on_symbols(function: Constraint, kind: _Kind, scaled: ScaledProblem) ->
 
 
 def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
-    """Raise `ProblemError` if what a function gives on symbols is not what its kind has to give."""
+    """Raise `ProblemError` if the value of a function on symbols is not of its kind."""
     wanted = f"it must give a scalar, {kind.value}" + (", or a list of them" if kind.several else "")
     several = _several(value)
     for one in several:
@@ -227,3 +227,25 @@ def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
     if not count or (count > 1 and not kind.several):
         given = counted(count, "value") if count else "nothing"
         raise ProblemError(f"{name} gives {given}; {wanted}")
+
+
+@contextmanager
+def numpy_on_symbols() -> Iterator[None]:
+    """NumPy functions give symbols of symbols, and do not warn."""
+    # CasADi from 3.8 on warns whoever calls a NumPy function on symbols that a later version may give arrays.
+    # The mode is that of the process: it is restored, and left alone where it is not the default.
+    options = ca.GlobalOptions
+    if not hasattr(options, "setNumpyMode") or options.getNumpyMode() != _WARNS:
+        yield
+        return
+    options.setNumpyMode(_SILENT)
+    try:
+        yield
+    finally:
+        options.setNumpyMode(_WARNS)
+
+
+def on_symbols(constraint: Constraint, design: Design) -> Any:
+    """The value of a constraint on the symbols of a design."""
+    with numpy_on_symbols():
+        return constraint(design)

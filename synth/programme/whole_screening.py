@@ -1,4 +1,4 @@
-"""Violations that take the whole problem: areas and limits of the motion, the user's constraints."""
+"""Violations that need the full problem: areas and limits of the motion, the user's constraints."""
 
 from __future__ import annotations
 
@@ -6,26 +6,29 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.programme.user_functions import own_violations
+from grashof.synth.loop.dyad import coupler_of
+from grashof.synth.programme.user_functions import FAR, own_violations
 from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.screening import GROUPS, Screened
+from grashof.synth.quantities.screening import GROUPS, Screened, inside, points_kept_out
+
+_SAMPLES = 13  # driver angles, the targets' ends among them
+_ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
+_ROWS = 4000  # linkages at a time
 
 
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
-    """The same with these violations, too."""
+    """Screened linkages with these violations added."""
     wanted = scaled.wanted
     along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
     if not len(linkages) or not (along or wanted.size or scaled.constraints or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
     if wanted.keep_out:
-        # Here, not above: shapely takes a while to import, and few problems have areas.
-        from grashof.synth.quantities.keep_out_motion import depth_on_the_way
-
-        sound = linkages.feasible  # the others need not be looked at so closely
+        sound = linkages.feasible  # the others need no closer look
         violations[sound, GROUPS.index("keep_out")] = depth_on_the_way(scaled, linkages[sound])
     if wanted.size is not None:
         size = _sizes(linkages, len(scaled.kind.linkage.mechanism.ground))
@@ -46,7 +49,7 @@ def _sizes(linkages: Screened, ground: int) -> FloatArray:
 
 
 def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
-    """By how much the greatest magnitude exceeds its limit, as a share of it; (n,)."""
+    """Excess of the greatest magnitude over its limit, as a share of it; (n,)."""
     quantity = LIMITS[name].quantity
     low, high = scaled.problem.requirements.ranges(name)[""]
     ways = linkages.theta2, linkages.direction, linkages.assembly
@@ -57,4 +60,58 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     return amount
 
 
-FAR = 1e3  # stands for an amount without bound
+def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """Greatest depth (n,), sizes, of what must keep out, over sampled angles: the judge looks closer."""
+    wanted = scaled.wanted
+    kind = scaled.kind.linkage.mechanism
+    names = [name for name in points_kept_out(wanted) if name in kind.moving]
+    links, body = "links" in wanted.keep_out_for, _body(scaled)
+    deepest = np.zeros(len(linkages))
+    for begin in range(0, len(linkages) if names or len(body) else 0, _ROWS):
+        rows = slice(begin, begin + _ROWS)
+        places = _places(scaled.kind, linkages[rows])
+        tracks = [places[name] for name in names]
+        if links:
+            for one, other in (line for link in kind.links[1:] for line in link.lines):
+                tracks += [places[one] + share * (places[other] - places[one]) for share in _ALONG]
+        if len(body):
+            turned = (places["b"] - places["a"]) * np.exp(1j * _from_coupler(scaled, linkages[rows]))[:, None]
+            turned /= np.abs(turned)
+            tracks += [places["p"] + turned * corner for corner in body]
+        track = np.concatenate(tracks, axis=1)
+        closed = np.isfinite(track)
+        deepest[rows] = np.where(closed, inside(wanted, np.where(closed, track, 0.0)), 0.0).max(axis=1)
+    return deepest
+
+
+def _body(scaled: ScaledProblem) -> ComplexArray:
+    """Points along the outline of the body that keeps out, in its frame; none where it need not."""
+    outline = scaled.problem.task.body
+    if "body" not in scaled.wanted.keep_out_for or outline is None:
+        return np.zeros(0, dtype=np.complex128)
+    corner = outline @ np.array([1, 1j]) / scaled.frame.scale
+    side = np.roll(corner, -1) - corner
+    points: ComplexArray = (corner[:, None] + np.concatenate([[0.0], _ALONG]) * side[:, None]).ravel()
+    return points
+
+
+def _from_coupler(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    """From the direction of AB to that of the body, shape (n,), rad."""
+    if scaled.motion is None:
+        return linkages.body_angle
+    _, _, a, b, _ = linkages.points.T
+    turn: FloatArray = scaled.motion.first_turn - np.angle(b - a)
+    return turn
+
+
+def _places(kind: Kind, linkages: Screened) -> dict[str, ComplexArray]:
+    """Pivots and coupler point at sampled driver angles, each shape (n, samples)."""
+    o2, o4 = linkages.points.T[:2, :, None]
+    ground, lengths, arm = kind.sides(linkages.points[:, None])
+    theta2, assembly = linkages.theta2, linkages.assembly
+    angle = theta2[:, :1] + (theta2[:, -1:] - theta2[:, :1]) * np.linspace(0, 1, _SAMPLES)
+    crank = lengths[1] * np.exp(1j * angle)
+    _, _, r3, r4 = lengths
+    coupler, along = coupler_of(kind.dyad, ground, crank, r3, r4, assembly[:, None])
+    at_a, fixed = o2 + crank, np.ones_like(crank)
+    return {"o2": o2 * fixed, "o4": o4 * fixed, "a": at_a, "b": at_a + coupler, "p": at_a + arm * along}

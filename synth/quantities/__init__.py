@@ -1,1 +1,1 @@
-"""Problems in the frame of the search, kinds of linkage, and what can be asked of them as formulas."""
+"""Problems in the frame of the search, kinds of linkage, and formulas of their quantities."""

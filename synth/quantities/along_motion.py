@@ -1,4 +1,4 @@
-"""Formulas of what varies along the task motion: torque, joint forces, velocities; their greatest magnitude.
+"""Quantities along the task motion, such as torque, joint forces and velocities: their greatest magnitude.
 
 Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
 """
@@ -14,18 +14,18 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.drive_torque import drive_torque, joint_forces
-from grashof.synth.quantities.driver_way import drive_of, driver_at
+from grashof.synth.quantities.driver_motion import drive_of, driver_at
 from grashof.synth.quantities.loading import NOTHING, Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 SCREENED = 25  # instants at which many linkages are compared
-LOOKED_AT = 30 * SCREENED  # instants at which one linkage is looked at
+INSPECTED = 30 * SCREENED  # instants at which one linkage is inspected
 AGREES = 2e-3  # share of its bound by which a magnitude may exceed it
 MOST_PEAKS = 4  # that are reported at once
 
 
-# What is bounded over the task motion, by the key of the quantity, in `Problem.scale`: of scalars and vectors
-# the magnitude, of several the greatest.
+# Quantities bounded over the task motion, by their keys, in `Problem.scale`: the magnitude of scalars and
+# vectors, the greatest of several.
 Along: TypeAlias = Callable[[Instant, Loading | None], list[Any]]
 ALONG: dict[str, Along] = {
     "mechanical_advantage": lambda at, _: [at.rates.speed4],
@@ -86,13 +86,13 @@ def overlooked(
     assembly: int,
     bound: float,
 ) -> list[float]:
-    """Where a linkage has peaks above a bound, as shares of the motion; the worst few.
+    """The worst few peaks of a linkage above a bound, as shares of the motion.
 
     Points (5,) in sizes and driver angles (N,) in rad as in `magnitudes`; the bound in `Problem.scale`.
     """
     ways = theta2[None], np.array([direction]), np.array([assembly])
-    (curve,) = magnitudes(scaled, key, points[None], *ways, LOOKED_AT)
+    (curve,) = magnitudes(scaled, key, points[None], *ways, INSPECTED)
     beside = np.concatenate([[-np.inf], curve, [-np.inf]])
     peaks = np.flatnonzero((curve >= beside[:-2]) & (curve > beside[2:]) & (curve > bound * (1 + AGREES)))
     worst = peaks[np.argsort(-curve[peaks], kind="stable")][:MOST_PEAKS]
-    return [float(peak) / (LOOKED_AT - 1) for peak in worst]
+    return [float(peak) / (INSPECTED - 1) for peak in worst]

@@ -1,4 +1,4 @@
-"""What a loading takes: the drive torque and the joint forces of a linkage at an instant.
+"""The drive torque and the joint forces of a loaded linkage at an instant.
 
 Written once for arrays and for CasADi symbols, as in `grashof.synth.quantities.formulas`.
 """
@@ -13,8 +13,8 @@ import numpy as np
 from grashof.problems.values.dynamics.load_specs import JOINTS, TURNING
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.quantities.driver_way import pieces
-from grashof.synth.quantities.loading import Loading, Mass, Push
+from grashof.synth.quantities.driver_motion import pieces
+from grashof.synth.quantities.loading import AppliedLoad, Loading, Mass
 
 _TURN_DEG = 360.0
 _FRICTION_ROUNDS = 3  # each takes the joint forces of the last
@@ -40,7 +40,7 @@ def joint_forces(at: Instant, loading: Loading) -> list[Any]:
 
 
 def _reactions(at: Instant, loading: Loading, moments: list[Any]) -> tuple[list[Any], tuple[Any, Any]]:
-    """Forces in O2, A, B and O4, and what presses in the slide."""
+    """Forces in O2, A, B and O4, and the force across the slide with its moment."""
     # about A of link 3 and the origin of the frame of link 4; a moment in a pin is a force along a slide
     force: dict[int, Any] = {2: Vector(0.0, 0.0), 3: Vector(0.0, 0.0), 4: Vector(0.0, 0.0)}
     turning = [0.0 if joint == at.slide else moment for joint, moment in enumerate(moments)]
@@ -61,40 +61,40 @@ def _forces(at: Instant, loading: Loading) -> Iterator[tuple[int, Vector, Vector
     for each in loading.masses:
         mass, _, arm = _body(at, each)
         yield each.link, arm, mass * (loading.inertia * at.acceleration(each.link, arm) - weight)
-    for push in loading.pushes:
-        if not push.moment:
-            force = Vector(*_values(at, push))
-            if push.turning:
-                along = at.link(push.link)
+    for load in loading.applied:
+        if not load.moment:
+            force = Vector(*_values(at, load))
+            if load.turning:
+                along = at.link(load.link)
                 force = (force.x * along + force.y * along.left) / np.sqrt(along.square)
-            yield push.link, at.on_link(push.link, push.at), -force
-    for pull in loading.pulls:
-        first, second = map(at.place, pull.links, pull.places)
+            yield load.link, at.on_link(load.link, load.at), -force
+    for spring in loading.springs:
+        first, second = map(at.place, spring.links, spring.places)
         rates = [
             at.velocity(link, at.on_link(link, place)) if link != 1 else Vector(0.0, 0.0)
-            for link, place in zip(pull.links, pull.places, strict=True)
+            for link, place in zip(spring.links, spring.places, strict=True)
         ]
         way = second - first
-        force = pull.stiffness * way
-        if pull.free_length or pull.damping:
+        force = spring.stiffness * way
+        if spring.free_length or spring.damping:
             along = way / np.sqrt(way.square + _TINY)
-            slack = pull.damping * along.dot(rates[1] - rates[0]) - pull.stiffness * pull.free_length
+            slack = spring.damping * along.dot(rates[1] - rates[0]) - spring.stiffness * spring.free_length
             force = force + slack * along
-        for link, place, demand in zip(pull.links, pull.places, (-force, force), strict=True):
+        for link, place, demand in zip(spring.links, spring.places, (-force, force), strict=True):
             if link != 1:
                 yield link, at.on_link(link, place), demand
 
 
 def _moments(at: Instant, loading: Loading) -> Iterator[tuple[int, Any]]:
-    """Link, and the moment that it takes besides that of forces."""
+    """Link, and the moment on it besides those of forces."""
     for each in loading.masses:
         inertia = _body(at, each)[1]
         if each.inertia or each.per_size:
             yield each.link, loading.inertia * inertia * at.turned(each.link)
-    for push in loading.pushes:
-        if push.moment:
-            (moment,) = _values(at, push)
-            yield push.link, -moment
+    for load in loading.applied:
+        if load.moment:
+            (moment,) = _values(at, load)
+            yield load.link, -moment
 
 
 def _body(at: Instant, mass: Mass) -> tuple[Any, Any, Vector]:
@@ -111,24 +111,24 @@ def _body(at: Instant, mass: Mass) -> tuple[Any, Any, Vector]:
     return bar, bar * (square + mass.width**2) / 12, middle
 
 
-def _values(at: Instant, push: Push) -> list[Any]:
+def _values(at: Instant, load: AppliedLoad) -> list[Any]:
     """Components of a force or moment: constant, or of the curve through its rows."""
-    if not push.over:
-        return list(push.values)
-    if push.over == "time":
+    if not load.over:
+        return list(load.values)
+    if load.over == "time":
         place = at.driver.time
-    elif push.over == "travel":
+    elif load.over == "travel":
         place = at.travel
     else:
-        degrees = np.degrees(1.0) * at.turn(2 if push.over == "theta2" else 4)
-        place = push.places[0] + np.remainder(degrees - push.places[0], _TURN_DEG)
-    return [_curve(push, column, place) for column in range(len(push.rows[0]))]
+        degrees = np.degrees(1.0) * at.turn(2 if load.over == "theta2" else 4)
+        place = load.places[0] + np.remainder(degrees - load.places[0], _TURN_DEG)
+    return [_curve(load, column, place) for column in range(len(load.rows[0]))]
 
 
-def _curve(push: Push, column: int, place: Any) -> Any:
-    """The monotone cubic through a column; a sum of what each piece adds, so that nothing branches."""
-    places, values = np.array(push.places), np.array(push.rows)[:, column]
-    if push.over in TURNING:  # its slopes look at the neighbours on the other turn
+def _curve(load: AppliedLoad, column: int, place: Any) -> Any:
+    """The monotone cubic through a column, as a sum over its pieces, so that nothing branches."""
+    places, values = np.array(load.places), np.array(load.rows)[:, column]
+    if load.over in TURNING:  # its slopes look at the neighbours on the other turn
         beside = min(2, len(places) - 1)
         places = np.concatenate(
             [places[-1 - beside : -1] - _TURN_DEG, places, places[1 : 1 + beside] + _TURN_DEG]
@@ -178,7 +178,7 @@ def _joint_moments(at: Instant, loading: Loading) -> list[Any]:
 
 
 def _pressing(loading: Loading, across: Any, moment: Any) -> Any:
-    """What friction in the slide grows with: max(|N|, 2 |M| / length)."""
+    """The force that causes friction in the slide: max(|N|, 2 |M| / length)."""
     across = np.sqrt(across**2 + _TINY)
     if not loading.slide_length:
         return across

@@ -1,8 +1,7 @@
-"""Formulas of the search: what designs are worth, written once with NumPy functions.
+"""Quantities of a design as the search computes them, written once with NumPy functions.
 
-On the arrays of many designs a formula is the screen, on numbers with derivatives (`Dual`) a residual of the
-batched search, on CasADi symbols a row or a limit of the nonlinear programme. The judge has a measure of the
-same key, which shares nothing with it.
+On arrays a formula screens many designs, on `Dual` numbers it is a residual of the batched search, on CasADi
+symbols a row or a bound of the programme. The judge's measure of the same key shares nothing with it.
 """
 
 from __future__ import annotations
@@ -12,18 +11,18 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import permutations
 from operator import attrgetter
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, Limits
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.loop.dyad import Standing
+from grashof.synth.loop.dyad import PlacedLoop, stroke_of
 from grashof.synth.loop.vector import Vector
 
 
-class View(Standing):
+class View(PlacedLoop):
     """A design, or many, at their targets; lengths in sizes, angles in rad.
 
     Scalars are arrays (n, 1), `Dual`, or symbols; what belongs to targets has N columns, or is a symbol of N
@@ -58,7 +57,10 @@ class Part:
     fixed: bool = False  # the start decides it: no solve can change it
 
 
-def _place(name: str, dyad: int) -> tuple[Part, ...]:
+Formulas: TypeAlias = Mapping[str, tuple[Part, ...]]
+
+
+def _place(name: str, dyad: int | None) -> tuple[Part, ...]:
     return tuple(Part(f"{name}.{axis}", attrgetter(f"{name}.{axis}"), axis, dyad) for axis in "xy")
 
 
@@ -72,57 +74,94 @@ def _bracket(name: str) -> tuple[Part, ...]:
     return tuple(Part(f"{name}_on_body.{axis}", partial(place, axis), axis) for axis in "xy")
 
 
-_LINKS = (
+_LINKS = _R1, _R2, _R3, _R4 = (
     Part("r1", lambda d: d.r1),
     Part("r2", lambda d: d.r2, dyad=2),
     Part("r3", lambda d: d.r3),
     Part("r4", lambda d: d.r4, dyad=4),
 )
-_EXTREMES = Part(
-    "longest to shortest",
-    lambda d: np.maximum(np.maximum(d.r1, d.r2), np.maximum(d.r3, d.r4)),
-    per=lambda d: np.minimum(np.minimum(d.r1, d.r2), np.minimum(d.r3, d.r4)),
-)
-# Between any two links: what stands for the extremes where no kink is wanted.
-_PAIRS = tuple(
-    Part(f"{long.name} to {short.name}", long.of, per=short.of) for short, long in permutations(_LINKS, 2)
-)
+_ARM = Part("A-P", lambda d: d.ap.square, dyad=2, squared=True)
+_OFFSET = Part("offset", lambda d: d.offset)
 
 
-_FLAT = 1 - 1e-15
+def smooth_ratio(*links: Part) -> tuple[Part, ...]:
+    """Ratios of any two links, in place of the extremes, which have a kink."""
+    return tuple(
+        Part(f"{long.name} to {short.name}", long.of, per=short.of) for short, long in permutations(links, 2)
+    )
+
+
+def _lengths(longest: Callable[[View], Any], shortest: Callable[[View], Any], *links: Part) -> Formulas:
+    """The lengths of links, and the ratio of the longest to the shortest."""
+    ratio = Part("longest to shortest", longest, per=shortest)
+    return {"link_length": links, **{link.name: (link,) for link in links}, "link_ratio": (ratio,)}
+
+
+def _lengths_of_two(one: Part, other: Part) -> Formulas:
+    return _lengths(
+        lambda d: np.maximum(one.of(d), other.of(d)), lambda d: np.minimum(one.of(d), other.of(d)), one, other
+    )
+
+
+def _within(cosine: Any) -> Any:
+    """A cosine kept between -1 and 1, where the loop does not close: arccos has no slope at the ends."""
+    return np.minimum(np.maximum(cosine, -1 + 1e-15), 1 - 1e-15)
 
 
 def _cosine(opposite: Any, one: Any, other: Any) -> Any:
-    """Law of cosines, kept between -1 and 1 where there is no triangle: arccos has no slope at the ends."""
-    cosine = (one**2 + other**2 - opposite**2) / (2 * one * other)
-    return np.minimum(np.maximum(cosine, -_FLAT), _FLAT)
+    """Law of cosines."""
+    return _within((one**2 + other**2 - opposite**2) / (2 * one * other))
+
+
+def _ratio_of(angle: Any) -> Any:
+    """Time ratio (pi + angle) / (pi - angle) of strokes that a crank at even speed makes."""
+    return (np.pi + angle) / np.maximum(np.pi - angle, 1e-9)
+
+
+def _swing(d: View, angle: Any) -> Any:
+    """The angle, or a turn of a double-crank; between the end targets unless the driver turns fully."""
+    full = (1 - d.double_crank) * angle + d.double_crank * TURN
+    return d.turns * full + (1 - d.turns) * np.abs(d.output_turn)
 
 
 def _output_swing(d: View) -> Any:
-    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded; of a double-crank a turn."""
+    """Between the triangles O2-B-O4 with links 2 and 3 stretched and folded."""
     far, close = (np.arccos(_cosine(d.r3 + sign * d.r2, d.r1, d.r4)) for sign in (1.0, -1.0))
-    whole = (1 - d.double_crank) * (far - close) + d.double_crank * TURN
-    # from the first target to the last where it does not turn fully
-    return d.turns * whole + (1 - d.turns) * np.abs(d.output_turn)
+    return _swing(d, far - close)
 
 
 def _time_ratio(d: View) -> Any:
-    """(pi + delta) / (pi - delta) with delta between the directions of O2B in its limit positions."""
+    """By the angle between the directions of O2B in its limit positions; zero for a double-crank."""
     far, close = (np.arccos(_cosine(d.r4, d.r1, d.r3 + sign * d.r2)) for sign in (1.0, -1.0))
     delta = (1 - d.double_crank) * np.abs(far - close)
-    # zero for a double-crank, whose output has no strokes
-    return (1 - d.double_crank) * (np.pi + delta) / np.maximum(np.pi - delta, 1e-9)
+    return (1 - d.double_crank) * _ratio_of(delta)
+
+
+def _stroke(d: View) -> Any:
+    """Between the limit positions; from the first target to the last unless the driver turns fully."""
+    return d.turns * stroke_of(d) + (1 - d.turns) * np.abs(d.output_travel)
+
+
+def _slide_time_ratio(d: View) -> Any:
+    """By the angle between the directions of O2A in both limit positions."""
+    far, near = (np.arccos(_within(d.offset / (d.r3 + sign * d.r2))) for sign in (1.0, -1.0))
+    return _ratio_of(np.abs(far - near))
+
+
+def _block_angle(d: View) -> Any:
+    """Between the rod's two positions at right angles to the crank."""
+    one, other = (np.arccos(_within((sign * d.r2 - d.offset) / d.r1)) for sign in (1.0, -1.0))
+    return other - one
 
 
 # By the key of the quantity.
-FORMULAS: dict[str, tuple[Part, ...]] = {
-    "link_length": _LINKS,
-    **{link.name: (link,) for link in _LINKS},
-    "link_ratio": (_EXTREMES,),
-    "coupler_arms": (
-        Part("A-P", lambda d: d.ap.square, dyad=2, squared=True),
-        Part("B-P", lambda d: d.bp.square, dyad=4, squared=True),
+FORMULAS: Formulas = {
+    **_lengths(
+        lambda d: np.maximum(np.maximum(d.r1, d.r2), np.maximum(d.r3, d.r4)),
+        lambda d: np.minimum(np.minimum(d.r1, d.r2), np.minimum(d.r3, d.r4)),
+        *_LINKS,
     ),
+    "coupler_arms": (_ARM, Part("B-P", lambda d: d.bp.square, dyad=4, squared=True)),
     "o2": _place("o2", 2),
     "o4": _place("o4", 4),
     "a": _place("a", 2),
@@ -136,23 +175,47 @@ FORMULAS: dict[str, tuple[Part, ...]] = {
     "time_ratio": (Part("time ratio", _time_ratio),),
     "driver_rotation": (Part("driver rotation", lambda d: d.driver_turn),),
 }
-SMOOTH = {"link_ratio": _PAIRS}
+_SHARED = {
+    key: FORMULAS[key] for key in ("o2", "a", "a_on_body", "theta2_start", "driver_sense", "driver_rotation")
+}
+# Of slider kinds B, and O4, are decided by both dyads together.
+SLIDER_CRANK: Formulas = {
+    **_lengths_of_two(_R2, _R3),
+    "coupler_arms": (_ARM, Part("B-P", lambda d: d.bp.square, squared=True)),
+    **_SHARED,
+    "b_on_body": FORMULAS["b_on_body"],
+    "b": _place("b", None),
+    "offset": (_OFFSET,),
+    "slide_angle": (Part("slide angle", lambda d: d.theta1 - np.pi / 2),),
+    "stroke": (Part("stroke", _stroke),),
+    "time_ratio": (Part("time ratio", _slide_time_ratio),),
+}
+INVERTED: Formulas = {
+    **_lengths_of_two(_R1, _R2),
+    "coupler_arms": (_ARM,),
+    **_SHARED,
+    "ground_angle": FORMULAS["ground_angle"],
+    "o4": _place("o4", None),
+    "offset": (_OFFSET,),
+    "output_swing": (Part("output swing", lambda d: _swing(d, _block_angle(d))),),
+    "time_ratio": (Part("time ratio", lambda d: (1 - d.double_crank) * _ratio_of(_block_angle(d))),),
+}
+SMOOTH = {"link_ratio": smooth_ratio(*_LINKS)}
+SMOOTH_SLIDER_CRANK = {"link_ratio": smooth_ratio(_R2, _R3)}
+SMOOTH_INVERTED = {"link_ratio": smooth_ratio(_R1, _R2)}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
 
 
-def parts_of(
-    limited: Collection[str], *formulas: Mapping[str, tuple[Part, ...]]
-) -> Iterator[tuple[str, Part]]:
-    """Parts of all that is limited, each with its field of `Requirements`."""
+def parts_of(limited: Collection[str], *formulas: Formulas) -> Iterator[tuple[str, Part]]:
+    """Parts of all limited quantities, each with its field of `Requirements`; the first mapping counts."""
     for name in limited:
         key = LIMITS[name].quantity.key
-        # the first mapping that has it, by the key of the quantity
         for part in next((each[key] for each in formulas if key in each), ()):
             if key != "link_length" or part.name not in limited:  # a limit of its own overrides it
                 yield name, part
 
 
 def range_of(wanted: Requirements, name: str, part: Part) -> Limits:
-    """What a field of `wanted` allows for a part."""
+    """The limits that a field of `wanted` sets for a part."""
     low, high = wanted.ranges(name)[part.axis]
     return low, high

@@ -36,13 +36,14 @@ class Frame:
 
     def requirements(self, requirements: Requirements) -> Requirements:
         """Resolved `requirements` with lengths in sizes and boxes in this frame."""
-        whole = requirements.resolved(self.scale, scale_free=self.scale_free)
-        limits = {name: self._limit(getattr(whole, name), limit) for name, limit in whole.limited.items()}
-        areas = tuple(self._area(corners) for corners in whole.keep_out)
-        return replace(whole, **limits, keep_out=areas)
+        full = requirements.resolved(self.scale, scale_free=self.scale_free)
+        limits = {name: self._limit(getattr(full, name), limit) for name, limit in full.limited.items()}
+        inside = [self.inward(corners) for corners in full.keep_out]
+        areas = tuple(np.stack([corners.real, corners.imag], axis=-1) for corners in inside)
+        return replace(full, **limits, keep_out=areas)
 
     def _limit(self, value: Any, limit: Limit) -> Any:
-        """What a field allows, in this frame."""
+        """The value of a field in this frame."""
         if isinstance(value, Box):
             begin = self.origin if limit.kind is Kind.INSIDE else 0j
             return Box(self._side(value.x, begin.real), self._side(value.y, begin.imag))
@@ -57,7 +58,3 @@ class Frame:
 
     def _side(self, side: Limits, begin: float) -> Limits:
         return (side[0] - begin) / self.scale, (side[1] - begin) / self.scale
-
-    def _area(self, corners: FloatArray) -> FloatArray:
-        inside = self.inward(corners)
-        return np.stack([inside.real, inside.imag], axis=-1)

@@ -1,4 +1,4 @@
-"""What a kind of linkage is to the search: what its loop closure decides, and nothing else.
+"""A kind of linkage in the search: the functions that depend on its loop closure.
 
 The loop is taken in a frame in which the ground line lies along the real axis: with r1 = 1, or of a
 slider-crank, whose O4 lies there at infinity, with r3 = 1. With e4 = e^(i theta4), across what slides,
@@ -18,10 +18,10 @@ import numpy as np
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import Closure
-from grashof.synth.loop.dyad import ClosingDyad, Standing, as_complex, as_vector
+from grashof.synth.loop.dyad import ClosingDyad, PlacedLoop, as_complex, as_vector
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.quantities.formulas import Part
+from grashof.synth.quantities.formulas import Formulas
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.theory.functions.output import Generators
 
@@ -36,7 +36,7 @@ _ONLY: dict[type, Any] = {}  # the one value of each kind
 
 
 class LoopOf(Protocol):
-    """What of a `Loop` says where it stands; its frame is that of the module."""
+    """The directions of a `Loop`, in the frame of this module."""
 
     @property
     def r4(self) -> FloatArray:
@@ -57,8 +57,8 @@ class Kind(ABC):
 
     linkage: ClassVar[type[Linkage]]
     proportions: ClassVar[int]  # numbers that are neither place nor size
-    formulas: ClassVar[Mapping[str, tuple[Part, ...]]]
-    smooth: ClassVar[Mapping[str, tuple[Part, ...]]]  # in place of those with a kink
+    formulas: ClassVar[Formulas]
+    smooth: ClassVar[Formulas]  # in place of those with a kink
     closure: ClassVar[Closure]
     instant: ClassVar[type[Instant]]
     generators: ClassVar[type[Generators]]  # those that generate functions
@@ -95,7 +95,7 @@ class Kind(ABC):
     def many(
         self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
     ) -> FloatArray:
-        """Give a `Many` its lengths and directions beside those of the dyads; signed sin mu (n, N)."""
+        """Set the lengths and directions of a `Many` beside those of the dyads; signed sin mu (n, N)."""
 
     @abstractmethod
     def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
@@ -103,20 +103,20 @@ class Kind(ABC):
 
     @abstractmethod
     def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        """What its value takes besides coupler point, assembly and body angle, from points (..., 5).
+        """Arguments of its value besides coupler point, assembly and body angle, from points (..., 5).
 
         Places as complex numbers, all lengths in the unit of the points.
         """
 
     @abstractmethod
     def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        """What `Instant.of` takes, from points (..., 5): ground, lengths, and P in the coupler's frame."""
+        """Arguments of `Instant`, from points (..., 5): ground, lengths, and P in the coupler's frame."""
 
     @abstractmethod
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
-        """O4 and B where its programme has no unknowns for them, from those `found` and e3."""
+        """O4 and B where the programme has no unknowns for them, from the unknowns `found` and e3."""
 
     @property
     def dyad(self) -> ClosingDyad:
@@ -141,7 +141,7 @@ class Kind(ABC):
         return []
 
     def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
-        """What a `Design` has of r1, r2, r3, r4, or the offset there, and of the ground's direction."""
+        """Fields of a `Design` from r1, r2, r3, r4, or the offset there, and the ground's direction."""
         names, every = self.linkage.mechanism.lengths, dict(zip(_LENGTHS, lengths, strict=True))
         found = {name: length if name in names else None for name, length in every.items()}
         offset = None if "r4" in names else every["r4"]
@@ -168,7 +168,7 @@ class Kind(ABC):
         self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
     ) -> ComplexArray:
         """B where A and the direction of the coupler are known, shape (...)."""
-        at = Standing()
+        at = PlacedLoop()
         at.o4, at.r3, at.offset = as_vector(np.asarray(o4)), *lengths[2:]
         return as_complex(self.dyad.b(at, as_vector(a), as_vector(turned)))
 
@@ -179,7 +179,7 @@ class Kind(ABC):
 
 
 def _root_of_any(square: FloatArray) -> FloatArray:
-    """Of what is not positive the root of 1: what is open has numbers, too."""
+    """The root; 1 where the square is not positive, so that open loops have numbers, too."""
     root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
     return root
 

@@ -1,4 +1,4 @@
-"""What a linkage carries: masses and loads of a problem, as numbers of the search."""
+"""The loading of a linkage: masses and loads of a problem, as numbers of the search."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Mass:
 
 
 @dataclass(frozen=True, slots=True)
-class Push:
+class AppliedLoad:
     """A force on a link, or a moment, in reference torques and sizes."""
 
     link: int
@@ -44,7 +44,7 @@ class Push:
 
 
 @dataclass(frozen=True, slots=True)
-class Pull:
+class SpringDamper:
     """A spring or damper between places of two links, in reference torques and sizes."""
 
     links: tuple[int, ...]
@@ -56,15 +56,15 @@ class Pull:
 
 @dataclass(frozen=True, slots=True)
 class Loading:
-    """All that takes a drive torque. It hashes, so that a programme can be kept for it."""
+    """All causes of a drive torque. It hashes, so that a programme can be kept for it."""
 
-    # What a kg takes for each size of acceleration in squares of the driver's mean velocity: omega2^2 S^2 /
-    # T0, with the task's size S in metres and the reference torque T0.
+    # Inertia force of a kg for an acceleration of one size, in squares of the driver's mean velocity:
+    # omega2^2 S^2 / T0, with the task's size S in metres and the reference torque T0.
     inertia: float
-    weight: Numbers  # what a kg weighs: g S / T0, a pair
+    weight: Numbers  # of a kg: g S / T0, a pair
     masses: tuple[Mass, ...]
-    pushes: tuple[Push, ...] = ()
-    pulls: tuple[Pull, ...] = ()
+    applied: tuple[AppliedLoad, ...] = ()
+    springs: tuple[SpringDamper, ...] = ()
     windings: tuple[tuple[int, float, float], ...] = ()  # torsion springs: joint, stiffness, free angle
     viscous: Numbers = (0.0,) * 4  # friction in O2, A, B, O4, as the next two
     constant: Numbers = (0.0,) * 4
@@ -87,10 +87,10 @@ class Loading:
             inertia=spec.omega2**2 * size**2 / unit,
             weight=_scaled(spec.gravity, size / unit),
             masses=tuple(_masses(problem, frame.scale)),
-            pushes=tuple(_push(load, frame, size / unit, 1 / unit) for load in spec.loads),
-            pulls=(
-                *(_pull(each, frame, size**2 / unit, spec.omega2) for each in spec.springs),
-                *(_pull(each, frame, size**2 / unit, spec.omega2) for each in spec.dampers),
+            applied=tuple(_applied_load(load, frame, size / unit, 1 / unit) for load in spec.loads),
+            springs=(
+                *(_spring_damper(each, frame, size**2 / unit, spec.omega2) for each in spec.springs),
+                *(_spring_damper(each, frame, size**2 / unit, spec.omega2) for each in spec.dampers),
             ),
             windings=tuple(
                 (JOINTS.index(each.between), each.stiffness / unit, float(np.radians(each.free_angle_deg)))
@@ -130,26 +130,30 @@ def _masses(problem: Problem, scale: float) -> Iterator[Mass]:
         yield Mass(3, mass=spec.payload, at_point=True)
 
 
-def _push(load: LoadSpec, frame: Frame, force: float, moment: float) -> Push:
+def _applied_load(load: LoadSpec, frame: Frame, force: float, moment: float) -> AppliedLoad:
     per = moment if load.is_moment else force
     turning, at = load.frame == "link", _scaled(load.at, 1 / frame.scale)
     if load.values is None:
         values = (load.moment,) if load.moment is not None else load.force or ()
-        return Push(load.link, at, turning, load.is_moment, _scaled(values, per))
+        return AppliedLoad(load.link, at, turning, load.is_moment, _scaled(values, per))
     places = tuple(row[0] / (frame.scale if load.over == "travel" else 1.0) for row in load.values)
     rows = tuple(_scaled(row[1:], per) for row in load.values)
-    return Push(load.link, at, turning, load.is_moment, over=load.over, places=places, rows=rows)
+    return AppliedLoad(load.link, at, turning, load.is_moment, over=load.over, places=places, rows=rows)
 
 
-def _pull(given: SpringSpec | DamperSpec, frame: Frame, per_size: float, omega2: float) -> Pull:
+def _spring_damper(
+    given: SpringSpec | DamperSpec, frame: Frame, per_size: float, omega2: float
+) -> SpringDamper:
     places = []
     for end in given.between:
         inside = frame.inward(np.array(end.at)) if end.link == 1 else complex(*end.at) / frame.scale
         places.append((float(inside.real), float(inside.imag)))
     links = tuple(end.link for end in given.between)
     if isinstance(given, DamperSpec):
-        return Pull(links, tuple(places), 0.0, 0.0, given.damping * omega2 * per_size)
-    return Pull(links, tuple(places), given.stiffness * per_size, given.free_length / frame.scale, 0.0)
+        return SpringDamper(links, tuple(places), 0.0, 0.0, given.damping * omega2 * per_size)
+    return SpringDamper(
+        links, tuple(places), given.stiffness * per_size, given.free_length / frame.scale, 0.0
+    )
 
 
 def _scaled(values: Numbers, factor: float) -> Numbers:

@@ -1,4 +1,4 @@
-"""A problem made ready for the search, and the way back from its frame to linkages."""
+"""A problem in the frame of the search, and the way back from there to linkages."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ScaledProblem:
 
     problem: Problem
     frame: Frame
-    targets: ComplexArray  # (N,); where P has to be; zero where its position is free
+    targets: ComplexArray  # (N,); places of P; zero where its position is free
     weights: FloatArray  # (N,), of the squared distances; zero where the position is free
     turns: FloatArray  # (N,); angles of the body; zero where they are free
     turn_weights: FloatArray  # (N,), sizes^2; of the squared turns from there; zero where the angle is free
@@ -32,11 +32,11 @@ class ScaledProblem:
     timing: FloatArray  # (N,); driver rotation from the first target, in either sense; zero where free
     wanted: Requirements  # resolved, in the frame
     exact: bool  # every target is met; otherwise least squares
-    kind: Kind  # the first that the problem asks for
+    kind: Kind  # the first that the problem requests
     constraints: tuple[Constraint, ...] = ()  # the user's own
     zones: FloatArray | None = None  # (2, N); how far the position and the angle of each target may be missed
     own_objective: OwnObjective | None = None  # the user's own in place of the problem's
-    of_use: float = 0.0  # least squares: designs up to this error are of use, be they far from the best
+    of_use: float = 0.0  # least squares: designs up to this error are useful, even far from the best
 
     @classmethod
     def of(
@@ -45,7 +45,7 @@ class ScaledProblem:
         constraints: Sequence[Constraint] = (),
         own_objective: OwnObjective | None = None,
     ) -> ScaledProblem:
-        """Make a problem ready."""
+        """A problem in its frame."""
         task, frame = problem.task, Frame.of(problem.task)
         zones = problem.zones
         exact = problem.requirements.is_exact(task) and zones is None
@@ -82,7 +82,7 @@ class ScaledProblem:
 
     @property
     def objective(self) -> Objective | None:
-        """What decides besides the error; None for the user's own."""
+        """The objective besides the error; None for the user's own."""
         return self.problem.objective if self.own_objective is None else None
 
     @property
@@ -97,12 +97,12 @@ class ScaledProblem:
 
     @property
     def has_targets(self) -> bool:
-        """Whether there is anything in the plane for a programme to meet: a position or an angle."""
+        """Whether a programme has targets in the plane: a position or an angle."""
         return self.problem.task.in_plane
 
     @property
     def by_descent(self) -> bool:
-        """Whether a programme makes an error small: that of targets in the plane, by least squares."""
+        """Whether a programme minimises the error of targets in the plane."""
         return self.has_targets and not self.exact
 
     @property
@@ -112,15 +112,15 @@ class ScaledProblem:
 
     @property
     def closed(self) -> bool:
-        """Whether the task motion is a whole turn."""
+        """Whether the task motion is a full turn."""
         return self.problem.task.closed
 
     def scale(self, quantity: Quantity) -> float:
-        """What the objective counts a quantity in, in the units of the frame."""
+        """The unit of a quantity in the objective, in the units of the frame."""
         return self.problem.scale(quantity) / self.frame.scale**quantity.unit.lengths
 
     def missed(self, p: ComplexArray, turned: FloatArray) -> FloatArray:
-        """Root mean weighted square, sizes, of what P, sizes, and the body, rad, (..., N) miss targets by."""
+        """Root mean weighted square, sizes, of the misses of P, sizes, and the body, rad, (..., N)."""
         off = np.angle(np.exp(1j * (turned - self.turns)))
         square = (self.weights * np.abs(p - self.targets) ** 2).sum(axis=-1)
         square = square + (self.turn_weights * off**2).sum(axis=-1)
@@ -133,7 +133,7 @@ class ScaledProblem:
         """Linkages with given pivots, (...), in the problem's unit; ProblemError where two pivots coincide.
 
         O2, O4, and A, B, P at the first target are (..., 5) in sizes, see `Kind.placed`; the angle from the
-        coupler to the body (...) in rad is by default as the first of whole poses asks for it.
+        coupler to the body (...) in rad is by default that of the first pose.
         """
         with np.errstate(invalid="ignore", divide="ignore"):  # a value refuses a link of no length
             coupler, given = self.kind.coupler(points), self.kind.arguments(points)
@@ -156,7 +156,7 @@ class ScaledProblem:
 
 
 def _turning(wanted: Requirements, task: Task) -> Requirements:
-    """A closed task takes a whole turn of the driver, whatever its rotatability."""
+    """The requirements of a closed task, which takes a full turn of the driver, whatever its rotatability."""
     if wanted.rotatability is not Rotatability.ANY or not task.closed:
         return wanted
     return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

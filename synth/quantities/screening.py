@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems import Requirements, Rotatability, TransmissionOver
+from grashof.problems import FourBar, Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, turned_beyond
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dyad import as_vector
@@ -16,8 +16,9 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 
-ROUNDING = 1e-10  # sizes, rad: by so much no limit is overstepped
-# The requirements that can stand in the way, named by their fields.
+ROUNDING = 1e-10  # sizes, rad: up to which a limit counts as kept
+TOUCHING = 1e-10  # sizes: a point no deeper inside an area counts as on its boundary
+# The requirements that linkages can violate, named by their fields.
 GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_out", "within")
 
 
@@ -192,7 +193,7 @@ def judge(
     if wanted.same_branch:
         violate("same_branch", (-assembly[:, None] * sine).max(axis=1, initial=-1.0) + 1e-6)
         violate("same_branch", reach - 1.0)
-    # Where the targets are not joined but have to be, that alone is what is missing.
+    # Where the targets are not joined but have to be, nothing else counts as missing.
     judged = joined if wanted.same_branch else np.ones_like(joined)
     violate("transmission_min_deg", judged * (np.radians(wanted.transmission_min_deg) - transmission))
     violate("rotatability", _rotatability_violation(view, wanted))
@@ -224,7 +225,7 @@ def dyad_violations(
     wanted: Requirements,
     kind: Kind,
 ) -> FloatArray:
-    """What dyads, driver ("o2") or driven ("o4"), violate by themselves, (n, len(GROUPS)).
+    """Violations by dyads alone, driver ("o2") or driven ("o4"), (n, len(GROUPS)).
 
     Such as length, coupler arm, places of ground pivot (n,) and joint at every target (n, N), all in sizes; P
     (n,) at the first target.
@@ -243,7 +244,7 @@ def dyad_violations(
 def violations_apart(
     found: Configurations, p: ComplexArray, track: ComplexArray, wanted: Requirements
 ) -> FloatArray:
-    """What both dyads, and P on its `track` (n, k), violate by themselves; see `dyad_violations`."""
+    """Violations by each dyad, and by P on its `track` (n, k), alone; see `dyad_violations`."""
     violations = dyad_violations("o2", found.o2, found.a, p, wanted, found.kind)
     violations += dyad_violations("o4", found.o4, found.b, p, wanted, found.kind)
     violations[:, GROUPS.index("keep_out")] += keep_out_violation("p", track, wanted)
@@ -251,14 +252,41 @@ def violations_apart(
 
 
 def keep_out_violation(name: str, points: ComplexArray, wanted: Requirements) -> FloatArray:
-    """How deep a pivot or the coupler point lies in areas kept out, deepest of its places (n, k); (n,)."""
-    if not wanted.keep_out:
-        return np.zeros(len(points))
-    # Here, not above: shapely takes a while to import, and few problems have areas.
-    from grashof.synth.quantities.keep_out_depth import depth
+    """Greatest depth (n,) of a pivot or the coupler point, at places (n, k), in areas kept out.
 
-    deepest: FloatArray = depth(wanted, name, points).max(axis=1)
+    Requirements in the frame of the points; `name` is "o2", "o4", "a", "b" or "p".
+
+    >>> square = Requirements(keep_out=[[[0, 0], [4, 0], [4, 4], [0, 4]]])
+    >>> points = np.array([[1 + 2j], [4 + 1j], [9]])
+    >>> keep_out_violation("o2", points, square).tolist(), keep_out_violation("a", points, square).tolist()
+    ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+    """
+    if name not in points_kept_out(wanted):
+        return np.zeros(len(points))
+    deepest: FloatArray = inside(wanted, points).max(axis=1)
     return deepest
+
+
+def points_kept_out(wanted: Requirements) -> tuple[str, ...]:
+    """Those of o2, o4, a, b, p that must keep out of areas: the stated ones, and the ends of links."""
+    if not wanted.keep_out:
+        return ()
+    return tuple(name for name in FourBar.mechanism.points if {name, "links"} & set(wanted.keep_out_for))
+
+
+def inside(wanted: Requirements, points: ComplexArray) -> FloatArray:
+    """Depth of points (...) inside the areas of the requirements; zero outside."""
+    # Here, not above: shapely takes a while to import, and few problems have areas.
+    import shapely
+
+    from grashof.problems.values.areas import solid
+
+    found = np.zeros(points.shape)
+    area = solid(wanted.keep_out)
+    within = shapely.contains_xy(area, points.real, points.imag)
+    places = shapely.points(points.real[within], points.imag[within])
+    found[within] = shapely.distance(shapely.boundary(area), places)
+    return np.where(found > TOUCHING, found, 0.0)
 
 
 def met(violations: FloatArray) -> BoolArray:
@@ -270,7 +298,7 @@ def met(violations: FloatArray) -> BoolArray:
 def _ways(
     found: Configurations, view: Many, violations: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray, FloatArray, FloatArray]:
-    """The motion that each linkage allows its driver, violations, greatest |cos mu| over it and a turn."""
+    """The driver's motion in each linkage, violations, and the greatest |cos mu| over it and over a turn."""
     dyad = found.kind.dyad
     fold, stretch = (np.abs(dyad.cos_mu(view, reach))[:, 0] for reach in dyad.along_ground(view))
     ends = found.theta2[:, [0, -1]] - view.theta1
@@ -295,7 +323,7 @@ def _ways(
 def _kept_inside(
     found: Configurations, violations: FloatArray, rows: IntArray, inside: FloatArray, ordered: bool
 ) -> tuple[Configurations, FloatArray]:
-    """Drivers of which some, `rows`, meet the targets at the angles `inside` of a range they cannot leave."""
+    """Drivers, some of which (`rows`) meet the targets at angles `inside` of a range they cannot leave."""
     visit, theta2, violations = found.visit.copy(), found.theta2.copy(), violations.copy()
     if ordered:  # out of order, the angles stay those of a driver that could turn
         step = np.diff(inside, axis=1)

@@ -1,1 +1,1 @@
-"""What a search comes to: what is chosen of its designs, or why there is none."""
+"""Results of a search: the designs chosen for the list, or why it is empty."""

@@ -1,4 +1,4 @@
-"""What is chosen from the designs of a search: all, trade-offs, or the best where targets may be missed."""
+"""The choice from the designs of a search: all, trade-offs, or the best where targets may be missed."""
 
 from __future__ import annotations
 
@@ -8,24 +8,23 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import Problem
-from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.designs.judging import judged_in_time
 from grashof.synth.designs.ranking import ranked
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.larger_zones import nearest_zones
-from grashof.synth.results.mixed import within_factor
+from grashof.synth.results.lists import within_factor
 from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
 from grashof.synth.search.ledger import EXACT_ERROR, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import error_of_use
 
-NEAR = 1.6  # times the error that is allowed: least-squares designs up to there are begun from
-SAME_LEAST, NO_ERROR = 1.001, 1e-9  # errors up to so many times the least one, or so small, are the least
-LEVEL, AT = 5.0, 0.01  # deg of transmission: what lists are made for, and how near designs come to it
+NEAR = 1.6  # times the error that is allowed: solves begin from least-squares designs up to it
+SAME_LEAST, NO_ERROR = 1.001, 1e-9  # times the least error, or errors, that count as the least one
+LEVEL, AT = 5.0, 0.01  # deg of transmission: steps of lists, and how near designs come to them
 LOCAL = "least error nearby"
-SEEDS = 12  # designs that are begun from
+SEEDS = 12  # designs from which solves begin
 
 
 def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
@@ -75,7 +74,7 @@ def _least_errors(scaled: ScaledProblem, ledger: Ledger) -> tuple[Candidate, ...
 
 
 def best_at(problem: Problem, one: Candidate, least: float) -> str:
-    """What a design of some error is best at: the error, or as much of it as its transmission angle costs."""
+    """The words for a design: least error, least error for its transmission angle, or least error nearby."""
     if one.error(problem) <= max(least * SAME_LEAST, NO_ERROR):
         return "least error"
     transmission = float(np.degrees(one.values[quantity_of(problem).key]))
@@ -85,15 +84,15 @@ def best_at(problem: Problem, one: Candidate, least: float) -> str:
 
 
 def least_error(scaled: ScaledProblem, ledger: Ledger) -> float:
-    """The least error that a search found, length; NaN for exact designs, and where zones allow errors."""
+    """The least error of a search, length; NaN for exact designs, and where zones allow errors."""
     fitted = not ledger.scaled.exact and scaled.zones is None and bool(ledger.best)
     return ledger.least * scaled.problem.task.error_unit if fitted else np.nan
 
 
 def why_ended(scaled: ScaledProblem, ledger: Ledger) -> str:
-    """Why the search ended, and a hint that exact designs could be asked for where least squares are."""
+    """Why the search ended, and a hint where exact designs could be requested in place of least squares."""
     fitted = not np.isnan(least_error(scaled, ledger)) and ledger.least <= EXACT_ERROR
     if not (fitted and scaled.problem.task.exact_by_default):
         return ledger.why
-    more = "every target can be met, and without exact = false more such designs are looked for"
+    more = "every target can be met, and without exact = false the search is for more such designs"
     return f"{ledger.why}; {more}" if ledger.why else more

@@ -1,4 +1,4 @@
-"""What a search comes to: what is chosen of its designs, or why there is none, and what happened."""
+"""The result of a search: its ranked list or why that is empty, proof, counts and history."""
 
 from __future__ import annotations
 
@@ -12,15 +12,13 @@ from grashof.synth.proof.points.followed import proof_of_points
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.proof.poses.five_poses import Certified, proof_of_all
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.results.advice import advice
 from grashof.synth.results.choice import choose, least_error, why_ended
-from grashof.synth.results.explain import explain
+from grashof.synth.results.explain import advice, explain
 from grashof.synth.results.result import Result
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
-from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
-from grashof.synth.search.tally import CHOICE, DISTINCT
 
 _LOG = logging.getLogger(__name__)
 
@@ -29,11 +27,11 @@ def conclude(
     scaled: ScaledProblem,
     ledgers: list[Ledger],
     run: Run,
-    asked: StopCondition,
+    stop_condition: StopCondition,
     bounds: Bounds | Certified | None = None,
     atlas: Atlas | None = None,
 ) -> Result:
-    """The ranked list of what one or two searches found, or why it is empty; with what bounds prove of it."""
+    """The ranked list of one or two searches, or why it is empty, with the proof from bounds."""
     chosen = choose(scaled, ledgers, run)
     _LOG.info("choice: %d designs, %d solves for it", len(chosen.designs), chosen.solved)
     explanation = explain(scaled, ledgers[-1], chosen, run)
@@ -45,11 +43,11 @@ def conclude(
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
         designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))
-    ledger.tally.totals.update({CHOICE: chosen.solved, DISTINCT: len(designs)})
+    ledger.tally.totals.update({CHOICE: chosen.solved, LISTED: len(designs)})
     history = RunHistory(
-        begun=asked.begun,
+        begun=stop_condition.begun,
         ended=now(),
-        ending=asked.ending,
+        ending=stop_condition.ending,
         resumed=run.journal.resumed,
         steps_recorded=run.journal.taken,
         record_lost=run.journal.lost,
@@ -59,7 +57,7 @@ def conclude(
     none = isinstance(bounds, Bounds) and bounds.none
     ended, seconds = "" if none else why_ended(scaled, ledger), run.times
     if ended and designs and not chosen.designs:
-        ended += "; those listed were found in looking for what stands in the way"
+        ended += "; those listed were found while looking for the reason"
     why = f"; {ended}" if ended else ""
     _LOG.info("ended after %.1f s, %s: %d designs%s", seconds["total"], history.ending, len(designs), why)
     proof = None
@@ -73,7 +71,7 @@ def conclude(
             designs,
             ledger.tally.found,
             stopped=not ledger.complete,
-            whole=ledger.whole,
+            whole=ledger.all_rounds_done,
             enough=ledger.enough,
         )
     if proof is not None and atlas is not None:
@@ -94,8 +92,8 @@ def conclude(
     )
 
 
-def needless(scaled: ScaledProblem, asked: StopCondition) -> Result:
+def needless(scaled: ScaledProblem, stop_condition: StopCondition) -> Result:
     """The empty list of targets that need no linkage."""
-    history = RunHistory(begun=asked.begun, ended=now(), ending=asked.ending)
+    history = RunHistory(begun=stop_condition.begun, ended=now(), ending=stop_condition.ending)
     note = f"no design: {finder_for(scaled).degenerate()}"
     return Result(scaled.problem, seconds={"total": 0.0}, note=note, history=history)

@@ -1,4 +1,4 @@
-"""Why there is no design: what alone would have to be relaxed, and the closest misses."""
+"""Why there is no design: single requirements that would have to be relaxed, and the closest misses."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.problems import Objective, Rotatability
+from grashof.problems import Objective, Problem, Rotatability, Task
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
@@ -22,6 +22,8 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import search_designs
+from grashof.synth.starts.strokes.limit_positions import places_of
+from grashof.synth.theory.limit_positions import best_transmission
 from grashof.synth.theory.stopping import StopRequested
 
 STOPPED = "no design: the search was stopped before it found one"
@@ -30,6 +32,9 @@ SHOWN = 8  # least-squares designs that stand for the nearest
 _WOULD, _BETWEEN = " alone would do", "; "
 ALTERNATIVES = 6  # that the note names
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
+GOOD = float(np.radians(40))  # transmission angle that textbooks recommend (Norton, sec. 3.3)
+LITTLE = float(np.radians(1))  # below it more digits are shown
+_HALVINGS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +48,7 @@ class Explanation:
 
 @dataclass(frozen=True, slots=True)
 class _Near:
-    """A design of least squares: judged as such, and against the requirements as they were asked."""
+    """A design of least squares, judged as such and by the requirements as stated."""
 
     by_squares: Verdict
     candidate: Candidate
@@ -69,7 +74,8 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     known = [one.candidate for one in rejected if one.candidate is not None]
     ways = relaxations(scaled, known, rng, run) + wider(scaled.problem, scaled.constraints, known)
     squares = None if run.ended() or not _may_be_near(scaled) else _least_squares(scaled, run)
-    near = [] if squares is None else _nearest(scaled, squares)
+    ranks = () if squares is None else ranked(squares.scaled.problem, squares.best)
+    near = [_near(scaled, one) for one in ranks[:SHOWN]]  # the nearest first
     designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
     if designs:
         return Explanation("", designs=designs)
@@ -78,7 +84,7 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
         alternatives = [(way.miss, way.words, way.candidate) for way in ways]
         for one in near[:1]:
             miss = _miss(one, scaled.problem.task.size)
-            if miss < 1:  # not farther away than the task is long
+            if miss < 1:  # no farther away than the size of the task
                 words = f"exact = false ({_comes_within(scaled, one, then='then ')})"
                 alternatives.append((miss, words, one.candidate))
         alternatives.sort(key=lambda one: one[:2])
@@ -123,7 +129,7 @@ def closest_misses(attempts: list[Attempt]) -> tuple[Candidate, ...]:
 
 
 def _least_squares(scaled: ScaledProblem, run: Run) -> Ledger:
-    """For targets to be met exactly: the search for designs that come as near as they can."""
+    """For targets to be met exactly: the search for the nearest designs."""
     wanted = replace(scaled.problem.requirements, exact=False)
     # Zones apart, an objective is of no effect there.
     objective = scaled.problem.objective if scaled.bounded else Objective()
@@ -133,35 +139,30 @@ def _least_squares(scaled: ScaledProblem, run: Run) -> Ledger:
     return search_designs(scaled.of_problem(problem), alone)
 
 
-def _nearest(scaled: ScaledProblem, squares: Ledger) -> list[_Near]:
-    """What least squares came to, the nearest first."""
-    return [_near(scaled, one) for one in ranked(squares.scaled.problem, squares.best)[:SHOWN]]
-
-
 def _near(scaled: ScaledProblem, by_squares: Candidate) -> _Near:
     return _Near(by_squares.verdict, judged_again(scaled, by_squares))
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:
-    """Whether targets may be missed instead: two poses leave least squares nothing to make small."""
+    """Whether targets may be missed instead: two poses leave least squares no error to minimise."""
     return scaled.exact and len(scaled.targets) > 2
 
 
 def _miss(near: _Near, size: float) -> float:
-    """By how much a least-squares design misses its targets: sizes or rad."""
+    """Greatest miss of a least-squares design: sizes or rad."""
     verdict = near.by_squares
     return float(np.nanmax([*verdict.angle_error, *verdict.output_error, verdict.error_max / size]))
 
 
 def _ways_note(why: str, words: list[str], given: str = "") -> str:
-    """The note that names single requirements, of which each would do beside what is `given`."""
+    """The note that names single requirements, each of which would do together with `given`."""
     reason = f"no design: {why}" if why else "no design meets all requirements"
     alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
     return f"{reason}; {alone}: {_BETWEEN.join(words)}"
 
 
 def note_parts(note: str) -> tuple[str, list[str]]:
-    """What a note says, and the requirements that it names one by one.
+    """The reason in a note, and the requirements that it names one by one.
 
     >>> note_parts("no design; each of these alone would do: r 3 instead of 2; order = false")
     ('no design; each of these alone would do', ['r 3 instead of 2', 'order = false'])
@@ -173,7 +174,7 @@ def note_parts(note: str) -> tuple[str, list[str]]:
 
 
 def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:
-    """How near a least-squares design comes; numbers are rounded up, so that they hold."""
+    """Misses of a least-squares design in words; numbers are rounded up, so that they hold."""
     unit = f" {scaled.problem.length_unit}" if scaled.problem.length_unit else ""
     verdict, output = near.by_squares, scaled.problem.task.counted_in
     missed = {
@@ -186,7 +187,7 @@ def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:
 
 
 def _none_note(scaled: ScaledProblem, nearest: tuple[Candidate, ...], why: str) -> str:
-    """The note where no single requirement does."""
+    """The note where no single requirement would do."""
     squares = ", nor a least-squares design" if _may_be_near(scaled) else ""
     closest = f"; the closest one misses {_missed(scaled, nearest[0])}" if nearest else ""
     if why:
@@ -197,9 +198,48 @@ def _none_note(scaled: ScaledProblem, nearest: tuple[Candidate, ...], why: str) 
 
 
 def _missed(scaled: ScaledProblem, candidate: Candidate) -> str:
-    """What a design misses, and which line of the problem file would ask for less."""
+    """The defects of a design, and the line of the problem file that would require less."""
     defects = candidate.verdict.defects
     missed, less = {defect.requirement for defect in defects}, ""
     if "rotatability" in missed and scaled.wanted.rotatability is not Rotatability.ANY:
-        less = '; rotatability = "any" asks for less'
+        less = '; rotatability = "any" requires less'
     return " and ".join(map(str, defects)) + less
+
+
+def advice(problem: Problem) -> str:
+    """A note for a stroke that no linkage transmits well, with tasks that would allow more; else empty.
+
+    >>> from grashof.problems import StrokeTask
+    >>> advice(Problem(task=StrokeTask.from_degrees(swing_deg=80, time_ratio=1.05)))
+    ''
+    >>> print(advice(Problem(task=StrokeTask.from_degrees(swing_deg=40, time_ratio=1.5))))
+    crank-rockers with this swing and time ratio transmit at 31.8 deg at best, less than the usual 40 deg; \
+time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
+    """
+    task = problem.task
+    if not task.at_limits:
+        return ""
+    places = places_of(ScaledProblem.of(problem).kind)
+    if not places.advised or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+        return ""
+    kinds, what = places.what, places.advised
+    usual = f"{np.degrees(GOOD):.0f} deg"
+    ratio = _ratio_that_allows(task)
+    smaller = (
+        f"time ratios up to {ratio:.2f} allow {usual}" if ratio > 1 else f"{usual} takes a smaller {what}"
+    )
+    angle = f"{np.degrees(best):.{1 if best > LITTLE else 4}f}"
+    return (
+        f"{kinds} with this {what} and time ratio transmit at {angle} deg at best, less than "
+        f"the usual {usual}; {smaller}, and a six-bar may do it as asked"
+    )
+
+
+def _ratio_that_allows(task: Task) -> float:
+    """The greatest time ratio, in hundredths, that allows a good transmission angle; 1 where none does."""
+    low, high = 1.0, task.time_ratio
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        good = best_transmission(task.swing, middle) >= GOOD
+        low, high = (middle, high) if good else (low, middle)
+    return float(np.floor(100 * low) / 100)

@@ -1,4 +1,4 @@
-"""Zones that are too small: how large they would have to be."""
+"""Zones that are too small: the size that would do."""
 
 from __future__ import annotations
 
@@ -7,15 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from grashof.analysis import verify
 from grashof.analysis.judge.design import Constraint
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.zones import MISSED, shares
+from grashof.synth.designs.judging import MISSED, shares
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.results.relaxed_limits import Relaxation
+from grashof.synth.results.relaxed_limits import Relaxation, accepted
 from grashof.synth.results.trade_offs import started_at
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.run import Run
@@ -60,20 +59,13 @@ def nearest_zones(
 def wider(
     problem: Problem, constraints: Sequence[Constraint], known: Sequence[Candidate]
 ) -> list[Relaxation]:
-    """Larger zones, or a greater tolerance, by which the nearest of some designs would do; one at most."""
+    """Larger zones, or a greater tolerance, under which the nearest of some designs would do; at most one."""
     if problem.zones is None:
         return []
-    # they are judged against all requirements, the one named also under the larger zones
+    # designs are judged by all requirements, the one named also under the larger zones
     for one in _missing_zones(problem, known):
         asked, words = _enlarged(problem, shares(problem, one.verdict))
-        if verify(
-            one.linkage,
-            asked.task,
-            asked.requirements,
-            constraints,
-            problem=asked,
-            cylinder=one.verdict.cylinder,
-        ).ok:
+        if accepted(one, asked, asked.requirements, constraints):
             miss = max(defect.miss for defect in one.verdict.defects)
             own = tuple(constraints)
             return [Relaxation("within", words, asked.requirements, own, one, miss, words.count(" and ") + 1)]
@@ -81,19 +73,19 @@ def wider(
 
 
 def _missing_zones(problem: Problem, known: Sequence[Candidate]) -> list[Candidate]:
-    """Those that miss nothing but their zones, the nearest first."""
+    """Designs that miss nothing but their zones, the nearest first."""
     near = [one for one in known if {defect.requirement for defect in one.verdict.defects} <= MISSED]
     return sorted(near, key=lambda one: (max(shares(problem, one.verdict)), one.id))
 
 
 def _need(problem: Problem, one: Candidate) -> FloatArray:
-    """How many times as large as they are zones of positions and of angles would have to be."""
+    """Factors by which zones of positions and of angles would have to grow."""
     need = np.array(shares(problem, one.verdict))
     return need if len(problem.task.stated_zones) == 2 else np.full(2, need.max())
 
 
 def _enlarged(problem: Problem, times: tuple[float, float]) -> tuple[Problem, str]:
-    """The problem with zones so many times as large, and what changes in its file, in words."""
+    """The problem with zones enlarged by two factors, and the change of its file in words."""
     task, wanted = problem.task, problem.requirements
     if task.zones is None:  # a tolerance
         tolerance = up(wanted.tolerance * max(times))

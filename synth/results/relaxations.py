@@ -1,4 +1,4 @@
-"""Which single requirement stands in the way, and by how much it alone would have to be relaxed."""
+"""Single requirements that prevent a design, and by how much each would have to be relaxed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.problems import ProblemError
-from grashof.problems.values.arrays import FloatArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
 from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
@@ -43,14 +42,13 @@ DEAD = 1e-3  # rad: a transmission angle near a dead position
 def relaxations(
     scaled: ScaledProblem, known: list[Candidate], rng: np.random.Generator, run: Run
 ) -> list[Relaxation]:
-    """For each requirement that may be the only one in the way: how it would have to be relaxed.
+    """At most one relaxation for each requirement that may alone prevent a design, the smallest miss first.
 
-    One relaxation for each requirement at most, the smallest miss first; `known` are designs that were
-    rejected. The judge has accepted each design under the relaxed requirement and all others. Without the
-    requirement a search finds linkages that meet all others; from the nearest of them the elastic programme
-    makes what is missed of it as small as it can. Fixed numbers of draws and solves bound the time, so that
-    the seed decides. Where it is proven that even without the requirement there is no design, nothing is
-    searched.
+    `known` are designs that were rejected. The judge has accepted each design under the relaxed requirement
+    and all others. Without the requirement a search finds linkages that meet all others; from the nearest of
+    them the elastic programme minimises the miss. Fixed numbers of draws and solves bound the time, so that
+    the seed decides. Nothing is searched where it is proven that there is no design even without the
+    requirement.
     """
     found = list[Relaxation]()
     for key in limiting(scaled.problem, scaled.constraints):
@@ -58,7 +56,7 @@ def relaxations(
             break
         try:
             loose = _loose(scaled, key)
-        except ProblemError:  # something else that is asked needs this requirement
+        except ProblemError:  # another requirement needs this one
             continue
         bounds = bounds_before(loose, run.proving)
         if bounds is not None and bounds.none:
@@ -71,7 +69,7 @@ def relaxations(
 
 
 def _with_best(relaxed: Relaxation, bounds: Bounds | None) -> Relaxation:
-    """The same with what the best design without the requirement transmits, where that is proven."""
+    """The relaxation with the transmission angle of the best design without it, where that is proven."""
     if bounds is None or not bounds.closed or bounds.left_out:
         return relaxed
     upper = np.ceil(100 * np.degrees(bounds.upper)) / 100  # to the safe side
@@ -92,7 +90,7 @@ def _least(scaled: ScaledProblem, key: str, candidates: list[Candidate]) -> Rela
 def _candidates(
     scaled: ScaledProblem, loose: ScaledProblem, key: str, rng: np.random.Generator, run: Run
 ) -> list[Candidate]:
-    """Designs that miss a requirement by little, and others by nothing if that can be."""
+    """Designs that narrowly miss a requirement, and no others if possible."""
     finder = finder_for(loose)
     if isinstance(finder, WholeDesigns):
         return _judged(scaled, loose, finder.closest_to(scaled, key, rng), run)
@@ -111,7 +109,7 @@ def _candidates(
 
 
 def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
-    """What may be missed of a requirement: all of it, and of a box one side alone."""
+    """Parts of a requirement that may be missed: all of it, and single sides of a box."""
     closed = [axis for axis, side in scaled.wanted.ranges(key).items() if axis and np.isfinite(side).any()]
     return [(key,), *((f"{key}.{axis}",) for axis in closed if len(closed) > 1)]
 
@@ -119,7 +117,7 @@ def _parts(scaled: ScaledProblem, key: str) -> list[tuple[str, ...]]:
 def _judged(
     scaled: ScaledProblem, solved: ScaledProblem, starts: Sequence[Proposal], run: Run
 ) -> list[Candidate]:
-    """The designs of starts solved under other requirements, judged by those that were asked."""
+    """The designs of starts solved under other requirements, judged by the stated ones."""
     attempts = run.solve(solved, starts, 0)
     return [judged_again(scaled, one.candidate) for one in attempts if one.candidate is not None]
 
@@ -130,7 +128,7 @@ def _loose(scaled: ScaledProblem, key: str) -> ScaledProblem:
 
 
 def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
-    """The same relaxation with an angle rounded, or a design of smaller error, if there is one."""
+    """The relaxation with its angle rounded, or with a design of smaller error, if there is one."""
     angle = fixes_angle(scaled.problem.requirements, found.key)
     if scaled.exact and not angle:
         return found
@@ -138,7 +136,7 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     problem = replace(scaled.problem, requirements=asked.requirements)
     eased = replace(scaled.of_problem(problem), constraints=asked.constraints)
     under_it = judged_again(eased, found.candidate)
-    # solved under the relaxed requirement, which makes sure of it
+    # solved under the relaxed requirement, to be certain
     (made,) = run.solve(eased, [Start.of_linkage(eased, under_it.linkage, under_it.verdict)], 0)
     if not made.verified:
         return found
@@ -152,17 +150,15 @@ def rejudged(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages judged again, by the requirements of another problem with the same task."""
     if not len(linkages):
         return linkages
-    o2, o4, a, b, p = linkages.points.T
-    counted: FloatArray = np.take_along_axis(linkages.theta2, np.argsort(linkages.visit, axis=1), axis=1)
-    at_a = o2[:, None] + np.abs(a - o2)[:, None] * np.exp(1j * counted)
-    at_b = at_a + linkages.coupler
-    at_p = at_a + ((p - a) / (b - a))[:, None] * linkages.coupler
+    o2, o4, _, _, p = linkages.points.T
+    in_order = np.argsort(linkages.visit, axis=1)[None]
+    at_a, at_b, at_p = np.take_along_axis(linkages.track, in_order, axis=2)
     found = Configurations(
         o2, o4, at_a, at_b, linkages.visit, linkages.theta2, linkages.direction, linkages.kind
     )
     violations = violations_apart(found, p, at_p, scaled.wanted)
     first_turn = None if scaled.motion is None else np.full(len(linkages), scaled.motion.first_turn)
     judged = judge(found, p, linkages.error, violations, scaled.wanted, linkages.body_angle, first_turn)
-    if scaled.wanted.same_branch:  # at a dead position rounding decides what else is lacking
+    if scaled.wanted.same_branch:  # at a dead position rounding decides on other violations
         judged.violations[judged.transmission < DEAD, GROUPS.index("same_branch")] += 1.0
     return fully_screened(scaled, judged)

@@ -1,4 +1,4 @@
-"""Requirements asked less strictly: how loose each may get, and what a design would have to be allowed."""
+"""Relaxed requirements: how loose each may get, and the limits under which a design would be accepted."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ COARSEST = 0.02  # share of a change that its value may be rounded by
 
 @dataclass(frozen=True, slots=True)
 class Relaxation:
-    """A requirement that alone stands in the way, and a design that the judge accepts once it is relaxed."""
+    """A requirement that alone prevents a design, and one that the judge accepts once it is relaxed."""
 
     key: str  # the requirement
-    words: str  # what would do, such as "transmission_min_deg 31.4 instead of 35"
+    words: str  # the change, such as "transmission_min_deg 31.4 instead of 35"
     requirements: Requirements  # those of the problem, this one relaxed
     constraints: tuple[Constraint, ...]  # the user's own, relaxed where the key is "constraints"
-    candidate: Candidate  # judged against the requirements as they were asked
-    miss: float  # by how much it misses them: sizes, rad or ratio
-    figures: int = 1  # how many limits change
+    candidate: Candidate  # judged by the requirements as stated
+    miss: float  # of these requirements: sizes, rad or ratio
+    figures: int = 1  # number of limits that change
 
 
 @dataclass(frozen=True, slots=True)
-class Eased:
+class RelaxedConstraint:
     """A user's constraint that counts as met up to a value above zero."""
 
     constraint: Constraint
     by: float
 
     def __call__(self, design: Design) -> Any:
-        """The value, less what is allowed."""
+        """The value, less the allowance."""
         value = self.constraint(design)
         return [one - self.by for one in value] if isinstance(value, (list, tuple)) else value - self.by
 
 
 def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
-    """Keys of the requirements that ask for more than to exclude the absurd, exactness aside."""
+    """Keys of the requirements that differ from the defaults, exactness aside."""
     wanted, usual = problem.requirements, Requirements()
     keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
     keys += ["constraints"] * bool(constraints)  # the user's own
@@ -65,57 +65,54 @@ def fixes_angle(wanted: Requirements, key: str) -> bool:
 
 
 def loosest(problem: Problem, key: str) -> Requirements:
-    """The requirements of a problem with one of them taken out, or as loose as is not absurd."""
+    """The requirements of a problem without one of them, or with it as loose as is reasonable."""
     wanted = problem.requirements
-    if key == "constraints":
-        return wanted
-    given = getattr(wanted, key)
-    loose: Any = None
-    usual = (
-        LIMITS["link_length" if key in FourBar.mechanism.lengths else key].usual if key in LIMITS else None
-    )
-    if usual is not None:
-        low, high = (problem.task.size * share for share in usual)
-        loose = (min(low, given[0]), max(high, given[1]))
-    if key in LIMITS and LIMITS[key].kind is Kind.WORD:
-        loose = LIMITS[key].widest
-    others = {
+    limit = LIMITS.get("link_length" if key in FourBar.mechanism.lengths else key)
+    loose: dict[str, Any] = {
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
         "keep_out": (),
         **dict.fromkeys(UNSMOOTH, False),
     }
-    changed: dict[str, Any] = {key: others.get(key, loose)}
+    if key == "constraints":
+        return wanted
+    if key not in loose and limit is not None and limit.usual is not None:
+        given, (low, high) = getattr(wanted, key), (problem.task.size * share for share in limit.usual)
+        loose[key] = (min(low, given[0]), max(high, given[1]))
+    elif limit is not None and limit.kind is Kind.WORD:
+        loose[key] = limit.widest
+    changed: dict[str, Any] = {key: loose.get(key)}
     return replace(wanted, **changed)
 
 
 def relaxation(
     problem: Problem, constraints: Sequence[Constraint], key: str, candidate: Candidate
 ) -> Relaxation | None:
-    """What a requirement would have to be for a judged design; None where another is in its way, too."""
+    """The relaxation that a judged design needs of a requirement; None where it misses another one, too."""
     missed = [defect for defect in candidate.verdict.defects if defect.requirement == key]
     if key not in ("rotatability", *UNSMOOTH) and len(missed) < len(candidate.verdict.defects):
         return None
     miss, own = max((defect.miss for defect in missed), default=1.0), tuple(constraints)
     # rounded to the loose side; the judge has to accept the design with it
-    for change, words in _eased(problem, own, key, missed):
-        eased = change.pop("constraints", own)
+    for change, words in _changes(problem, own, key, missed):
+        relaxed = change.pop("constraints", own)
         wanted = replace(problem.requirements, **change)
-        if verify(
-            candidate.linkage,
-            problem.task,
-            wanted,
-            eased,
-            problem=problem,
-            cylinder=candidate.verdict.cylinder,
-        ).ok:
-            return Relaxation(key, words, wanted, eased, candidate, miss, words.count(" instead of "))
+        if accepted(candidate, problem, wanted, relaxed):
+            return Relaxation(key, words, wanted, relaxed, candidate, miss, words.count(" instead of "))
     return None
 
 
+def accepted(
+    candidate: Candidate, problem: Problem, wanted: Requirements, constraints: Sequence[Constraint] = ()
+) -> bool:
+    """Whether the judge accepts a design, with its cylinder, under some requirements."""
+    cylinder = candidate.verdict.cylinder
+    return verify(candidate.linkage, problem.task, wanted, constraints, problem=problem, cylinder=cylinder).ok
+
+
 def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
-    """The same with its angle rounded like other values; whether a design does it has to be seen."""
+    """The relaxation with its angle rounded like other values, not yet confirmed by a design."""
     key = relaxation.key
     asked: float = getattr(problem.requirements, key)
     angle = _rounded(getattr(relaxation.requirements, key), asked)
@@ -124,10 +121,10 @@ def with_rounded_angle(problem: Problem, relaxation: Relaxation) -> Relaxation:
     return replace(relaxation, requirements=wanted, words=f"{key} {angle:.10g} instead of {asked:g}")
 
 
-def _eased(
+def _changes(
     problem: Problem, own: tuple[Constraint, ...], key: str, missed: list[Defect]
 ) -> Iterator[tuple[dict[str, Any], str]]:
-    """What asks for less, by key, the least change first, in the order to be tried; with words."""
+    """Changes to requirements, by key, with words, in the order to be tried, the least one first."""
     wanted = problem.requirements.resolved(problem.task.size, scale_free=problem.task.scale_free)
     found, asked = [defect.found for defect in missed], cast(Any, getattr(wanted, key, None))
     kind = LIMITS[key].kind if key in LIMITS else None
@@ -139,35 +136,32 @@ def _eased(
         return
     elif key == "constraints":
         allowed = {defect.what: _rounded(defect.found, 0.0) for defect in missed}
-        eased = tuple(Eased(one, allowed[name_of(one)]) if name_of(one) in allowed else one for one in own)
+        eased = tuple(
+            RelaxedConstraint(one, allowed[name_of(one)]) if name_of(one) in allowed else one for one in own
+        )
         words = [f"constraint {name} up to {by:g} instead of 0" for name, by in allowed.items()]
         yield {"constraints": eased}, " with ".join(words)
     elif key == "keep_out":
         yield _areas_drawn_in(wanted, missed)
-    elif kind is Kind.BETWEEN:
-        reached = _reaching(asked, found)
-        yield {key: reached}, _range_words(key, asked, reached)
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
-    elif kind is Kind.DIRECTION and isinstance(asked, tuple):
-        reached = _turned_to(asked, found[0], problem.period(LIMITS[key].quantity.key))
+    elif isinstance(asked, tuple):
+        if kind is Kind.DIRECTION:  # the nearer end, deg
+            low, high = map(np.radians, asked)
+            period = problem.period(LIMITS[key].quantity.key)
+            off = float(np.degrees(turned_beyond(np.radians(found[0]), (low, high), period)))
+            found = [asked[off > 0] + off]
+        reached = _reaching(asked, found)
         yield {key: reached}, _range_words(key, asked, reached)
     elif kind is not None and kind.is_angle:
-        off = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
-        angle = float(f"{asked + np.degrees(off):.12g}")
+        turn = turned_from(np.radians(found[0] - asked), 0.0, problem.period(LIMITS[key].quantity.key))
+        angle = float(f"{asked + np.degrees(turn):.12g}")
         yield {key: angle}, f"{key} {angle:.12g} instead of {asked:g}"
     else:
         value = max(_rounded(found[0], asked), 0.0)
         yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
-
-
-def _turned_to(asked: Limits, found: float, period: float) -> Limits:
-    """A range of angles in deg with its nearer end moved to an angle."""
-    low, high = map(np.radians, asked)
-    off = float(np.degrees(turned_beyond(np.radians(found), (low, high), period)))
-    return _reaching(asked, [asked[off > 0] + off])
 
 
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> Iterator[tuple[dict[str, Any], str]]:
@@ -199,7 +193,7 @@ def _areas_drawn_in(wanted: Requirements, missed: list[Defect]) -> tuple[dict[st
     from grashof.problems.values.areas import solid
 
     by = _rounded(max(defect.found for defect in missed), 0.0)
-    # Holes are closed: areas without them ask for more, which the judge then decides.
+    # Holes are closed: areas without them are stricter, on which the judge then decides.
     left = shapely.get_parts(shapely.buffer(solid(wanted.keep_out), -by, join_style="mitre"))
     areas = tuple(shapely.get_coordinates(part.exterior)[:-1] for part in left if not part.is_empty)
     depths = (defect.what.removesuffix(" inside").removeprefix("the depth of ") for defect in missed)
@@ -207,17 +201,14 @@ def _areas_drawn_in(wanted: Requirements, missed: list[Defect]) -> tuple[dict[st
 
 
 def _reaching(given: Limits, found: list[float]) -> Limits:
-    """Limits widened to hold values, rounded outwards."""
+    """Limits widened to contain values, rounded outwards."""
     low, high = given
-    below, above = [value for value in found if value < low], [value for value in found if value > high]
-    return (
-        _rounded(min(below), low) if below else low,
-        _rounded(max(above), high) if above else high,
-    )
+    least, most = min([low, *found]), max([high, *found])
+    return _rounded(least, low) if least < low else low, _rounded(most, high) if most > high else high
 
 
 def _rounded(value: float, asked: float) -> float:
-    """A value rounded away from what is asked, to a power of ten that is a small share of the change."""
+    """A value rounded away from the stated one, to a power of ten that is a small share of the change."""
     way = abs(value - asked)
     if not 0 < way < np.inf:
         return value
@@ -227,9 +218,6 @@ def _rounded(value: float, asked: float) -> float:
 
 
 def _range_words(name: str, given: Limits, reached: Limits) -> str:
-    words = []
-    if reached[0] < given[0]:
-        words.append(f"from {reached[0]:.10g} instead of {given[0]:g}")
-    if reached[1] > given[1]:
-        words.append(f"up to {reached[1]:.10g} instead of {given[1]:g}")
+    ends = zip(("from", "up to"), reached, given, strict=True)
+    words = [f"{way} {new:.10g} instead of {old:g}" for way, new, old in ends if new != old]
     return f"{name} {' and '.join(words)}"

@@ -1,4 +1,4 @@
-"""Results: verified designs, ranked, and what became of all the others."""
+"""Results: verified designs, ranked, and counts of the others."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ import numpy as np
 from grashof.problems import NoSolutionError, Problem
 from grashof.problems.values.checks import counted
 from grashof.problems.values.value_bases import Displayed
-from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.proof.claims.proof import Proof
 from grashof.synth.proof.poses.atlas import Loci
-from grashof.synth.quantities.scores import same_error
 from grashof.synth.search.history import RunHistory
-from grashof.synth.search.tally import Tally
+from grashof.synth.search.ledger import Tally
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,26 +32,25 @@ class Result(Displayed):
     candidates : tuple of Candidate
         The best design of each family, best first, then all the others, best first.
     nearest : tuple of Candidate
-        For an empty list: designs with one requirement missed, each as little as was possible.
+        For an empty list: designs that miss one requirement, each as little as possible.
     tally : Tally
         Counts of the search: `counts` has all of them by name.
     seconds : mapping of str to float
         Time by stage.
     note : str
-        Why the list is empty or was cut short, or that no linkage does such a task well; else empty.
+        Why the list is empty or was cut short, or that no linkage does this task well; else empty.
     complete : bool
         False when the search was interrupted.
     ended : str
-        Why the search ended: of exact designs, before it had as many as were asked for; else empty.
+        Why the search ended: of exact designs, before it had as many as requested; else empty.
     least_error : float, length
-        Least squares: the least error that was found, as `Candidate.error` has it (of functions rad); NaN
-        otherwise.
+        Least squares: the least error found, as in `Candidate.error` (of functions rad); NaN otherwise.
     history : RunHistory, optional
-        What happened to the search that it is of.
+        The course of the search.
     proof : Proof, optional
-        What is proven of the list, where the question arises.
+        What is proven of the list.
     loci : Loci, optional
-        Where the joints can be, where all linkages are enclosed.
+        Places of the joints, where all linkages are enclosed.
     """
 
     problem: Problem
@@ -86,12 +84,12 @@ class Result(Displayed):
 
     @property
     def counts(self) -> dict[str, int]:
-        """Solves by outcome, and what else the search counted, by the names that ``run.json`` has."""
+        """Solves by outcome, and other counts of the search, by their names in ``run.json``."""
         return self.tally.recorded
 
     @property
     def most_error(self) -> float:
-        """Up to which error the objective decides, length, by ``error_factor``; NaN where there is none."""
+        """Greatest error within which the objective decides, length, by ``error_factor``; NaN without one."""
         factor = self.problem.requirements.error_factor
         if factor is None or np.isnan(self.least_error):
             return np.nan
@@ -99,22 +97,22 @@ class Result(Displayed):
 
     @property
     def families(self) -> tuple[tuple[Candidate, ...], ...]:
-        """Designs that are alike, best first; the families in the order of their best designs."""
+        """Similar designs, best first; the families in the order of their best designs."""
         members: dict[str, list[Candidate]] = {}
         for candidate in self.candidates:
             members.setdefault(candidate.family or candidate.id, []).append(candidate)
         return tuple(tuple(family) for family in members.values())
 
     def top(self, families: int) -> Result:
-        """The same with so many families only, each with all its members: see `first_of_each`."""
+        """The result with `families` families only, each with all its members: see `first_of_each`."""
         every = self.families
         kept = {each.id for k in self.first_of_each(families) for each in every[k]}
         return replace(self, candidates=tuple(each for each in self.candidates if each.id in kept))
 
     def first_of_each(self, most: int) -> list[int]:
-        """Numbers of so many families: the first ones, of a list of kinds of linkage an equal share of each.
+        """Numbers of `most` families: the first ones, of a list of kinds of linkage an equal share of each.
 
-        What a kind has too few for goes to the first of the others.
+        A share that a kind cannot fill goes to the first of the others.
         """
         numbers: dict[str, list[int]] = {}
         for k, family in enumerate(self.families):

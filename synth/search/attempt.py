@@ -12,11 +12,9 @@ from grashof.problems import Linkage
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.judging import judged, judged_linkage
+from grashof.synth.designs.judging import MISSED, judged, judged_linkage, shares
 from grashof.synth.designs.polishing import polished_solve, polished_start
-from grashof.synth.designs.zones import MISSED, shares
-from grashof.synth.programme.exchange import SOLVED, begun_from, solve_by_exchange
-from grashof.synth.programme.nonlinear_programme import Solve
+from grashof.synth.programme.nonlinear_programme import SOLVED, Solve, begun_from, solve_by_exchange
 from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.quantities.formulas import FORMULAS
@@ -24,22 +22,21 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import overdue, stop_requested
 
-# Status of a start that was left alone because the search had long been asked to stop.
-LEFT_ALONE = "StopRequested"
-AS_IT_IS = "Not_Solved"  # that of a design that was judged as the search proposed it
-# The judge may put the driver a little elsewhere than the programme, and looks between the targets: so many
-# solves at most ask for that much more, unless what is missing is more than a little (as in `Defect.miss`;
-# share of a zone).
+LEFT_ALONE = "Stopped"  # status of a start that was skipped because the search was overdue
+AS_IT_IS = "Not_Solved"  # status of a design that was judged as the search proposed it
+# The judge may put the driver at slightly other angles than the programme, and looks between the targets:
+# `MORE` solves at most are tightened by `BEYOND` times the miss, unless it exceeds a limit (as in
+# `Defect.miss`; share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
-# Fields that more can be asked of.
-ASKED = {
+# Fields that can be tightened.
+TIGHTENED = {
     "within", "transmission_min_deg", "size",
     *(name for name, limit in LIMITS.items() if limit.quantity.key in FORMULAS),
 }  # fmt: skip
 
 
 class Outcome(StrEnum):
-    """What became of a start."""
+    """The outcome of a start."""
 
     VERIFIED = "verified"
     REJECTED = "rejected"
@@ -48,7 +45,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """What became of a start."""
+    """The design of a start."""
 
     status: str  # Ipopt's return status
     candidate: Candidate | None  # the design, judged, defects or not; None when the numbers make no linkage
@@ -70,7 +67,7 @@ class Attempt:
 
 
 def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bool = True) -> Attempt:
-    """Solve from start `number`, polish the design, verify it, and what moves alike where that is of use.
+    """Solve from start `number`, polish and verify the design, and its cognates where they are of use.
 
     A linkage is verified as it is.
     """
@@ -93,7 +90,7 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
 
 
 def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """Solve; again, asking for more, as long as one thing alone is missed by a little."""
+    """Solve; tighten and repeat while a single requirement is narrowly missed."""
     solve = solve_by_exchange(scaled, start)
     if solve.status not in SOLVED and any(Form.of(scaled, start).nearest) and not stop_requested():
         start = start.under(loose=True)
@@ -113,7 +110,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> dict[str, float]:
-    """What the next solve asks for besides, by field; nothing unless one alone is missed by a little."""
+    """How much the next solve is tightened, by field; empty unless one alone is narrowly missed."""
     missed = {defect.requirement for defect in candidate.verdict.defects} if candidate is not None else set()
     if candidate is None or not missed:
         return {}
@@ -121,13 +118,14 @@ def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> d
         field, short, little = "within", max(shares(scaled.problem, candidate.verdict)) - 1, OF_ZONE
     else:
         field, short, little = min(missed), max(each.miss for each in candidate.verdict.defects), A_LITTLE
-    if len(missed - MISSED) > 1 or field not in ASKED or start.terms.gives(field) or not 0 < short < little:
+    loose = field not in TIGHTENED or start.terms.relaxes(field)
+    if len(missed - MISSED) > 1 or loose or not 0 < short < little:
         return {}
-    return {field: start.terms.asks(field) + BEYOND * short}
+    return {field: start.terms.tightened_by(field) + BEYOND * short}
 
 
 def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, number: int) -> Attempt:
-    """The design of a solve on its targets; of least squares as it was, if it is no design there."""
+    """The design of a solve on its targets; of least squares as solved, if it is not a design there."""
     done = Attempt(solve.status, None)
     if not np.isfinite(solve.points).all():
         return done

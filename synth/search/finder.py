@@ -1,14 +1,15 @@
-"""The kinds of search, and which of them suits a problem."""
+"""The kinds of search, and which of them suits a problem; options of a search."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 
-from grashof.problems import Problem, ProblemError
-from grashof.problems.values.checks import located
+from grashof.problems import Problem, ProblemError, Search
+from grashof.problems.values.checks import located, whole_number
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
@@ -37,7 +38,7 @@ class Finder(Protocol):
 
     @property
     def beginning(self) -> str:
-        """What the search begins with, for those who wait."""
+        """First stage of the search, as shown to those who wait."""
 
     @property
     def freedom(self) -> bool:
@@ -45,11 +46,11 @@ class Finder(Protocol):
 
     @property
     def cognates(self) -> bool:
-        """Whether linkages that move as a design does are looked at, too: no start leads to each of them."""
+        """Whether linkages that move as a design does are judged, too: no start leads to each of them."""
 
     @property
     def exhausted(self) -> str:
-        """Why a search ends that has gone through all its rounds."""
+        """Why a search ends after all its rounds."""
 
     def refuse(self) -> None:
         """Raise `ProblemError` for targets that cannot be searched for."""
@@ -59,30 +60,30 @@ class Finder(Protocol):
 
     @property
     def patience(self) -> float:
-        """So many rounds on end without a start end the search."""
+        """Consecutive rounds without a start after which the search ends."""
 
     @property
     def rounds_a_pass(self) -> int:
-        """After so many rounds they may begin again, with other random numbers."""
+        """Rounds after which the search may begin again, with other random numbers."""
 
     def quick_pass(self, rng: np.random.Generator) -> Round | None:
         """A few starts found at once, where the first round takes long; None elsewhere."""
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """One round of starts for `enough` designs, which depends on no other one; None after the last.
+        """One independent round of starts for `enough` designs; None after the last.
 
         With `size` times the usual draws where that helps.
         """
 
     def relaxed(self, rng: np.random.Generator) -> Sequence[Proposal]:
-        """Starts that may miss what no linkage meets."""
+        """Starts that may miss requirements that no linkage meets."""
 
     def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
-        """Why theory, or what the rounds counted, leaves no design; empty where it may leave one."""
+        """Why theory, or the counts of the rounds, leave no design; empty where they may leave one."""
 
 
 class StartFinder(Finder, Protocol):
-    """One from whose starts a programme is solved."""
+    """A finder from whose starts a programme is solved."""
 
     def near(self, rng: np.random.Generator) -> Screened:
         """Linkages that meet the requirements, or nearly do."""
@@ -107,12 +108,23 @@ def finder_for(scaled: ScaledProblem) -> StartFinder | WholeDesigns:
 
 
 def refuse_unsearchable(problem: Problem) -> None:
-    """Raise `ProblemError` unless the targets can be searched for with every kind of linkage asked for."""
+    """Raise `ProblemError` unless the targets can be searched for with every kind of linkage requested."""
     for kind in problem.mechanism:
         try:
             finder_of(problem.for_kind(kind)).refuse()
         except ProblemError as error:
             raise error if len(problem.mechanism) == 1 else located(error, f"mechanism {kind}") from None
+
+
+def search_of(problem: Problem, workers: int, **given: float | None) -> Search:
+    """The problem's own search options, or those given; ProblemError where it, or an option, is invalid."""
+    if not isinstance(problem, Problem):
+        raise ProblemError(f"problem is a {type(problem).__name__}; it must be a Problem, such as load gives")
+    options = {name: number for name, number in given.items() if number is not None}
+    search = replace(problem.search, **options)  # type: ignore[arg-type]  # checked there
+    whole_number(workers, 1, "workers")
+    refuse_unsearchable(problem)
+    return search
 
 
 def finder_of(problem: Problem) -> Finder:

@@ -1,4 +1,4 @@
-"""What happened to a run, besides its designs."""
+"""The history of a run, and when it has to end."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from time import perf_counter
 
+from grashof.problems.values.checks import finite_number
+from grashof.problems.values.errors import wrong_value
+
 _LOG = logging.getLogger(__name__)
 
 
 class StopReason(StrEnum):
-    """What ended a run."""
+    """The reason that a run ended."""
 
     COMPLETE = "complete"
     TIME_LIMIT = "time limit"
@@ -25,18 +28,18 @@ class StopReason(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunHistory:
-    """What happened to a run, besides its designs; times in UTC."""
+    """Events of a run besides its designs; times in UTC."""
 
-    begun: datetime  # of the search, in ``run.json`` with what is written, as `ended`
+    begun: datetime  # of the search, in ``run.json`` of the run with its files, as `ended`
     ended: datetime
     ending: StopReason
-    resumed: int = 0  # how often it was gone on with from its record
+    resumed: int = 0  # how often it was resumed from its record
     steps_recorded: int = 0  # screenings, solves and chunks taken from the record
     record_lost: str = ""  # why the record ended before the search; empty where it did not
     processes_lost: int = 0  # how often a process was lost and replaced
     starts_crashed: tuple[int, ...] = ()  # numbers of the starts that end the process that solves them
     drawings_left_out: int = 0
-    why_left_out: str = ""  # empty where none is
+    why_left_out: str = ""  # empty where all are drawn
 
 
 def now() -> datetime:
@@ -46,28 +49,35 @@ def now() -> datetime:
 
 @dataclass(slots=True)
 class StopCondition:
-    """Whether a search is asked to end, and what asks; once it is asked, it stays so."""
+    """When a search has to end, and why; once it has to, that does not change."""
 
     time_limit: float | None  # s, from now on
-    stop: Callable[[], bool] | None  # asks it by True
+    stop: Callable[[], bool] | None  # ends it by True
     ending: StopReason = StopReason.COMPLETE
     begun: datetime = field(default_factory=now)  # UTC
     _since: float = field(default_factory=perf_counter)
 
+    @classmethod
+    def of(cls, time_limit: float | None, stop: Callable[[], bool] | None) -> StopCondition:
+        """A time from now on, s (ProblemError if invalid), or a function that the user gives."""
+        if time_limit is not None and finite_number(time_limit, "time_limit") <= 0:
+            raise wrong_value("time_limit", time_limit, "a time in s greater than zero")
+        return cls(time_limit, stop)
+
     def __call__(self) -> bool:
-        """Whether it is asked to end."""
+        """Whether the search has to end."""
         if self.ending is StopReason.COMPLETE:
-            self.ending = self._asked()
+            self.ending = self._reason()
             if self.ending is not StopReason.COMPLETE:
                 _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
         return self.ending is not StopReason.COMPLETE
 
     def part(self, number: int, of: int) -> StopCondition:
-        """The same for the first `number` of so many parts of a search, with their share of the time."""
+        """The condition for the first `number` of `of` parts of a search, with their share of the time."""
         limit = None if self.time_limit is None else self.time_limit * number / of
         return replace(self, time_limit=limit)
 
-    def _asked(self) -> StopReason:
+    def _reason(self) -> StopReason:
         if self.time_limit is not None and perf_counter() - self._since > self.time_limit:
             return StopReason.TIME_LIMIT
         return StopReason.STOPPED if self.stop is not None and self.stop() else StopReason.COMPLETE

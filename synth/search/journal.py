@@ -1,4 +1,4 @@
-"""A search recorded on disk as it goes, so that it can be gone on with."""
+"""A search recorded on disk while it runs, so that it can be resumed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.files.on_disk import WRITING, versions, write_whole
@@ -23,86 +23,38 @@ from grashof.synth.search.plain import plain, restored
 _LOG = logging.getLogger(__name__)
 FORMAT = 2
 HEAD = "search.json"
-RESUMED, WHOLE = "resumed", "whole"  # in the head: how often it was; whether nothing is left to be done
+RESUMED, COMPLETE = "resumed", "whole"  # in the head: how often; whether no work is left
 EVERY = 2.0  # s of work that a file holds
 _STEPS = re.compile(r"[0-9]{6,}\.json")  # names of files that hold steps; any other file is not ours
 
 T = TypeVar("T")
 
 
-class Journal(Protocol):
-    """What has been done in a search, in its order."""
+class Journal:
+    """The steps of a search in their order, recorded in a folder; without a folder nothing is recorded.
 
-    @property
-    def recorded(self) -> bool:
-        """Whether the next step is recorded, or may be."""
+    `HEAD` states which search it is, ``000001.json`` and so on hold its steps: screenings, solves and chunks,
+    each of which depends only on the problem, the seed and the steps before. So a search is resumed by taking
+    the results of its first steps from the record. Each file is written to a temporary name, flushed to disk
+    and renamed, about every `EVERY` seconds, and holds all steps since the one before. A folder without a
+    record is made with the first file.
 
-    @property
-    def resumed(self) -> int:
-        """How often the search was gone on with."""
-
-    @property
-    def taken(self) -> int:
-        """How many steps were taken from the record."""
-
-    @property
-    def lost(self) -> str:
-        """Why the record ended before the search; empty where it did not."""
-
-    def done(
-        self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
-    ) -> T:
-        """The result of the next step: as recorded, where that `holds`, else done now.
-
-        Of a `kind`, with `of` (see `plain`); its designs are for `problem`.
-        """
-
-    def close(self) -> None:
-        """Write what is not written; nothing more is recorded."""
-
-
-class Unrecorded:
-    """No journal: every step is done."""
-
-    recorded, resumed, taken, lost = False, 0, 0, ""
-
-    def done(
-        self,
-        _kind: str,
-        _of: Any,
-        _problem: Problem,
-        do: Callable[[], T],
-        _holds: Callable[[object], bool],
-        /,
-    ) -> T:
-        """The result of a step."""
-        return do()
-
-    def close(self) -> None:
-        """Nothing to write."""
-
-
-class Recorded:
-    """A journal in a folder: `HEAD` states of which search, ``000001.json`` and so on hold its steps.
-
-    A search is a sequence of steps, screenings, solves and chunks, each of which depends on nothing but the
-    problem, the seed and the steps before; so it goes on by taking the results of the first ones from the
-    record. Each file is written to a temporary name, flushed to disk and renamed, about every `EVERY`
-    seconds, and holds all steps since the one before. A folder without a record is made with the first file.
-
-    Where it is `needed`, a file that cannot be written ends the search (OSError); else it ends the record
-    alone, and `lost` says why. ProblemError where the record is of another search (see `head_of`), or of
-    another version of a package.
+    Where the record is `needed`, a file that cannot be written ends the search (OSError); else it ends the
+    record alone, and `lost` states why. ProblemError where the record is of another search (see `head_of`) or
+    of another version of a package. `resumed` counts how often the search was resumed, `taken` the steps
+    taken from the record.
     """
 
-    def __init__(self, folder: Path, head: Mapping[str, Any], *, needed: bool) -> None:
-        self._folder, self._head, self._needed = folder, head, needed
+    def __init__(
+        self, folder: Path | None = None, head: Mapping[str, Any] | None = None, *, needed: bool = False
+    ) -> None:
+        self._folder, self._head, self._needed = folder or Path(), head or {}, needed
         self.lost = ""
         self._recorded, self._read = deque[dict[str, Any]](), list[dict[str, Any]]()  # of one file
         self._unread, self._fresh = deque[Path](), list[dict[str, Any]]()
-        self._written, self._since, self._open = 0, monotonic(), True
+        self._written, self._since, self._open = 0, monotonic(), folder is not None
         self.resumed = self.taken = 0
-        if (folder / HEAD).exists():
+        if folder is not None and (folder / HEAD).exists():
             refuse_other(folder, self._head)
             count = read_head(folder).get(RESUMED)
             self.resumed = count + 1 if isinstance(count, int) else 1
@@ -113,7 +65,10 @@ class Recorded:
     def done(
         self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
     ) -> T:
-        """The result of the next step: as recorded, else done now and recorded."""
+        """The result of the next step: as recorded, where that `holds`, else done now and recorded.
+
+        The step is of a `kind`, with `of` (see `plain`); its designs are for `problem`.
+        """
         if not self._open:
             return do()
         name = step_name(kind, of)
@@ -130,7 +85,7 @@ class Recorded:
         return result
 
     def close(self) -> None:
-        """Write what is not written; nothing more is recorded."""
+        """Write the steps not yet written; nothing more is recorded."""
         if self._open and self._fresh:
             self._write()
         self._open = False
@@ -146,15 +101,15 @@ class Recorded:
         return self._open
 
     def begin(self) -> None:
-        """Write the head, of a search that is not whole."""
+        """Write the head of a search that is not complete."""
         self._folder.mkdir(parents=True, exist_ok=True)
         write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed})
 
     def finish(self) -> None:
-        """State in the head that the search is whole, and keep the record; nothing more is recorded."""
+        """State in the head that the search is complete, and keep the record; nothing more is recorded."""
         self.close()
         with self._kept():
-            write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed, WHOLE: True})
+            write_whole(self._folder / HEAD, {**self._head, RESUMED: self.resumed, COMPLETE: True})
 
     def remove(self) -> None:
         """Delete the record, and its folder if nothing else is in it; nothing more is recorded."""
@@ -184,7 +139,7 @@ class Recorded:
         return None
 
     def _forget(self) -> None:
-        """Drop the rest of the record: it is not that of this search any more."""
+        """Drop the rest of the record, which no longer belongs to this search."""
         self._recorded.clear()
         self._fresh = self._read
         for path in (self._path, *self._unread):
@@ -194,7 +149,7 @@ class Recorded:
 
     @property
     def _path(self) -> Path:
-        """The last file that was written or read."""
+        """The file last written or read."""
         return self._folder / f"{self._written:06}.json"
 
     def _write(self) -> None:
@@ -207,14 +162,14 @@ class Recorded:
 
     @contextmanager
     def _kept(self) -> Iterator[None]:
-        """End the record, not the search, where the disk takes no more."""
+        """End the record, not the search, where the disk is full."""
         try:
             yield
         except OSError as error:
             if self._needed:
                 raise
             self.lost, self._open = f"{error.filename or self._folder}: {error.strerror}", False
-            _LOG.warning("%s; the search goes on without a record", self.lost)
+            _LOG.warning("%s; the search continues without a record", self.lost)
 
 
 @contextmanager
@@ -223,12 +178,12 @@ def journal_of(
 ) -> Iterator[Journal]:
     """The journal of a search in a folder; the record of a search that was stopped, or failed, stays."""
     if folder is None:
-        yield Unrecorded()
+        yield Journal()
         return
-    journal = Recorded(folder, head_of(problem, search), needed=False)
+    journal = Journal(folder, head_of(problem, search))
     try:
         yield journal
-        # that of a whole one goes, or stays marked as whole where it is to be kept
+        # that of a complete one is removed, or marked as complete where it is to be kept
         if keep and journal.is_open and (folder / HEAD).exists():
             journal.finish()
         elif journal.is_open or (journal.lost and not keep):
@@ -238,7 +193,7 @@ def journal_of(
 
 
 def head_of(problem: Problem, search: Search, **more: Any) -> dict[str, Any]:
-    """What a record is of: the same head, the same search."""
+    """The head of a record, which identifies the search."""
     stated = problem_toml(problem).partition("\n[search]")[0]
     return {
         "format": FORMAT,
@@ -251,7 +206,7 @@ def head_of(problem: Problem, search: Search, **more: Any) -> dict[str, Any]:
 
 def read_head(folder: Path) -> dict[str, Any]:
     """The head of a record; ProblemError where there is none."""
-    found = _content(folder / HEAD)
+    found = json_content(folder / HEAD)
     if not isinstance(found, dict):
         raise ProblemError(f"{folder / HEAD}: is not the record of a search; delete {folder}")
     return found
@@ -265,24 +220,24 @@ def refuse_other(folder: Path, head: Mapping[str, Any]) -> None:
     if found["problem"] != head["problem"]:
         raise ProblemError(f"{folder}: is the record of a search for another problem; name another folder")
     for key, value in head.items():
-        if type(found[key]) is not type(value) or found[key] != value:  # True is no 1
+        if type(found[key]) is not type(value) or found[key] != value:  # True is not 1
             there = f"{folder}: is the record of a search with {key} {shown(found[key])}"
             raise ProblemError(f"{there}; here it is {shown(value)}")
 
 
 def step_name(kind: str, of: Any) -> str:
-    """Name of a step of a kind, by what it is done with (see `plain`)."""
+    """Name of a step by its kind and a digest of its arguments (see `plain`)."""
     return f"{kind} {hashlib.sha256(json.dumps(plain(of)).encode()).hexdigest()[:16]}"
 
 
 def recorded_steps(folder: Path) -> Iterator[dict[str, Any]]:
-    """Steps of a record, in their order; one that has no name where a file is damaged."""
+    """Steps of a record, in their order; one without a name where a file is damaged."""
     for path in _files(folder):
         yield from _steps(path)
 
 
 def content_of(steps: list[dict[str, Any]]) -> dict[str, Any]:
-    """What a file of a record holds: steps, and a sum by which damage is noticed."""
+    """Content of a file of a record: steps, and a checksum that reveals damage."""
     return {"sha256": hashlib.sha256(json.dumps(steps).encode()).hexdigest(), "steps": steps}
 
 
@@ -305,8 +260,8 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _steps(path: Path) -> list[dict[str, Any]]:
-    """Steps of a file; one that has no name where it is damaged."""
-    content = _content(path)
+    """Steps of a file; one without a name where it is damaged."""
+    content = json_content(path)
     steps = content.get("steps") if isinstance(content, dict) else None
     try:
         return steps if isinstance(steps, list) and content == content_of(steps) else [{}]
@@ -314,8 +269,8 @@ def _steps(path: Path) -> list[dict[str, Any]]:
         return [{}]
 
 
-def _content(path: Path) -> Any:
-    """What a file of a record states; None where it is missing or damaged."""
+def json_content(path: Path) -> Any:
+    """Content of a JSON file; None where it is missing or damaged."""
     if not path.is_file():  # a pipe or a device may never end
         return None
     try:

@@ -1,10 +1,11 @@
-"""What a search has found so far, and when it is enough."""
+"""The designs found so far, counts of the search, and when it ends."""
 
 from __future__ import annotations
 
 from bisect import insort
+from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from math import ceil
 
 import numpy as np
@@ -16,25 +17,69 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.attempt import Attempt
-from grashof.synth.search.tally import Tally
+from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.theory.distinct import DISTINCT, apart, signature
 
-FRUITLESS = 64  # so many solves without one verified exact design end the search
-STALE = 20  # so many rounds on end without a new exact design, too
-# Least squares: the best has come up in so many rounds, or so many rounds are done.
+FRUITLESS = 64  # solves without a verified exact design after which the search ends
+STALE = 20  # consecutive rounds without a new exact design after which it ends
+# Least squares: rounds that found the best design, or rounds in all, after which the search ends.
 AGREEING, MOST_ROUNDS = 3, 8
 SAME = 1e-3  # share: errors closer to the best one are the best one
 COPY = 0.1  # of the expected_error: starts closer at all targets end alike
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
-EXACT_ERROR = 1e-7  # sizes: no error to speak of
+EXACT_ERROR = 1e-7  # sizes: a negligible error
 # Designs that a search remembers, or twice as many as are enough, and misses of each kind.
 MOST_KEPT, OF_KIND = 2000, 8
 
 
+COGNATES, CHOICE, LISTED = (
+    "cognates verified",
+    "solves for the choice",
+    "verified and distinct",
+)  # totals of a search
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """Counts of a search."""
+
+    found: Counter[str] = field(default_factory=Counter)  # by the search for starts, such as "feasible finds"
+    outcomes: Counter[Outcome] = field(default_factory=Counter)  # of solves
+    totals: Counter[str] = field(default_factory=Counter)  # `COGNATES`, `CHOICE`, `LISTED`
+    rejected: Counter[str] = field(default_factory=Counter)  # solves by the first requirement missed
+    statuses: Counter[str] = field(default_factory=Counter)  # solves by Ipopt's return status
+
+    def add(self, attempts: Iterable[Attempt]) -> None:
+        """Count attempts."""
+        for one in attempts:
+            self.statuses[one.status] += 1
+            self.outcomes[one.outcome] += 1
+            if one.verified:
+                self.totals[COGNATES] += len(one.cognates)
+            elif one.candidate is not None:
+                self.rejected[one.candidate.verdict.defects[0].requirement] += 1
+
+    def update(self, other: Tally) -> None:
+        """Add the counts of another part of the search."""
+        for mine in fields(self):
+            getattr(self, mine.name).update(getattr(other, mine.name))
+
+    @property
+    def general(self) -> dict[str, int]:
+        """All but rejections and statuses, by name."""
+        ended = {str(each): self.outcomes[each] for each in self.outcomes if each is not Outcome.REJECTED}
+        return {**self.found, **ended, **self.totals}
+
+    @property
+    def recorded(self) -> dict[str, int]:
+        """All counts in one, as ``run.json`` has them."""
+        rejected = {f"rejected: {requirement}": n for requirement, n in self.rejected.items()}
+        return {**self.general, **rejected, **{f"solver: {status}": n for status, n in self.statuses.items()}}
+
+
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """What came of one round, for a ledger that saw nothing else of it."""
+    """The outcome of one round, for the ledger of another process."""
 
     tally: Tally
     designs: tuple[Candidate, ...]  # verified; of those that are not distinct the best
@@ -45,7 +90,7 @@ class Chunk:
 
 @dataclass(slots=True)
 class Leaders:
-    """What `ranked` makes of all designs added so far; each is valued and compared with the others once."""
+    """All designs added so far, ranked as by `ranked`; each is valued and compared with the others once."""
 
     problem: Problem
     _every: list[Candidate] = field(default_factory=list)
@@ -57,7 +102,7 @@ class Leaders:
         return len(self._every)
 
     def add(self, candidates: Iterable[Candidate]) -> None:
-        """Take designs in."""
+        """Add designs."""
         origin = self.problem.task.middle
         for candidate in candidates:
             number, numbers = len(self._every), signature(candidate.linkage, origin)
@@ -89,7 +134,7 @@ class Ledger:
 
     scaled: ScaledProblem
     search: Search
-    exhausted: str  # why a search ends that has gone through all its rounds
+    exhausted: str  # why a search ends after all its rounds
     verified: list[Candidate] = field(default_factory=list)
     rejected: list[Attempt] = field(default_factory=list)
     best: tuple[Candidate, ...] = ()
@@ -100,7 +145,7 @@ class Ledger:
     work: int = 0
     planned: float = np.inf
     _errors: list[float] = field(default_factory=list)  # the least of each round, sizes
-    _stale: int = 0  # rounds on end without a new design
+    _stale: int = 0  # consecutive rounds without a new design
     _begun: list[ComplexArray] = field(default_factory=list)  # marks of starts that were solved
     _leaders: Leaders = field(init=False)
 
@@ -116,7 +161,7 @@ class Ledger:
         self._stale += bool(self.best)
 
     def worthwhile(self, made: Round, starts: Sequence[Proposal], *, first: bool) -> Sequence[Proposal]:
-        """Of least squares the starts that may yet lead to something, and the first of a round; else all."""
+        """Of least squares the promising starts, and the first of a round; else all."""
         if self.scaled.exact:
             return starts
         chosen = list[Proposal]()
@@ -135,7 +180,7 @@ class Ledger:
         return [start for start in starts if self.scaled.exact or not self._too_far(made, start)]
 
     def take(self, attempts: list[Attempt]) -> None:
-        """Count a batch, and keep what is verified."""
+        """Count a batch, and keep the verified designs."""
         self.tally.add(attempts)
         self.solved += len(attempts)
         for one in attempts:
@@ -146,7 +191,7 @@ class Ledger:
                 self.rejected.append(one)
 
     def rank(self) -> None:
-        """Rank what is verified and distinct, and forget what is of no use."""
+        """Rank the verified, distinct designs, and forget useless ones."""
         self._leaders.add(self.verified[len(self._leaders) :])
         before, self.best = len(self.best), self._leaders.distinct
         if len(self.best) > before:
@@ -154,7 +199,7 @@ class Ledger:
         self._forget()
 
     def absorb(self, one: Chunk) -> None:
-        """Take in the next chunk."""
+        """Add the next chunk."""
         self.tally.update(one.tally)
         problem = self.scaled.problem
         designs = [replace(each, problem=problem, start=self.solved + each.start) for each in one.designs]
@@ -168,11 +213,11 @@ class Ledger:
 
     @property
     def chunk(self) -> Chunk:
-        """All of it as a chunk."""
+        """The ledger as a chunk."""
         return Chunk(self.tally, self.best, nearest_of_kinds(self.rejected), self.solved, self.work)
 
     def _forget(self) -> None:
-        """Keep memory bounded: of very many designs and misses the best stay."""
+        """Keep memory bounded: of very many designs and misses keep the best."""
         most = max(MOST_KEPT, 2 * self.search.enough)
         if len(self.rejected) > 2 * most:
             self.rejected = list(nearest_of_kinds(self.rejected))
@@ -182,7 +227,7 @@ class Ledger:
             self._leaders.add(self.verified)
 
     def plan_more(self) -> None:
-        """End the rounds of ``effort = 1``; what is left of a greater effort follows."""
+        """End the rounds of ``effort = 1``; the rest of a greater effort follows."""
         self.planned = self.work
 
     @property
@@ -198,14 +243,14 @@ class Ledger:
 
     @property
     def within_round(self) -> bool:
-        """Whether the round may go on."""
+        """Whether the round may continue."""
         if self.solved >= self.starts:
             return False
         return not self.scaled.exact or self.work > self.planned or not (self.enough or self._fruitless)
 
     @property
     def ended(self) -> bool:
-        """Whether the rounds of ``effort = 1`` (or less) have done what can be expected of them."""
+        """Whether the rounds of ``effort = 1`` (or less) are done."""
         if self.scaled.exact:
             return self.enough or bool(self._no_use)
         share = min(1.0, self.search.effort)
@@ -232,27 +277,27 @@ class Ledger:
 
     @property
     def enough(self) -> bool:
-        """Whether there are as many exact designs as were asked for."""
+        """Whether there are as many exact designs as requested."""
         return self.scaled.exact and len(self.best) >= self.search.enough
 
     @property
     def exhaustive(self) -> bool:
-        """Whether every start that there is was solved."""
+        """Whether every existing start was solved."""
         return self.complete and not self.enough and self.solved < self.starts
 
     @property
-    def whole(self) -> bool:
-        """Whether all rounds were gone through, and none ended for want of use."""
+    def all_rounds_done(self) -> bool:
+        """Whether every round was made, and none was ended as useless."""
         return self.exhaustive and not self._no_use
 
     @property
     def _came_up(self) -> int:
-        """In how many rounds the least error came up."""
+        """Number of rounds that found the least error."""
         return sum(error <= max(self.least * (1 + SAME), EXACT_ERROR) for error in self._errors)
 
     @property
     def _no_use(self) -> str:
-        """Why to solve no more, however short the list is; empty where it may be of use."""
+        """Why further solves are useless, however short the list is; empty where they may help."""
         if self.solved >= self.starts:
             return f"starts = {self.starts} allows no more"
         if self.scaled.exact and self._stale >= STALE * min(1.0, self.search.effort):
@@ -275,7 +320,7 @@ class Ledger:
 
 
 def nearest_of_kinds(attempts: Iterable[Attempt]) -> tuple[Attempt, ...]:
-    """Of rejected designs that miss the same requirements the few nearest, in their order."""
+    """The few nearest of the rejected designs that miss the same requirements, in their order."""
     kinds: dict[frozenset[str], list[tuple[float, int, Attempt]]] = {}
     for number, one in enumerate(attempts):
         if one.candidate is not None:
@@ -288,6 +333,6 @@ def nearest_of_kinds(attempts: Iterable[Attempt]) -> tuple[Attempt, ...]:
 
 
 def _marks(made: Round, start: Start) -> ComplexArray:
-    """Distinguishing marks of starts: P at all targets, and where limits bind A and B, too."""
+    """Points that distinguish starts: P at all targets, and where limits bind A and B, too."""
     track = start.track[:, np.argsort(start.visit)]
     return track[2:] if made.free else track

@@ -21,8 +21,7 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start, Terms
 from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.search.attempt import Attempt, Outcome
-from grashof.synth.search.ledger import Chunk
-from grashof.synth.search.tally import Tally
+from grashof.synth.search.ledger import Chunk, Tally
 
 # What may be written and read: values alone, so that a file is data.
 TYPES: dict[str, Any] = {
@@ -33,17 +32,17 @@ TYPES: dict[str, Any] = {
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
-# Known, or measured again.
+# Known from elsewhere, or measured again.
 _LEFT_OUT = {"Candidate": {"problem", "values"}, "Start": {"kind"}}
-# Numbers, by how NumPy's kinds of them begin: a whole number is a real one, too, but True is none.
+# NumPy's kinds of numbers: an integer is a real number, too, but True is not.
 _NUMBERS = {int: "iu", float: "iuf", complex: "iufc", bool: "b"}
 _SCALARS = (int, float, complex, np.generic)
 
 
 def plain(value: Any) -> Any:
-    """A value as what JSON has.
+    """A value in JSON.
 
-    Tuples are lists there; whatever else has no form of its own is an object whose one key names it.
+    Tuples become lists; every other type that JSON lacks becomes an object whose one key names it.
 
     >>> plain((1, 2j)), plain(np.array([0.5]))
     ([1, {'complex': [0.0, 2.0]}], {'array': ['<f8', [1], [0.5]]})
@@ -77,7 +76,7 @@ def plain(value: Any) -> Any:
 def restored(value: Any, problem: Problem) -> Any:
     """The value of a plain form; designs are for `problem`.
 
-    ValueError unless it is the plain form of a value whose fields have their types.
+    ValueError unless it is the plain form of a value whose fields have their types, and of no batch.
 
     >>> from grashof import load
     >>> restored(plain((1, 2j, float("inf"))), load("luggage"))
@@ -85,7 +84,7 @@ def restored(value: Any, problem: Problem) -> Any:
     """
     try:
         return _restored(value, problem)
-    # Whatever a file may say; the last two of numbers beyond 64 bits, and of lists nested a thousand deep.
+    # The last two of numbers beyond 64 bits, and of lists nested a thousand deep.
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         raise ValueError(f"no plain form: {type(error).__name__}") from None
 
@@ -115,13 +114,13 @@ def _restored(value: Any, problem: Problem) -> Any:
     if kind is Start:
         named["kind"] = kind_of(problem)
     refuse_misfits(kind, named)
-    if issubclass(kind, Linkage) and kind(**named).shape:  # refuses what is no linkage
+    if issubclass(kind, Linkage) and kind(**named).shape:  # raises unless it is a linkage
         raise ValueError("a batch of linkages")
     return Candidate(problem=problem, **named) if kind is Candidate else _made(kind, named)
 
 
 def _made(kind: Any, named: dict[str, Any]) -> Any:
-    """A value with its fields as they were: what a constructor makes of them, it made before."""
+    """A value with its fields as they were, without its constructor."""
     made = object.__new__(kind)
     for each in fields(kind):
         object.__setattr__(made, each.name, named[each.name])

@@ -1,9 +1,9 @@
-"""Designs of a record, held against the judge: a file may say anything."""
+"""Results of a record, compared with the judge: a file may contain anything."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,12 +16,10 @@ from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import Chunk
 
 _COGNATE = re.compile("(d[0-9a-f]{7})?")  # id of the design that another one is a cognate of
-# Whether the result of a recorded step is true; of a Candidate, also whether its verdict is.
-Holds = Callable[[object], bool]
 
 
 def is_round(result: object) -> bool:
-    """Whether a result is a round of starts, or none; the designs that come of them are judged later."""
+    """Whether a result is a round of starts, or None; the designs from them are judged later."""
     return result is None or isinstance(result, Round)
 
 
@@ -40,14 +38,14 @@ def are_attempts(scaled: ScaledProblem, starts: Sequence[Proposal], result: obje
 
 def is_true_chunk(scaled: ScaledProblem, result: object) -> bool:
     """Whether a result is a chunk, with the judge's verdict on every design and miss."""
-    if not isinstance(result, Chunk) or not is_whole_chunk(scaled, result):
+    if not isinstance(result, Chunk) or not is_complete_chunk(scaled, result):
         return False
     misses = [one.candidate for one in result.misses if one.candidate is not None]
     return all(agrees(scaled, one) for one in (*result.designs, *misses))
 
 
-def is_whole_chunk(scaled: ScaledProblem, chunk: Chunk) -> bool:
-    """Whether all of a chunk is as a search leaves it; verdicts are not looked into."""
+def is_complete_chunk(scaled: ScaledProblem, chunk: Chunk) -> bool:
+    """Whether a chunk is as a search leaves it; verdicts are not checked."""
     if min(chunk.solved, chunk.size, *chunk.tally.recorded.values(), 0) < 0:
         return False
     if not all(one.verdict.ok for one in chunk.designs):
@@ -57,7 +55,7 @@ def is_whole_chunk(scaled: ScaledProblem, chunk: Chunk) -> bool:
 
 
 def agrees(scaled: ScaledProblem, one: Candidate, most_error: float = np.inf) -> bool:
-    """Whether the judge says of a design once more what its verdict says."""
+    """Whether the judge repeats the verdict on a design."""
     again = judged_again(scaled, one, most_error)
     return alike(again.verdict, one.verdict, scaled.problem.task.size)
 
@@ -67,7 +65,7 @@ def _is_true(scaled: ScaledProblem, one: Candidate, most_error: float = np.inf) 
 
 
 def _is_unlisted(scaled: ScaledProblem, one: Candidate) -> bool:
-    """Whether a design is one of this task that no list has named yet."""
+    """Whether a design is of this task and not yet named by a list."""
     if one.own_objective is not None or one.region or f"{one.best_at}{one.family}{one.caution}":
         return False
     if not _COGNATE.fullmatch(one.cognate_of):

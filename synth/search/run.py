@@ -1,4 +1,4 @@
-"""How a search is run: where its steps are made, what is recorded, who asks it to stop."""
+"""How a search is run: where its steps are made, how they are recorded, when it stops."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.search.journal import Journal, Unrecorded
+from grashof.synth.search.journal import Journal
 from grashof.synth.search.ledger import Ledger
-from grashof.synth.search.recorded_designs import Holds, are_attempts, is_round
+from grashof.synth.search.recorded_designs import are_attempts, is_round
 from grashof.synth.search.workers import CRASHED, Work, quick_pass, screen
 from grashof.synth.starts.whole_designs import WholeDesigns
 
 _LOG = logging.getLogger(__name__)
-EXPECTED = 3  # rounds that most searches take: so many are begun ahead
+EXPECTED = 3  # rounds that most searches take, begun ahead
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a search is.
+    """Progress of a search.
 
     Parameters
     ----------
     solved : int
         Solves done.
     starts : int, optional
-        Most that there can be, if that is known.
+        Most solves, if known.
     enough : int
         How many distinct verified designs are enough.
     designs : tuple of Candidate
-        Those found so far, best first: accepted under what this search asks for (`Candidate.problem`),
-        all targets met or least squares, before a choice is made of them. ``Result(problem, designs)``
-        makes a list of them.
+        Those found so far, best first: accepted under the requirements of this search
+        (`Candidate.problem`), all targets met or least squares, before a choice is made of them.
+        ``Result(problem, designs)`` makes a list of them.
     """
 
     solved: int
@@ -53,7 +53,7 @@ class Progress:
 
     @property
     def verified(self) -> int:
-        """How many distinct verified designs there are."""
+        """Number of distinct verified designs."""
         return len(self.designs)
 
 
@@ -63,8 +63,8 @@ class Run:
 
     search: Search
     work: Work  # where screenings and attempts are made
-    stop_requested: Callable[[], bool]  # asked between solves: to be content with what there is
-    journal: Journal = field(default_factory=Unrecorded)
+    stop_requested: Callable[[], bool]  # called between solves: whether to accept the current results
+    journal: Journal = field(default_factory=Journal)
     progress: Callable[[Progress], object] | None = None  # called after every batch
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})  # by stage
     since: float = field(default_factory=perf_counter)  # when it began, s
@@ -77,16 +77,11 @@ class Run:
         return {**self.seconds, "total": perf_counter() - self.since}
 
     def ended(self) -> bool:
-        """Whether to be content with what there is; nothing is recorded any more then."""
+        """Whether to accept the current results; nothing more is recorded then."""
         if not self.stop_requested():
             return False
         self.journal.close()
         return True
-
-    def whole(self, result: T) -> T:
-        """A result, which is recorded only if it was not cut short."""
-        self.ended()
-        return result
 
     def solve(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int) -> list[Attempt]:
         """Attempts from starts, numbered from a first one, in their order."""
@@ -95,19 +90,16 @@ class Run:
         of = (first, *starts)
         holds = partial(are_attempts, scaled, starts)
         made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first), holds)
-        self._log(made, first)
-        return made
-
-    def _log(self, made: list[Attempt], first: int) -> None:
         for number, one in enumerate(made, first):
             if one.status == CRASHED:
                 self.crashed.append(number)
-                _LOG.warning("start %d ends the process that solves it, and is given up", number)
+                _LOG.warning("start %d ends the process that solves it, and is skipped", number)
             elif _LOG.isEnabledFor(logging.DEBUG):
                 _LOG.debug("start %d: %s, %s", number, one.outcome, one.status)
+        return made
 
     def quick_pass(self, scaled: ScaledProblem) -> Round | None:
-        """What is found at once, before the first round."""
+        """Starts found at once, before the first round."""
         seed = self.search.seed
         return self.step("quick_pass", (seed,), scaled, lambda: quick_pass(scaled, seed), is_round)
 
@@ -117,40 +109,47 @@ class Run:
         if not isinstance(finder, WholeDesigns) or not ledger.best:
             return ()
         of = tuple(each.id for each in ledger.best)
-
-        def made() -> Round:
-            return Round(finder.onward(ledger.best), {})
-
-        found = self.step("onward", of, scaled, made, is_round)
+        found = self.step("onward", of, scaled, lambda: Round(finder.onward(ledger.best), {}), is_round)
         return found.starts
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:
         """One round of a search."""
-        which = (number, self.search.enough, self.search.seed)
+        of = (number, self.search.enough, self.search.seed)
         if not self.journal.recorded:
             for later in range(number + 1, min(number + self.work.width, EXPECTED)):
-                self.work.begin(screen, scaled, 0, later, *which[1:])
-        return self.step("screen", which, scaled, lambda: self.work.made(screen, scaled, 0, *which), is_round)
+                self.work.begin(screen, scaled, 0, later, *of[1:])
+        return self.step("screen", of, scaled, lambda: self.work.made(screen, scaled, 0, *of), is_round)
 
     def step(
-        self, kind: str, of: tuple[Any, ...], scaled: ScaledProblem, do: Callable[[], T], holds: Holds
+        self,
+        kind: str,
+        of: tuple[Any, ...],
+        scaled: ScaledProblem,
+        do: Callable[[], T],
+        holds: Callable[[object], bool],
     ) -> T:
-        """The result of a step of the search, as recorded where that holds, or done now."""
-        return self.journal.done(kind, of, scaled.problem, lambda: self.whole(do()), holds)
+        """The result of a step of the search, as recorded where that `holds`, or done now."""
+
+        def done() -> T:
+            result = do()
+            self.ended()  # a result that was cut short is not recorded
+            return result
+
+        return self.journal.done(kind, of, scaled.problem, done, holds)
 
     def begin(self, scaled: ScaledProblem, starts: Sequence[Proposal]) -> None:
         """Begin solves that may be wanted, where that costs no time."""
         if not self.journal.recorded:
             self.work.begin_attempts(scaled, starts)
 
-    def tell(self, ledger: Ledger) -> None:
-        """Report how far the search is to who wants to know."""
+    def report(self, ledger: Ledger) -> None:
+        """Report the progress of the search."""
         if self.progress is not None:
             self.progress(Progress(ledger.solved, ledger.starts, self.search.enough, ledger.best))
 
     @contextmanager
     def timed(self, stage: str) -> Iterator[None]:
-        """Add the time of what is inside to a stage."""
+        """Add the time of the block to a stage."""
         since = perf_counter()
         try:
             yield

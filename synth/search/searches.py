@@ -1,4 +1,4 @@
-"""One search: rounds of starts, solved until the ledger has enough, then what more effort adds, in chunks."""
+"""One search: rounds of starts, solved until the ledger has enough, then chunks that more effort adds."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ import numpy as np
 from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.chunks import begin_chunks, chunks, starts_of_chunk
+from grashof.synth.search.chunks import begin_chunks, chunks, solve, solve_round, starts_of_chunk
 from grashof.synth.search.finder import Finder, asked_first, finder_for, rounds
 from grashof.synth.search.ledger import SAME, Ledger
-from grashof.synth.search.rounds import solve, solve_round
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import LARGER
 from grashof.synth.theory.stopping import StopRequested
@@ -26,20 +25,20 @@ from grashof.synth.theory.stopping import StopRequested
 _LOG = logging.getLogger(__name__)
 MANY = 64  # starts; of fewer none is spent on a first quick pass
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
-CONTINUED = 3  # times at most that the solve of the least error goes on
+CONTINUED = 3  # times at most that the solve of the least error is continued
 
 
 def searches(scaled: ScaledProblem, run: Run, known: Round | None = None) -> list[Ledger]:
-    """The search as it is asked; where targets may be missed, one or two without."""
-    first, *second = asked_in_turn(scaled)
+    """The search for a problem; where targets may be missed, one or two without that."""
+    first, *second = problems_in_turn(scaled)
     ledger = search_designs(first, run, known)
     if second and ledger.complete and found_few(ledger):  # least squares, where few meet all targets
         return [ledger, search_designs(second[0], run)]
     return [ledger]
 
 
-def asked_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
-    """The problem as it is searched: as it is, or without zones, and then, perhaps, by least squares."""
+def problems_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
+    """The problems that are searched: as stated, or without zones, and then, perhaps, by least squares."""
     problems = [asked_first(scaled.problem)]
     first = scaled.of_problem(problems[0])
     if scaled.bounded and first.exact and len(scaled.targets) > 2:  # two leave nothing to make small
@@ -53,13 +52,13 @@ def found_few(ledger: Ledger) -> bool:
 
 
 def nothing_to_search(scaled: ScaledProblem, run: Run) -> list[Ledger]:
-    """What a search comes to that is not made, as it is proven that there is no design."""
-    first = asked_in_turn(scaled)[0]
+    """The empty ledger of a problem that is proven to have no design."""
+    first = problems_in_turn(scaled)[0]
     return [Ledger(first, run.search, finder_for(first).exhausted)]
 
 
 def search_designs(scaled: ScaledProblem, run: Run, known: Round | None = None) -> Ledger:
-    """Find starts, solve from them, and keep what is verified, round by round until there is enough."""
+    """Find starts, solve from them, and keep verified designs, round by round until there are enough."""
     finder = finder_for(scaled)
     ledger = Ledger(scaled, run.search, finder.exhausted)
     _LOG.info("search begun: %s, %d targets", type(finder).__name__, len(scaled.targets))
@@ -81,7 +80,7 @@ def search_designs(scaled: ScaledProblem, run: Run, known: Round | None = None) 
 
 
 def finished(ledger: Ledger, run: Run) -> Ledger:
-    """A ledger of all that was searched, the best gone on with."""
+    """The ledger of a search after its last solves, which continue from the best designs."""
     if ledger.scaled.by_descent:
         _continue_best(ledger, run)
     elif ledger.complete and not run.ended():
@@ -91,7 +90,7 @@ def finished(ledger: Ledger, run: Run) -> Ledger:
 
 
 def _look_onward(ledger: Ledger, run: Run) -> None:
-    """Judge what the designs of a search lead to; what it has found stays where that is cut short."""
+    """Judge linkages that the designs of a search lead to; designs stay where that is cut short."""
     try:
         more = run.onward(ledger)
     except StopRequested:
@@ -99,18 +98,18 @@ def _look_onward(ledger: Ledger, run: Run) -> None:
         return
     if more:
         solve(more, ledger, run)
-        run.tell(ledger)
+        run.report(ledger)
 
 
 def _begin_more(finder: Finder, ledger: Ledger, run: Run) -> None:
-    """Begin chunks that more effort will ask for."""
+    """Begin chunks that more effort will need."""
     surely = ceil((run.search.effort - 1) / (1 if ledger.scaled.exact else LARGER))
     first = finder.rounds_a_pass
     begin_chunks(ledger.scaled, run, range(first, first + max(0, surely)), starts_of_chunk(run.search))
 
 
 def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
-    """Do what more effort asks for: the same work so many times again, in chunks."""
+    """The work of more effort: the same work `effort` - 1 times more, in chunks."""
     more = run.search.effort - 1
     size = 1 if ledger.scaled.exact else LARGER
     count = ceil(more * ledger.work / size) if more > 0 and ledger.solved else 0
@@ -123,20 +122,20 @@ def _do_more(finder: Finder, ledger: Ledger, run: Run) -> None:
         try:
             for number, one in enumerate(chunks(ledger.scaled, run, numbers, starts), start=1):
                 ledger.absorb(one)
-                run.tell(ledger)
+                run.report(ledger)
                 _log(f"chunk {number} of {count}", one.solved, ledger)
         except StopRequested:
-            pass  # what the usual effort asks for is done
+            pass  # the usual effort is done
 
 
 def _log(what: str, starts: int, ledger: Ledger) -> None:
     error = "" if ledger.scaled.exact else f", least error {ledger.least:.3g} sizes"
-    told = what, starts, ledger.solved, ledger.starts, len(ledger.best), error
-    _LOG.info("%s: %d starts; %d of %d solves, %d designs%s", *told)
+    counts = starts, ledger.solved, ledger.starts, len(ledger.best)
+    _LOG.info("%s: %d starts; %d of %d solves, %d designs%s", what, *counts, error)
 
 
 def _rounds(finder: Finder, ledger: Ledger, run: Run) -> Iterator[Round]:
-    """What is found at once, where a finder has that and starts are not few, and the rounds."""
+    """The quick pass, where a finder has one and starts are not few, and the rounds."""
     quick_pass = None
     if ledger.starts >= MANY:
         with run.timed("screening"), suppress(StopRequested):
@@ -157,7 +156,7 @@ def _timed_round(ledger: Ledger, run: Run, number: int) -> Round | None:
 
 
 def _continue_best(ledger: Ledger, run: Run) -> None:
-    """Go on from the least error where its solve stopped for want of iterations."""
+    """Continue from the least error where its solve ran out of iterations."""
     scaled = ledger.scaled
     for _ in range(CONTINUED):
         best = min(ledger.verified, key=lambda one: one.error(scaled.problem), default=None)
@@ -165,13 +164,13 @@ def _continue_best(ledger: Ledger, run: Run) -> None:
             return
         before = ledger.least
         solve([Start.of_linkage(scaled, best.linkage, best.verdict)], ledger, run)
-        run.tell(ledger)
+        run.report(ledger)
         if ledger.least > before * (1 - SAME):
             return
 
 
 def error_of_use(scaled: ScaledProblem) -> float:
-    """Up to which error a design is of use where zones are allowed, root mean square, sizes."""
+    """Greatest error of a useful design where zones are allowed, root mean square, sizes."""
     if scaled.zones is None:
         return 0.0
     zones = np.where(np.isfinite(scaled.zones), scaled.zones, 0.0)

@@ -14,7 +14,7 @@ from dataclasses import replace
 from functools import lru_cache
 from multiprocessing import connection, get_context, parent_process, resource_tracker
 from threading import Thread
-from typing import Any, Protocol, TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -26,46 +26,22 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import StopRequested, stop_requested, stop_when
 
 _LOG = logging.getLogger(__name__)
-# Solves begun for each process before it is known that they are wanted: of least squares, and exact ones, of
-# which a piece of work has several.
+# Solves begun for each process before it is known that they are wanted: of least squares, and exact ones,
+# which are bundled.
 AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
 LOOK = 0.1  # s between two looks whether to stop
 CRASHED = "Crashed"  # status of a start that ends the process that solves it
 
-STOP, OVER = 1, 2  # what the processes are told: to be content with what there is, and to end
+STOP, OVER = 1, 2  # orders to the processes: to accept the current results, and to end
 
 T = TypeVar("T")
-# Makes something of the problem and some numbers: what, depends on nothing else.
+# A function of a module, of the problem and some numbers; its value depends on nothing else.
 Make: TypeAlias = Callable[..., T]
 
 
-class Work(Protocol):
-    """Screenings and attempts of a search: functions of what they are given, wherever they are made."""
-
-    @property
-    def width(self) -> int:
-        """So many can be made at a time."""
-
-    @property
-    def lost(self) -> int:
-        """How often a process was lost and replaced."""
-
-    def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
-        """Attempts from starts, numbered from a first one, in their order."""
-
-    def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
-        """What a function of a module makes of the problem and some numbers, such as a round."""
-
-    def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
-        """Begin attempts that may be wanted."""
-
-    def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
-        """Begin what may be wanted by `made`; whether it is begun only now."""
-
-
 def screen(scaled: ScaledProblem, effort: int, number: int, enough: int, seed: int) -> Round | None:
-    """One round of the search for starts; it depends on no other one."""
+    """One round of the search for starts, independent of the others."""
     key = (effort, number) if effort or number else ()
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
     # effort 0: the usual rounds; those that a greater effort adds are larger
@@ -79,55 +55,56 @@ def quick_pass(scaled: ScaledProblem, seed: int) -> Round | None:
 
 @lru_cache(maxsize=8)
 def _unpacked(packed: bytes) -> ScaledProblem:
-    """The same object each time: what is known of it stays known."""
+    """The same object each time, so that its cached values stay."""
     scaled: ScaledProblem = pickle.loads(packed)  # noqa: S301  (from the parent process, as all that it sends)
     return scaled
 
 
 def solved_there(packed: bytes, *starts: Proposal) -> list[Attempt]:
-    """Attempts, in a process that gets the problem in bytes."""
+    """Attempts, in a process that receives the problem in bytes."""
     return [attempt(_unpacked(packed), start, 0) for start in starts]
 
 
 def made_there(make: Make[T], packed: bytes, *which: float) -> T:
-    """What `Work.made` gives, in a process that gets the problem in bytes."""
+    """The value of `Work.made`, in a process that receives the problem in bytes."""
     return make(_unpacked(packed), *which)
 
 
-class Here:
-    """One after the other in this process, when it is wanted."""
+class Work:
+    """Screenings and attempts, functions of their arguments, made in this process one after the other."""
 
-    width, lost = 1, 0
+    width: int = 1  # number that can be made at a time
+    lost: int = 0  # how often a process was lost and replaced
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
-        """Attempts from starts."""
+        """Attempts from starts, numbered from a first one, in their order."""
         return [attempt(scaled, start, number) for number, start in enumerate(starts, first)]
 
-    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
-        """What a function makes."""
+    def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
+        """The value of a function of a module for the problem and some numbers, such as a round."""
         return make(scaled, *which)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
-        """Nothing is begun early."""
+        """Begin attempts that may be wanted; here none."""
 
-    def begin(self, _make: Make[Any], _scaled: ScaledProblem, *_which: float) -> bool:
-        """Nothing is begun early."""
+    def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
+        """Begin work that `made` may want; whether it was not begun before. Here none."""
         return False
 
 
-class Elsewhere:
-    """On an executor, `width` at a time; what may be wanted is begun early, and dropped where it is not."""
+class OnExecutor(Work):
+    """On an executor, `width` at a time; work that may be wanted is begun early, and dropped if it is not."""
 
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width, self.lost = executor, width, 0
         self._last: tuple[ScaledProblem, bytes] | None = None
-        # What is made, by its function, problem and numbers; attempts with their place in a bundle, by the
-        # identity of the start, which is kept with them.
+        # Work by its function, problem and numbers; attempts with their place in a bundle, by the identity of
+        # the start, which is kept with them.
         self._begun: dict[tuple[Any, ...], Future[Any]] = {}
         self._solves: dict[int, tuple[Future[list[Attempt]], int, Proposal]] = {}
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
-        """Attempts from starts; one that ends the process that makes it is given up."""
+        """Attempts from starts; `CRASHED` is the status of one that ends the process that makes it."""
         made = []
         for number, start in enumerate(starts):
             try:
@@ -140,7 +117,7 @@ class Elsewhere:
         return made
 
     def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
-        """What a function makes."""
+        """The value of a function."""
         key = (make, self._packed(scaled), *which)
         begun = self._begun.pop(key, None)
         future: Future[T] = self._submit(made_there, *key) if begun is None else begun
@@ -157,7 +134,7 @@ class Elsewhere:
             self._begin_solves(scaled, starts[: (AHEAD_EXACT if scaled.exact else AHEAD) * self.width])
 
     def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
-        """Begin what a function makes; whether it is begun only now."""
+        """Begin a function; whether it was not begun before."""
         key = (make, self._packed(scaled), *which)
         if self.width == 1 or key in self._begun:
             return False
@@ -165,20 +142,20 @@ class Elsewhere:
         return True
 
     def drop(self) -> None:
-        """Cancel what is not wanted any more."""
+        """Cancel all work in progress."""
         for future in (*self._begun.values(), *(future for future, _, _ in self._solves.values())):
             future.cancel()
         self._begun.clear()
         self._solves.clear()
 
     def _packed(self, scaled: ScaledProblem) -> bytes:
-        """The problem as one string of bytes, the same for each piece of work."""
+        """The problem in bytes, packed once."""
         if self._last is None or self._last[0] is not scaled:
             self._last = (scaled, pickle.dumps(scaled))
         return self._last[1]
 
     def _begin_solves(self, scaled: ScaledProblem, starts: Sequence[Proposal]) -> None:
-        """Begin attempts: exact ones, which take milliseconds each, some in one piece of work."""
+        """Begin attempts: exact ones, which take milliseconds each, in bundles."""
         fresh = [start for start in starts if id(start) not in self._solves]
         size = BUNDLE if scaled.exact and self.width > 1 else 1
         for begin in range(0, len(fresh), size):
@@ -208,7 +185,7 @@ class Elsewhere:
             return self._executor.submit(function, *given)
 
     def _alone(self, function: Callable[..., T], *given: Any) -> T:
-        """What is done once more alone, so that it is known whose fault a loss is."""
+        """Work repeated alone, which shows whether it caused a loss."""
         try:
             return self._waited_for(self._submit(function, *given))
         except BrokenExecutor as error:
@@ -229,11 +206,11 @@ class Elsewhere:
 
 
 class CrashError(SolverError):
-    """A piece of work ends the process that does it."""
+    """Work that ends the process that does it."""
 
 
-class Processes(Elsewhere):
-    """In processes of its own, which end with this one; one that is lost is replaced."""
+class Processes(OnExecutor):
+    """In own processes, which end with this one; a lost one is replaced."""
 
     def __init__(self, count: int) -> None:
         self._state = new_state()
@@ -241,26 +218,26 @@ class Processes(Elsewhere):
         self._ready = begun(self._executor, count)
 
     def end(self) -> None:
-        """End the processes, and what they do."""
+        """End the processes and their work."""
         self._state.value = OVER
         self.drop()
         self._executor.shutdown(cancel_futures=True)
 
     def attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], first: int, /) -> list[Attempt]:
-        """Attempts from starts; here as long as the processes begin."""
+        """Attempts from starts; in this process while the others begin."""
         made = list[Attempt]()
         while len(made) < len(starts) and not self._ready.done():
             made.append(attempt(scaled, starts[len(made)], first + len(made)))
         return made + super().attempts(scaled, starts[len(made) :], first + len(made))
 
-    def made(self, make: Make[T], scaled: ScaledProblem, *which: float) -> T:
-        """What a function makes; here as long as the processes begin, unless one of them has it already."""
+    def made(self, make: Make[T], scaled: ScaledProblem, /, *which: float) -> T:
+        """The value of a function; made in this process while the others begin, unless one has begun it."""
         if self._ready.done() or (make, self._packed(scaled), *which) in self._begun:
             return super().made(make, scaled, *which)
         return make(scaled, *which)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
-        """Begin as many as there may soon be processes for, once they are there."""
+        """Begin as many as there may soon be processes for, once these run."""
         if self._ready.done():
             super().begin_attempts(scaled, starts)
 
@@ -268,7 +245,7 @@ class Processes(Elsewhere):
         if stop_requested():
             self._state.value = STOP
 
-    def _lost(self, error: BrokenExecutor) -> None:  # what was lost is done again
+    def _lost(self, error: BrokenExecutor) -> None:  # lost work is done again
         self.lost += 1
         _LOG.warning("a worker process was lost and is replaced: %s", error)
         self.drop()
@@ -279,13 +256,13 @@ class Processes(Elsewhere):
 
 @contextmanager
 def working(workers: int, executor: Executor | None) -> Iterator[Work]:
-    """Where screenings and attempts are made, in the order asked for.
+    """Where screenings and attempts are made.
 
-    On as many processes of its own as there are `workers`, which end with it (none for one), or on an
-    `executor` that has so many and is not shut down. SolverError where the executor was lost.
+    In as many own processes as there are `workers`, which end with it (none for one), or on an `executor`
+    that has as many and is not shut down. SolverError where the executor was lost.
     """
     if executor is not None:
-        elsewhere = Elsewhere(executor, workers)
+        elsewhere = OnExecutor(executor, workers)
         try:
             yield elsewhere
         finally:
@@ -297,7 +274,7 @@ def working(workers: int, executor: Executor | None) -> Iterator[Work]:
         finally:
             own.end()
     else:
-        yield Here()
+        yield Work()
 
 
 def _numbered(one: Attempt, number: int) -> Attempt:
@@ -309,7 +286,7 @@ def _numbered(one: Attempt, number: int) -> Attempt:
 
 
 def new_state() -> Any:
-    """What `processes` are told, by its value: nothing, `STOP` or `OVER`."""
+    """The order to `processes` by its value: none (0), `STOP` or `OVER`."""
     return get_context("spawn").RawValue("b", 0)  # no lock: one that a killed process holds is never free
 
 

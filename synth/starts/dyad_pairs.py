@@ -11,7 +11,7 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.quantities.driver_angles import as_they_come, follow
+from grashof.synth.quantities.driver_motion import as_they_come, follow
 from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.quantities.screening import (
     GROUPS,

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.quantities.driver_angles import as_they_come
+from grashof.synth.quantities.driver_motion import as_they_come
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project

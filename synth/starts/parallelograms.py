@@ -25,7 +25,7 @@ from grashof.problems.values.arrays import (
 )
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.quantities.driver_angles import as_they_come, shorter_way
+from grashof.synth.quantities.driver_motion import as_they_come, shorter_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import (
     GROUPS,

@@ -16,7 +16,7 @@ from grashof.problems import SliderCrank
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.loop.dyad import Bars, ClosingDyad, Slider, coupler_of
 from grashof.synth.programme.start import Round
-from grashof.synth.quantities.driver_angles import shorter_way
+from grashof.synth.quantities.driver_motion import shorter_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets

@@ -6,7 +6,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.quantities.driver_angles import as_they_come
+from grashof.synth.quantities.driver_motion import as_they_come
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import (
     Configurations,

@@ -17,8 +17,8 @@ import pytest
 
 from grashof.analysis import solve_position, verify
 from grashof.problems import Box, FourBar, MotionTask, PathTask, Problem, Requirements
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_schema import problem_from
-from grashof.problems.files.toml_file import document_of
 
 ROOT = Path(__file__).parents[2]
 BENCHMARKS, DATA = ROOT / "scripts" / "benchmarks", ROOT / "tests" / "data"

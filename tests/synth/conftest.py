@@ -28,7 +28,7 @@ STEPS = 3000  # of the driver between two targets; three times as many over the 
 
 @dataclass(frozen=True)
 class Findings:
-    """What the independent judge finds: errors in sizes and rad, transmission in deg."""
+    """Findings of the independent judge: errors in sizes and rad, transmission in deg."""
 
     position_error: float
     angle_error: float
@@ -66,22 +66,41 @@ def folded_angle(a: ComplexArray, b: ComplexArray, o4: complex) -> FloatArray:
     return np.degrees(np.arccos(np.minimum(cosine, 1.0)))
 
 
+class Loop:
+    """A linkage in complex numbers, its loop closed by two circles about A and O4."""
+
+    def __init__(self, linkage: FourBar) -> None:
+        self.o2, self.o4, self.p = map(complex_point, (linkage.o2, linkage.o4, linkage.coupler_point))
+        self.r2, self.r3, self.r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
+        self.side = int(linkage.assembly)
+        self.lengths = np.array([abs(self.o4 - self.o2), self.r2, self.r3, self.r4])
+        self.arms = np.array([abs(self.p), abs(self.p - self.r3)])
+
+    def at(self, theta2: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """A, B, and B of the other assembly."""
+        a = self.o2 + self.r2 * np.exp(1j * theta2)
+        left, right = meeting_points(a, self.o4, self.r3, self.r4)
+        return (a, left, right) if self.side > 0 else (a, right, left)
+
+    def transmission(self, theta2: FloatArray) -> tuple[bool, float]:
+        """Whether the loop closes at all angles, and the worst transmission angle, deg, else 0."""
+        a, b, _ = self.at(theta2)
+        closes = bool(np.isfinite(b).all())
+        return closes, float(folded_angle(a, b, self.o4).min()) if closes else 0.0
+
+    def over_the_turn(self) -> tuple[bool, float]:
+        """The same over the turn, with the driver along the ground line as well, where the extremes lie."""
+        return self.transmission(np.angle(self.o4 - self.o2) + np.linspace(0, 2 * np.pi, 3 * STEPS + 1))
+
+
 def judge(linkage: FourBar, task: MotionTask) -> Findings:
-    o2, o4 = complex_point(linkage.o2), complex_point(linkage.o4)
-    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
-    p, side = complex_point(linkage.coupler_point), int(linkage.assembly)
-
-    def b_of(a: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        left, right = meeting_points(a, o4, r3, r4)
-        return (left, right) if side > 0 else (right, left)
-
+    loop = Loop(linkage)
     targets = task.positions[:, 0] + 1j * task.positions[:, 1]
     direction3 = np.exp(1j * (task.angles - float(linkage.body_angle)))
-    theta2 = np.angle(targets - p * direction3 - o2)
-    a = o2 + r2 * np.exp(1j * theta2)
-    b, _ = b_of(a)
-    coupler = (b - a) / r3
-    position_error = np.abs(a + p * coupler - targets).max() / task.size
+    theta2 = np.angle(targets - loop.p * direction3 - loop.o2)
+    a, b, _ = loop.at(theta2)
+    coupler = (b - a) / loop.r3
+    position_error = np.abs(a + loop.p * coupler - targets).max() / task.size
     angle_error = np.abs(np.angle(coupler / direction3)).max()
 
     in_order = on_one_branch = False
@@ -95,18 +114,13 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
             begin + sense * np.linspace(0, step, STEPS)
             for begin, step in zip(theta2[:-1], steps, strict=True)
         ])  # fmt: skip
-        places = o2 + r2 * np.exp(1j * on_way)
-        way, other = b_of(places)
+        _, way, other = loop.at(on_way)
         # Continuity: the next place of B on this assembly is nearer than that on the other one.
         followed = np.abs(np.diff(way)) < np.abs(other[1:] - way[:-1])
         if np.isfinite(way).all() and followed.all():
             on_one_branch = True
-            transmission_task = float(folded_angle(places, way, o4).min())
-    # Whole turn: with the driver along the ground line as well, where the extremes lie.
-    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * STEPS + 1)
-    places = o2 + r2 * np.exp(1j * turn)
-    around, _ = b_of(places)
-    turns = bool(np.isfinite(around).all())
+            transmission_task = loop.transmission(on_way)[1]
+    turns, transmission_cycle = loop.over_the_turn()
     return Findings(
         position_error=float(position_error),
         angle_error=float(angle_error),
@@ -114,15 +128,15 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
         on_one_branch=on_one_branch,
         turns=turns,
         transmission_task=transmission_task,
-        transmission_cycle=float(folded_angle(places, around, o4).min()) if turns else 0.0,
-        lengths=np.array([abs(o4 - o2), r2, r3, r4]),
-        arms=np.array([abs(p), abs(p - r3)]),
+        transmission_cycle=transmission_cycle,
+        lengths=loop.lengths,
+        arms=loop.arms,
     )
 
 
 @dataclass(frozen=True)
 class PathFindings:
-    """What the independent judge finds at the driver angles of a verdict: lengths in sizes, angles in deg."""
+    """Findings of the independent judge at the driver angles of a verdict: sizes and deg."""
 
     errors: FloatArray
     in_order: bool
@@ -138,33 +152,22 @@ PathJudge: TypeAlias = Callable[[FourBar, FloatArray, PathTask], PathFindings]
 
 
 def judge_path(linkage: FourBar, theta2: FloatArray, task: PathTask) -> PathFindings:
-    o2, o4 = complex_point(linkage.o2), complex_point(linkage.o4)
-    r2, r3, r4 = float(linkage.r2), float(linkage.r3), float(linkage.r4)
-    p, side = complex_point(linkage.coupler_point), int(linkage.assembly)
-
-    def places(angle: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        a = o2 + r2 * np.exp(1j * angle)
-        return a, meeting_points(a, o4, r3, r4)[0 if side > 0 else 1]
-
-    a, b = places(theta2)
+    loop = Loop(linkage)
+    a, b, _ = loop.at(theta2)
     targets = task.points[:, 0] + 1j * task.points[:, 1]
     steps, sense = np.diff(theta2), np.sign(theta2[-1] - theta2[0])
     gone = 2 * np.pi if task.closed else abs(theta2[-1] - theta2[0])
-    way = theta2[0] + sense * np.linspace(0, gone, 3 * STEPS)
-    at_a, at_b = places(way)
-    turn = np.angle(o4 - o2) + np.linspace(0, 2 * np.pi, 3 * STEPS + 1)
-    round_a, round_b = places(turn)
-    turns, closes = bool(np.isfinite(round_b).all()), bool(np.isfinite(at_b).all())
-    size = task.size
+    closes, worst = loop.transmission(theta2[0] + sense * np.linspace(0, gone, 3 * STEPS))
+    turns, least = loop.over_the_turn()
     return PathFindings(
-        errors=np.abs(a + p * (b - a) / r3 - targets) / size,
+        errors=np.abs(a + loop.p * (b - a) / loop.r3 - targets) / task.size,
         in_order=bool((sense * steps >= -1e-9).all() and gone <= 2 * np.pi + 1e-9),
         on_one_branch=closes,
         turns=turns,
-        transmission_task=float(folded_angle(at_a, at_b, o4).min()) if closes else 0.0,
-        transmission_cycle=float(folded_angle(round_a, round_b, o4).min()) if turns else 0.0,
-        lengths=np.array([abs(o4 - o2), r2, r3, r4]),
-        arms=np.array([abs(p), abs(p - r3)]),
+        transmission_task=worst,
+        transmission_cycle=least,
+        lengths=loop.lengths,
+        arms=loop.arms,
     )
 
 
@@ -239,8 +242,22 @@ def path_scaled() -> Callable[..., tuple[ScaledProblem, FourBar]]:
 PairsOf: TypeAlias = Callable[[ScaledProblem], Screened]
 
 
+def once(of: PairsOf) -> PairsOf:
+    """The same pairs for the same task and requirements: to trace curves takes longer than a solve."""
+    known: dict[tuple[bytes, str], Screened] = {}
+
+    def found(scaled: ScaledProblem) -> Screened:
+        key = scaled.targets.tobytes() + scaled.turns.tobytes(), repr(scaled.wanted)
+        if key not in known:
+            known[key] = of(scaled)
+        return known[key]
+
+    return found
+
+
 @pytest.fixture(scope="session")
 def feasible_pairs() -> PairsOf:
+    @once
     def of(scaled: ScaledProblem) -> Screened:
         dyads = trace_four_pose_curves(scaled.motion, reach=6.0, lines=200, cell=0.03)
         return screen(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=60_000)
@@ -250,6 +267,7 @@ def feasible_pairs() -> PairsOf:
 
 @pytest.fixture(scope="session")
 def all_pairs() -> PairsOf:
+    @once
     def of(scaled: ScaledProblem) -> Screened:
         dyads = trace_four_pose_curves(scaled.motion, reach=5.0, lines=40, cell=0.1)
         return near_misses(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=20_000)

@@ -7,7 +7,7 @@ import pytest
 
 from grashof.analysis import Verdict, driver_ranges, solve_position, verify
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import cylinder_forces
+from grashof.analysis.judge.cylinder_drive import cylinder_forces
 from grashof.problems import (
     Box,
     Cylinder,

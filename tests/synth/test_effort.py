@@ -1,4 +1,4 @@
-"""What searches cost, in Ipopt's solves and iterations on fixed seeds: hardly a matter of the machine.
+"""Costs of searches, in Ipopt's solves and iterations on fixed seeds: hardly a matter of the machine.
 
 Processors round differently, and a solve that wanders may then take 250 iterations instead of 90. So
 iterations are counted up to fifty a solve and added up over three seeds; kernels of BLAS and NumPy for
@@ -16,7 +16,7 @@ from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_text
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import synthesize
-from grashof.synth.programme import exchange
+from grashof.synth.programme import nonlinear_programme
 
 MORE, LESS = 1.25, 0.6  # times the figures below
 SEEDS = range(3)
@@ -59,14 +59,14 @@ def task(name: str) -> Problem:
 
 def effort_of(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> Effort:
     spent: list[int] = []
-    solve = exchange.solve
+    solve = nonlinear_programme.solve
 
     def counted(*given: Any) -> Any:
         solved = solve(*given)
         spent.append(min(solved.iterations, COUNTED))
         return solved
 
-    monkeypatch.setattr(exchange, "solve", counted)
+    monkeypatch.setattr(nonlinear_programme, "solve", counted)
     designs = sum(len(synthesize(problem, seed=seed, starts=48, enough=24, effort=0.2)) for seed in SEEDS)
     return Effort(len(spent), sum(spent), designs)
 

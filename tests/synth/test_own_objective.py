@@ -98,7 +98,7 @@ def test_it_holds_beside_a_constraint() -> None:
         (lambda design: ca.vertcat(design.o2, design.o4), "objective <lambda> gives 4 values"),
     ],
 )
-def test_what_is_no_objective_is_refused_in_one_line(objective: Any, message: str) -> None:
+def test_unusable_objectives_are_refused_in_one_line(objective: Any, message: str) -> None:
     with pytest.raises(ProblemError, match=message) as caught:
         synthesize(Problem(task=THREE), objective=objective)
     assert "\n" not in str(caught.value)

@@ -23,8 +23,8 @@ from grashof.synth.search.chunks import chunk, chunks
 from grashof.synth.search.journal import content_of
 from grashof.synth.search.plain import plain
 from grashof.synth.search.run import Run
-from grashof.synth.search.workers import CrashError, Here
-from grashof.synth.shards import PROBLEM, SHARDS, Made, Shard, solve_shard
+from grashof.synth.search.workers import CrashError, Work
+from grashof.synth.shards import PROBLEM, SHARDS, Shard, ShardOutcome, solve_shard
 
 FOUR = [[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70]]
 FIVE = [*FOUR, [360, 0, 90]]
@@ -61,20 +61,20 @@ def table(result: Result) -> str:
     return result.to_frame().to_csv() + result.note + result.ended + str(result.counts)
 
 
-def divided(kind: str, folder: Path, of: int, **more: Any) -> list[Made]:
+def divided(kind: str, folder: Path, of: int, **more: Any) -> list[ShardOutcome]:
     problem, options = KINDS[kind]
     return [solve_shard(problem, Shard(n, of), folder, **options, **more) for n in range(of, 0, -1)]
 
 
 @pytest.fixture(scope="module")
-def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Made]]:
-    """A folder with the whole search of "poses" in one shard, and what was made there."""
+def searched(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[ShardOutcome]]:
+    """A folder with the full search of "poses" in one shard, and its outcome."""
     folder = tmp_path_factory.mktemp("searched")
     return folder, divided("poses", folder, 1)
 
 
 @pytest.fixture
-def shard(searched: tuple[Path, list[Made]], tmp_path: Path) -> Path:
+def shard(searched: tuple[Path, list[ShardOutcome]], tmp_path: Path) -> Path:
     """A copy of it."""
     copytree(searched[0], tmp_path, dirs_exist_ok=True)
     return tmp_path
@@ -88,7 +88,7 @@ def test_the_list_does_not_depend_on_the_number_of_shards(kind: str, tmp_path: P
     merged = []
     for of in (1, 3):
         made = divided(kind, tmp_path / str(of), of)
-        assert all(one.whole and one.chunks == one.of for one in made)
+        assert all(one.complete and one.chunks == one.of for one in made)
         merged.append(merge_shards(tmp_path / str(of)))
     one, several = merged
     assert table(one) == table(several)
@@ -115,9 +115,7 @@ def test_all_chunks_are_made_and_nothing_ends_them_early(tmp_path: Path) -> None
 
 
 @pytest.mark.study
-def test_a_shard_that_was_killed_goes_on(
-    tmp_path: Path, mortal: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_killed_shard_is_resumed(tmp_path: Path, mortal: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(journal_module, "EVERY", 0.0)
     whole = tmp_path / "whole"
     divided("poses", whole, 1)
@@ -136,7 +134,7 @@ def test_a_shard_that_was_killed_goes_on(
 
 
 @pytest.mark.study
-def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
+def test_a_stopped_shard_is_not_complete(tmp_path: Path) -> None:
     problem, options = KINDS["poses"]
     seen: list[int] = []
     made = solve_shard(
@@ -147,19 +145,12 @@ def test_a_shard_that_was_stopped_is_not_whole(tmp_path: Path) -> None:
         progress=lambda step: seen.append(step.solved),
         stop=lambda: len(seen) > 1,
     )
-    assert not made.whole
+    assert not made.complete
     assert seen[:2] == [8, 16]
-    assert solve_shard(problem, Shard(1, 1), tmp_path, **options).whole
+    assert solve_shard(problem, Shard(1, 1), tmp_path, **options).complete
 
 
-@pytest.mark.study
-def test_processes_change_no_byte(tmp_path: Path) -> None:
-    divided("poses", tmp_path / "alone", 1)
-    divided("poses", tmp_path / "two", 1, workers=2)
-    assert table(merge_shards(tmp_path / "two")) == table(merge_shards(tmp_path / "alone"))
-
-
-class Mortal(Here):
+class Mortal(Work):
     """Chunks end the process that makes them; starts do not."""
 
     def made(self, make: Any, scaled: ScaledProblem, *which: float) -> Any:
@@ -173,7 +164,7 @@ def test_a_chunk_that_ends_its_process_is_made_start_by_start() -> None:
     scaled = ScaledProblem.of(load("luggage"))
     search = scaled.problem.search
     known, again = (
-        list(chunks(scaled, Run(search, work, lambda: False), range(2), 5)) for work in (Here(), Mortal())
+        list(chunks(scaled, Run(search, work, lambda: False), range(2), 5)) for work in (Work(), Mortal())
     )
     assert repr(plain(tuple(known))) == repr(plain(tuple(again)))
     assert np.shape(known) == (2,)
@@ -212,8 +203,8 @@ def test_shards_of_other_searches_are_refused(tmp_path: Path) -> None:
 @pytest.mark.quick("a verdict that is wrong")
 @pytest.mark.parametrize("damage", ["truncated", "another figure", "a verdict that is wrong"])
 @pytest.mark.usefixtures("shard")
-def test_what_is_damaged_is_not_merged_and_done_again(
-    damage: str, searched: tuple[Path, list[Made]], tmp_path: Path
+def test_damaged_records_are_not_merged_but_repeated(
+    damage: str, searched: tuple[Path, list[ShardOutcome]], tmp_path: Path
 ) -> None:
     whole = table(merge_shards(tmp_path))
     path = tmp_path / SHARDS / Shard(1, 1).folder / "000001.json"
@@ -355,6 +346,6 @@ def test_the_problem_file_is_kept(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "text", ["3", "0/2", "3/2", "1/0", "-1/2", "1/2/3", "one/2", "1/999999999", "²/3", ""]
 )
-def test_what_is_no_shard_is_refused(text: str) -> None:
+def test_invalid_shards_are_refused(text: str) -> None:
     with pytest.raises(ProblemError, match=r"^--shard is '.*'; it must be I/N"):
         Shard.stated(text)

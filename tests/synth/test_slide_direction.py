@@ -1,5 +1,6 @@
 """Slider-cranks through poses with a prescribed direction of the slide."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -8,12 +9,14 @@ import pytest
 from grashof import synthesize
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, FunctionTask, MotionTask, Problem, Requirements, SliderCrank
+from grashof.problems import Box, FunctionTask, MotionTask, PathTask, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import turned_from
 from grashof.synth import Candidate
 
 DOOR = MotionTask.from_degrees([[0, 1.05, 90], [-0.2, 1.75, 125], [-0.95, 2.12, 180]])
 FREE = MotionTask(DOOR.positions, [np.pi / 2, np.nan, np.pi])
+
+pytestmark = pytest.mark.usefixtures("small_search")
 
 
 def slides_along(found: list[Candidate], angle_deg: float) -> bool:
@@ -27,6 +30,7 @@ def slides_along(found: list[Candidate], angle_deg: float) -> bool:
     return True
 
 
+@pytest.mark.quick("whole-180", "one angle free-0")
 @pytest.mark.parametrize("angle_deg", [180, 0])
 @pytest.mark.parametrize("task", [DOOR, FREE], ids=["whole", "one angle free"])
 def test_a_door_on_a_level_track(task: MotionTask, angle_deg: float) -> None:
@@ -53,6 +57,7 @@ def test_a_door_on_a_level_track_with_its_pivots_in_zones() -> None:
         assert -0.3 - 1e-9 <= each.linkage.o2[0] <= 0.3 + 1e-9  # type: ignore[attr-defined]
 
 
+@pytest.mark.quick("4", "5")
 @pytest.mark.parametrize("poses", [3, 4, 5])
 def test_planted_directions_are_met(poses: int) -> None:
     task, linkage = planted_motion(np.random.default_rng([2, poses]), poses, mechanism="slider-crank")
@@ -92,29 +97,33 @@ def test_a_range_of_directions_is_kept_and_used() -> None:
     assert np.ptp(apart) > 5
 
 
-def test_a_range_of_the_ground_counts_alike_by_whole_turns() -> None:
-    task = MotionTask.from_degrees([[0, 0, 0], [30, 20, 25], [70, 25, 60], [90, 10, 85]])
+def test_ranges_of_the_ground_angle_are_equal_modulo_a_turn() -> None:
+    task = PathTask([[0, 0], [30, 20], [60, 28], [90, 25], [110, 12]])
     found = [
         synthesize(
             Problem(task=task, requirements=Requirements(rotatability="any", ground_angle_deg=allowed)),
-            enough=10,
+            starts=16,
+            enough=3,
         )
         for allowed in ((-10.0, 20.0), (350.0, 380.0))
     ]
     here, there = ([each.linkage for each in one.candidates] for one in found)
-    assert len(here) >= 10
+    assert len(here) >= 3
     theta1 = np.degrees([float(linkage.theta1) for linkage in here])
     assert theta1.min() >= -10 - 1e-6
     assert theta1.max() <= 20 + 1e-6
     np.testing.assert_allclose([each.r2 for each in there], [each.r2 for each in here], rtol=1e-6)
 
 
-def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end() -> None:
+def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end(
+    relaxing_only: Callable[..., None],
+) -> None:
+    relaxing_only("slide_angle_deg")
     task, linkage = planted_motion(np.random.default_rng([2, 5]), 5, mechanism="slider-crank")
     angle = float(np.degrees(linkage.slide_angle))  # the only one
     allowed = (angle + 1.0, angle + 3.0)
     wanted = Requirements(exact=True, slide_angle_deg=allowed, transmission_min_deg=0)
-    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted))
+    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted), starts=8)
     assert not result.candidates
     reached = float(result.note.split("slide_angle_deg from ")[1].split()[0])
     assert reached == pytest.approx(angle, abs=0.01)

@@ -91,13 +91,13 @@ alone = serial()
 begun, stop = threading.Event(), threading.Event()
 
 
-def told(_):
+def report(_):
     begun.set()
 
 
 async def searches():
     endless = asyncio.to_thread(
-        synthesize, luggage, starts=100_000, enough=50_000, stop=stop.is_set, progress=told
+        synthesize, luggage, starts=100_000, enough=50_000, stop=stop.is_set, progress=report
     )
     endless = asyncio.create_task(endless)
     limited = asyncio.create_task(

@@ -79,7 +79,7 @@ def test_a_search_ends_soon_after_its_time_limit(task: str) -> None:
 
 
 class Polled:
-    """A search's `stop`: counts how often it is asked."""
+    """A search's `stop`: counts its calls."""
 
     def __init__(self) -> None:
         self.times = 0
@@ -110,7 +110,7 @@ def test_fitting_functions_asks_whether_to_stop() -> None:
 
 
 @pytest.mark.slow
-def test_a_stopped_search_for_functions_lists_what_it_has() -> None:
+def test_a_stopped_search_for_functions_lists_its_designs() -> None:
     told: list[Progress] = []
     part = synthesize(load("function-log10"), stop=lambda: bool(told), progress=told.append)
     assert not part.complete

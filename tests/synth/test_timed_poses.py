@@ -39,7 +39,7 @@ def noisy(seed: int, poses: int) -> MotionTask:
 
 @pytest.fixture(scope="module")
 def free(least_error: Callable[..., Result]) -> Result:
-    """What least squares come to without limits."""
+    """Least squares without limits."""
     return least_error(Problem(task=noisy(1, 7), requirements=LEAST), starts=8)
 
 
@@ -69,13 +69,13 @@ def test_planted_timed_poses_are_met_exactly(poses: int, mixed: bool, closed: bo
 
 @pytest.mark.quick("6-True-False")
 @pytest.mark.parametrize(("poses", "mixed", "again"), [(4, False, False), (4, False, True), (6, True, False)])
-def test_closed_poses_are_met_on_a_whole_turn(poses: int, mixed: bool, again: bool) -> None:
+def test_closed_poses_are_met_within_one_turn(poses: int, mixed: bool, again: bool) -> None:
     task = planted(0, poses, timed=False, mixed=mixed, closed=True)
     if again:
         places, angles = (np.concatenate([part, part[:1]]) for part in (task.positions, task.angles))
         task = MotionTask(places, angles, closed=True)
     wanted = Requirements(exact=True, rotatability="any", transmission_min_deg=5)  # type: ignore[arg-type]
-    result = synthesize(Problem(task=task, requirements=wanted), enough=4)
+    result = synthesize(Problem(task=task, requirements=wanted), starts=16, enough=2)
     assert len(result)
     for candidate in result.candidates:
         assert candidate.verdict.error_max < 1e-9 * task.size
@@ -130,6 +130,6 @@ def test_timed_zones_are_kept_where_the_judge_finds_the_driver(free: Result) -> 
 
 
 def test_two_timed_poses_leave_freedom() -> None:
-    result = synthesize(Problem(task=planted(0, 2, timed=True)), enough=5)
-    assert len(result) >= 5
+    result = synthesize(Problem(task=planted(0, 2, timed=True)), starts=8, enough=3)
+    assert len(result) >= 3
     check_timing(result)

@@ -1,4 +1,4 @@
-"""Designs that follow a moved problem, held against the judge, the search and the moved targets."""
+"""Designs that follow a moved problem, compared with the judge, the search and the moved targets."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 from grashof import load, synthesize, track
 from grashof.analysis import solve_position, verify
-from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, ProblemError, Requirements
+from grashof.problems import FunctionTask, MotionTask, PathTask, Problem, ProblemError
 from grashof.synth import Candidate
 
 LINE = np.array([[0.0, 0.0], [0.4, 0.1], [0.9, 0.15], [1.4, 0.1], [1.8, 0.0]])
@@ -42,16 +42,16 @@ def test_ten_designs_follow_a_pose_over_eight_steps(luggage) -> None:  # type: i
 
 def test_nothing_moves_where_nothing_changed(luggage) -> None:  # type: ignore[no-untyped-def]
     problem, designs = luggage
-    for before, after in zip(designs, track(designs, problem), strict=True):
+    for before, after in zip(designs[:4], track(designs[:4], problem), strict=True):
         assert after.verdict.ok
         np.testing.assert_allclose(after.linkage.lengths, before.linkage.lengths, rtol=1e-6)
 
 
-def test_lost_designs_keep_their_place_and_say_what_they_miss(luggage) -> None:  # type: ignore[no-untyped-def]
+def test_lost_designs_keep_their_place_and_state_their_misses(luggage) -> None:  # type: ignore[no-untyped-def]
     problem, designs = luggage
     limited = replace(problem, requirements=replace(problem.requirements, link_length=(1e-3, 1e-2)))
-    after = track(designs, limited)
-    assert len(after) == len(designs)
+    after = track(designs[:3], limited)
+    assert len(after) == 3
     assert not any(design.verdict.ok for design in after)
     assert all(design.verdict.defects and design.problem is limited for design in after)
 
@@ -73,17 +73,6 @@ def test_trade_offs_of_least_squares_stay_apart() -> None:
     assert len({design.id for design in after}) == len(designs)
 
 
-@pytest.mark.study
-def test_a_point_more_and_a_point_less() -> None:
-    problem = Problem(task=PathTask(LINE), requirements=Requirements(exact=False))
-    designs = synthesize(problem, enough=3).candidates[:3]
-    more = replace(problem, task=PathTask(np.insert(LINE, 2, [0.65, 0.13], axis=0)))
-    after = track(designs, more)
-    assert all(len(design.verdict.theta2) == 6 for design in after)
-    assert any(design.verdict.ok for design in after)
-    assert all(design.verdict.ok for design in track(after, problem))
-
-
 def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
     problem = Problem(task=PathTask(LINE), mechanism="slider-crank")
     designs = synthesize(problem, enough=3).candidates[:3]
@@ -92,7 +81,7 @@ def test_slider_cranks_follow_and_other_kinds_are_refused() -> None:
     assert len(after) == len(designs) > 0
     assert all(design.verdict.ok for design in after)
     assert all(design.linkage.mechanism.word == "slider-crank" for design in after)
-    with pytest.raises(ProblemError, match=r"designs\[0\] is a slider-crank; the problem asks for four-bar"):
+    with pytest.raises(ProblemError, match=r"designs\[0\] is a slider-crank; the problem requests four-bar"):
         track(designs, replace(problem, mechanism="four-bar"))
 
 
@@ -102,8 +91,8 @@ def moved_by(one: Candidate, other: Candidate) -> float:
     return float(np.abs(after / after.max() - before / before.max()).max())
 
 
-@pytest.mark.parametrize("turn", [0.02, -0.02])
-def test_pairs_of_a_function_are_followed(turn: float) -> None:
+def test_pairs_of_a_function_are_followed() -> None:
+    turn = 0.02
     task = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
     there = replace(task, outputs=task.outputs + np.radians([0, turn, 0, 0, turn]))
     designs = synthesize(Problem(task=task)).candidates
@@ -119,13 +108,14 @@ def test_fitted_functions_are_followed_to_the_least_error_nearby() -> None:
     task = FunctionTask.from_degrees([0, 15, 30, 45, 60, 75], [0, 12, 22, 30, 36, 40])
     problem = Problem(task=task)
     there = replace(problem, task=replace(task, outputs=1.01 * task.outputs))
-    designs = synthesize(problem).candidates
+    designs = synthesize(problem, effort=0.5).candidates
     after = track(designs, there)
     assert all(one.verdict.ok for one in after)
     least = min(one.error(there) for one in after)
     assert least < 1.001 * synthesize(there).best.error(there)
 
 
+@pytest.mark.quick("quick-return-slide")
 @pytest.mark.parametrize("name", ["quick-return", "quick-return-slide"])
 def test_strokes_are_followed(name: str) -> None:
     problem = load(name)
@@ -150,7 +140,7 @@ def test_a_limit_that_is_raised_moves_designs_no_farther_than_onto_it(luggage) -
         assert asked - 1e-6 <= np.degrees(design.values["transmission"]) <= asked + 0.02
 
 
-def test_what_is_no_design_is_refused(luggage) -> None:  # type: ignore[no-untyped-def]
+def test_anything_but_a_design_is_refused(luggage) -> None:  # type: ignore[no-untyped-def]
     problem, designs = luggage
     with pytest.raises(
         ProblemError, match=r"designs\[1\] is 7; it must be a Candidate, as results list them"

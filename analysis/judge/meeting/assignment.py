@@ -1,8 +1,8 @@
-"""Which part of a coupler curve each target belongs to, when the targets have to be met in order."""
+"""Assignment of targets to the parts of a coupler curve, where they must be met in order."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 _KEPT = 4
 _STRIDE, _MOST_CUTS = 5, 72  # pieces from cut to cut; more of them where there are very many pieces
 _SAGITTA = 5e-4  # of the length of the curve: no piece bulges farther from its chord
-_NEAR = 0.1  # rad: guesses that agree so well lead to the same place
+_NEAR = 0.1  # rad: guesses closer than this lead to the same place
 _FEW = 64  # targets: those of more are added diagonal by diagonal, which takes longer to begin
 _ALIKE = 1e-6  # assignments whose costs differ by a smaller share are the same one
 
@@ -40,9 +40,11 @@ def ordered_guesses(
     """Assignments of targets (N,) to pieces that do not go back within one turn, the best first.
 
     By dynamic programming; with `middles` distances are from the middle of a piece, otherwise from its chord,
-    which is closer but allows targets on one piece to stand in any order.
+    which is closer but allows targets on one piece in any order.
     """
-    squared, share, side = _distances(track, targets, middles)
+    by_side = _distances(track, targets, middles)
+    side = np.argmin(by_side[0], axis=1)
+    squared, share = (np.take_along_axis(each, side[:, None], axis=1)[:, 0] for each in by_side)
     squared = weights[:, None] * squared
     if not track.cyclic:
         chosen, costs = assigned(squared[:, :, None])
@@ -65,8 +67,7 @@ def nearest_guess(
     track: Track, targets: ComplexArray, valleys: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
     """Driver angles in the nearest valleys of each target, bounds and assemblies, each (valleys, N)."""
-    by_sign = [_distances(_on(track, sign), targets)[:2] for sign in range(len(track.signs))]
-    squared, share = (np.stack(each) for each in zip(*by_sign, strict=True))
+    squared, share = (each.swapaxes(0, 1) for each in _distances(track, targets))
     if track.cyclic:
         before, after = np.roll(squared, 1, axis=2), np.roll(squared, -1, axis=2)
     else:
@@ -82,33 +83,21 @@ def nearest_guess(
     return theta2, track.floor[piece], track.ceiling[piece], track.signs[sign]
 
 
-def _on(track: Track, sign: int) -> Track:
-    one = slice(sign, sign + 1)
-    return replace(track, start=track.start[one], end=track.end[one], signs=track.signs[one])
-
-
-def _distances(
-    track: Track, targets: ComplexArray, middles: bool = False
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Squared distance from each piece, where on it, and on which assembly; each shape (N, M)."""
+def _distances(track: Track, targets: ComplexArray, middles: bool = False) -> tuple[FloatArray, FloatArray]:
+    """Squared distance from each piece on each assembly, and the place on it; each shape (N, S, M)."""
     chord = track.end - track.start
     offset = targets[:, None, None] - track.start
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (offset * chord.conj()).real / np.abs(chord) ** 2
     share = np.full_like(share, 0.5) if middles else np.clip(np.nan_to_num(share), 0.0, 1.0)
     gap = offset - share * chord
-    squared = np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf)
-    if len(track.signs) == 1:
-        return squared[:, 0], share[:, 0], np.zeros(squared[:, 0].shape, dtype=np.int64)
-    side = np.argmin(squared, axis=1)
-    squared, share = (np.take_along_axis(each, side[:, None], axis=1)[:, 0] for each in (squared, share))
-    return squared, share, side
+    return np.nan_to_num(gap.real**2 + gap.imag**2, nan=np.inf), share
 
 
 def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
     """Least sums over pieces that never go back, `length` of them from each cut (C,) on; shape (C,).
 
-    `around`, shape (N, 2 M), is what N targets cost on the pieces of two turns.
+    `around`, shape (N, 2 M), holds the costs of N targets on the pieces of two turns.
     """
     if len(around) > _FEW:
         return _least_costs_of_many(around, cuts, length)
@@ -122,13 +111,13 @@ def _least_costs(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
 
 
 def _least_costs_of_many(around: FloatArray, cuts: IntArray, length: int) -> FloatArray:
-    """The same, to the last bit, for many targets: what is least up to each piece, all cuts at once.
+    """The same, to the last bit, for many targets: the least up to each piece, all cuts at once.
 
     Up to target k and piece p it is least(k, p) = min(least(k - 1, p) + cost(k, p), least(k, p - 1)). On
     a diagonal k + p = d nothing depends on anything else there, so that one step makes all of it.
     """
     count, width = around.shape
-    # On a diagonal a piece more is a target less, so many numbers farther back; none before the first.
+    # On a diagonal a piece more is a target less, `back` numbers farther back; none before the first.
     back = width - 1
     flat = np.concatenate([np.zeros((length - 1) * back), around.ravel()])
     place = cuts + back * np.arange(length - 1, -1, -1)[:, None]
@@ -190,7 +179,7 @@ def _guess(track: Track, chosen: IntArray, share: FloatArray, side: IntArray, co
     target = np.arange(len(chosen))
     part = share[target, piece]
     theta2 = track.low[piece] + part * (track.high - track.low)[piece] + TURN * turns
-    # Within a piece the targets may stand in the wrong order.
+    # Within a piece the targets may be in the wrong order.
     ordered = np.minimum(np.maximum.accumulate(theta2), theta2[0] + TURN)
     assembly = track.signs[side[target, piece]]
     floor, ceiling = (bound[piece] + TURN * turns for bound in (track.floor, track.ceiling))

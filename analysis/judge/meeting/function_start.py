@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -14,7 +15,7 @@ from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import Linkage, ProblemError, Task
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
 
-_STARTS = 720  # driver angles at the first pair that are tried, over what the driver can reach
+_STARTS = 720  # driver angles at the first pair that are tried, over the range of the driver
 _VALLEYS = 5
 _NEAR = 17  # places about the lowest ones of valleys, ever closer
 _CLOSE = 1e-10  # rad, between starts: no closer
@@ -62,18 +63,15 @@ def begins(
     if task.travels == linkage.mechanism.loops[0].pinned:
         way = "slides" if task.travels else "turns"
         raise ProblemError(
-            f"mechanism {linkage.mechanism.word} has no output that {way}; the function asks for one"
+            f"mechanism {linkage.mechanism.word} has no output that {way}; the function requires one"
         )
     search = _Search(linkage, task, exact or task.norm == "rms", transmission)
-    found: list[tuple[float, int, float]] = []
-    for direction in directions:
-        if theta2_start is not None:
-            found.append((search.value(theta2_start, direction), direction, theta2_start))
-            continue
-        found += search.valleys(direction)
-    found = sorted(one for one in found if np.isfinite(one[0]))[: 1 if theta2_start is not None else _VALLEYS]
     if theta2_start is None:
-        found = search.bottoms(found)
+        lowest = sorted(valley for direction in directions for valley in search.valleys(direction))
+        found = search.bottoms(lowest[:_VALLEYS])
+    else:
+        given = [(search.value(theta2_start, direction), direction, theta2_start) for direction in directions]
+        found = sorted(one for one in given if np.isfinite(one[0]))[:1]
     if not found:
         return None
     least = min(value for value, _, _ in found)
@@ -128,13 +126,11 @@ class _Search:
         for low, high in self._ranges(direction):
             starts = np.linspace(low, high, max(8, int(np.ceil(_STARTS * (high - low) / TURN))) + 1)
             value = self.values(starts, direction, _SAMPLES)
-            padded = np.pad(value, 1, constant_values=np.inf)
-            lowest = np.flatnonzero((value <= padded[:-2]) & (value <= padded[2:]) & np.isfinite(value))
-            found += [(float(value[k]), direction, float(starts[k])) for k in lowest]
+            found += [(float(value[k]), direction, float(starts[k])) for k in valleys(value)]
         return found
 
     def _ranges(self, direction: int) -> list[tuple[float, float]]:
-        """Where the driver may stand at the first pair."""
+        """Driver angles at the first pair from which the range is possible."""
         low, high = self.task.span
         ranges = driver_ranges(self.linkage, self.transmission).tolist()
         if (rotatability(self.linkage) >= 0).all() and ranges[0][1] - ranges[0][0] >= TURN:
@@ -172,7 +168,9 @@ class _Search:
         way = way_of(self.task, direction)
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.driver_turns)
-            rate = _output_rate(self.linkage, self.task, state.theta2)
+            loops, _ = close(self.linkage.mechanism, operands_of(self.linkage), state.theta2)
+            first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
+            rate = first.travel if self.task.travels else first.turn4
             if not np.isfinite(rate).all():  # a dead position
                 break
             output = moved_output(self.task, state, direction, unwrapped=False)
@@ -191,13 +189,6 @@ class _Search:
         return at
 
 
-def _output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
-    """Derivative of the output by the driver angle; not finite in dead positions."""
-    loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
-    first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
-    return first.travel if task.travels else first.turn4
-
-
 def _crest(samples: FloatArray) -> FloatArray:
     """The greatest of even samples (last axis), or of the parabolas through three that have a crest."""
     before, here, after = samples[..., :-2], samples[..., 1:-1], samples[..., 2:]
@@ -209,6 +200,6 @@ def _crest(samples: FloatArray) -> FloatArray:
 
 
 def _from_first(task: Task, outputs: FloatArray) -> FloatArray:
-    """Differences from the first (last axis), of angles by whole turns moved into [-pi, pi)."""
+    """Differences from the first (last axis), those of angles moved into [-pi, pi)."""
     off: FloatArray = outputs - outputs[..., :1]
     return off if task.travels else turned_from(off, 0.0)

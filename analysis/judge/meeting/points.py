@@ -1,4 +1,4 @@
-"""Free points met in order, by dynamic programming and Newton's method in all angles; or each by itself."""
+"""Points met in order, by dynamic programming and Newton's method in all angles, singly, or in time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from grashof.analysis.curves.coupler_curve import (
     tracks,
 )
 from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses
-from grashof.analysis.judge.meeting.misses import as_good, squares
+from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
+from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
@@ -27,7 +28,7 @@ _VALLEYS = 3
 _BASINS = 4
 _BESIDE = 0.15  # rad
 _LOOK = np.linspace(-1, 1, 25)
-
+_STARTS = 360  # driver angles at the first timed target, over the range of the driver
 
 # Where targets are met: driver angles and assemblies, each (N,), and the sense of the driver, 0 in no order.
 Met: TypeAlias = tuple[FloatArray, IntArray, int]
@@ -60,8 +61,8 @@ def _tracks_through(linkage: Linkage, same_branch: bool, theta2: float | None) -
 def met_in_order(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
     """The least weighted squares over driver angles that do not go back, within one turn.
 
-    None when it cannot be assembled. Where points have to stand together far from the curve, the least found
-    may be a local one.
+    None when it cannot be assembled. The least found may be a local one where points must be met together far
+    from the curve.
     """
     passages = _passages(linkage, task, same_branch, theta2_start)
     guesses = [(guess, passage) for passage in passages for guess in passage.guesses(middles=False)]
@@ -191,3 +192,60 @@ def _passages(linkage: Linkage, task: Task, same_branch: bool, theta2_start: flo
         start = coupler_curve(linkage, theta2_start, track.signs)[0]
         passages.append(_Passage(track, *one, theta2_start, start))
     return passages
+
+
+def met_in_time(linkage: Linkage, task: Task, same_branch: bool, theta2_start: float | None) -> Met | None:
+    """Least weighted squares over the first driver angle, in either sense; None without an assembly."""
+    turns = np.multiply.outer([1.0, -1.0], task.driver_turns)
+    own = int(linkage.assembly)
+    signs = np.array([own] if same_branch else [own, -own])
+    if theta2_start is None:
+        start, sense, low, high = _first_angles(linkage, task, turns, signs)
+        if not start.size:
+            return None
+    else:
+        start, sense = np.full(2, theta2_start), np.array([0, 1])
+        low = high = start
+    start, value = lowest(_timed(linkage, task, turns[sense], signs), start, low, high)
+    best = int(np.argmax(as_good(task, value)))
+    theta2 = start[best] + turns[sense[best]]
+    side = np.argmin(misses(linkage, task, theta2, signs[:, None]), axis=0)
+    return theta2, signs[side], 1 - 2 * int(sense[best])
+
+
+def _timed(linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray) -> Callable[[FloatArray], Model]:
+    """Sum of the squares, as a function of the driver angle at the first target; shapes (S,)."""
+    by_target = squares(linkage, task, signs[:, None, None])
+
+    def model(start: FloatArray) -> Model:
+        each = by_target(start[:, None] + turns)
+        side = np.argmin(each[0], axis=0)[None]
+        value, slope, second, positive = (np.take_along_axis(part, side, axis=0)[0] for part in each)
+        return value.sum(axis=-1), slope.sum(axis=-1), second.sum(axis=-1), positive.sum(axis=-1)
+
+    return model
+
+
+def _first_angles(
+    linkage: Linkage, task: Task, turns: FloatArray, signs: IntArray
+) -> tuple[FloatArray, IntArray, FloatArray, FloatArray]:
+    """Driver angle at the first target in the deepest valleys, sense (row of `turns`), and bounds."""
+    found = []
+    for sense, turn in enumerate(turns):
+        for low, high in _ranges(linkage, float(turn[-1]), len(signs) == 1):
+            grid = np.linspace(low, high, _STARTS + 1)
+            miss = misses(linkage, task, grid[:, None] + turn, signs[:, None, None])
+            value = (task.weights * miss.min(axis=0)).sum(axis=-1)
+            found += [(value[at], grid[at], sense, low, high) for at in valleys(value)]
+    found.sort()
+    columns = np.array(found[:_BASINS]).reshape(-1, 5).T
+    return columns[1], columns[2].astype(np.int64), columns[3], columns[4]
+
+
+def _ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
+    """Driver angles at the first target from which the entire rotation `turn` is possible."""
+    if not same_branch or (rotatability(linkage) >= 0).all():
+        return [(float(linkage.theta1), float(linkage.theta1) + TURN)]
+    back, on = max(-turn, 0.0), max(turn, 0.0)
+    ends = driver_ranges(linkage)
+    return [(float(low) + back, float(high) - on) for low, high in ends if high - on >= low + back]

@@ -5,8 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.analysis.judge.meeting.assignment import assigned, assigned_around
-from grashof.analysis.judge.meeting.misses import as_good, misses, squares
-from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.meeting.task_motion import (
+    Targets,
+    TaskMotion,
+    as_good,
+    misses,
+    squares,
+    task_motion,
+)
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
 from grashof.analysis.numerics.minimisation import lowest_in_order
@@ -18,7 +24,7 @@ _SAMPLES = 361
 _VALLEYS = 6
 _BESIDE = 41  # samples about each valley: beside a cusp may lie a deeper one
 _PLACES = 120  # driver angles of a turn, or of a range, among which poses are assigned in order
-_MOST = 360  # such angles at most: the valleys of many poses lie so close together that some stand for all
+_MOST = 360  # such angles at most: valleys of many poses lie close together, so that some represent all
 _FOLLOWED = 2.0  # times the least sum there: such guesses are followed
 _FREE = np.array(np.inf)
 
@@ -63,7 +69,7 @@ def _rounding(task: Task) -> float:
 def _descend(
     linkage: Linkage, task: Task, angle: FloatArray, signs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Driver angles after Gauss-Newton steps, and what they miss by; each shape (K, N)."""
+    """Driver angles after Gauss-Newton steps, and their misses; each shape (K, N)."""
     ends, model = driver_ranges(linkage), squares(linkage, task, signs)
     best = misses(linkage, task, angle, signs)
     for _ in range(6):
@@ -119,9 +125,9 @@ def poses_in_order(
 ) -> tuple[Targets, TaskMotion]:
     """Driver angles that do not go back, within one turn, with the least weighted squares.
 
-    On the own assembly and in one range; what is given where there are none. Poses free in part are met at
-    several angles, so nearest places may be out of order: dynamic programming over samples and valleys of the
-    misses, then Newton's method in all angles.
+    On the own assembly and in one range; `nearest` and `motion` where there are none. Poses free in part are
+    met at several angles, so nearest places may be out of order: dynamic programming over samples and valleys
+    of the misses, then Newton's method in all angles.
     """
     own = np.full(len(task), int(linkage.assembly))
     found = list[tuple[FloatArray, float]]()

@@ -1,17 +1,21 @@
-"""Where a linkage meets its targets, and the motion of its driver between them."""
+"""Where a linkage meets its targets, how far it misses them, and the motion of its driver between them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from grashof.analysis.curves.coupler_curve import coupler_motion
 from grashof.analysis.mechanism.mobility import range_index, rotatability
 from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage, Task
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
+from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
-STEADY = 1e-9  # rad: a driver step so small counts as none
+STEADY = 1e-9  # rad: a smaller driver step counts as none
+_ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than its square are equal
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +47,61 @@ class Targets:
         )
 
 
+def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray) -> FloatArray:
+    """|dp|^2 + (angle_length * dangle)^2 of the given parts, shape (..., N); inf where it cannot close."""
+    state = solve_position(linkage, theta2, assembly)
+    gap = state.p - task.positions
+    miss: FloatArray = np.where(task.has_position, gap[..., 0] ** 2 + gap[..., 1] ** 2, 0.0)
+    if task.has_angle.any():
+        off = turned_from(state.theta3, task.angles - linkage.body_angle)
+        miss = miss + np.where(task.has_angle, task.angle_length * off, 0.0) ** 2
+    return np.nan_to_num(miss, nan=np.inf, posinf=np.inf)
+
+
+def squares(
+    linkage: Linkage,
+    task: Task,
+    assembly: IntArray,
+    order: slice | IntArray = slice(None),
+    *,
+    weighted: bool = True,
+) -> Callable[[FloatArray], Model]:
+    """The misses as functions of driver angles (..., N), on given assemblies (..., N)."""
+    weights = task.weights if weighted else np.ones(len(task))
+    point = np.nan_to_num(task.positions[order] @ np.array([1, 1j]))
+    angle = np.nan_to_num(task.angles[order] - linkage.body_angle)
+    by_point = (weights * task.has_position)[order]
+    by_angle = (weights * task.has_angle)[order] * task.angle_length**2
+
+    def model(theta2: FloatArray) -> Model:
+        p, rate, bend, theta, omega, alpha = coupler_motion(linkage, theta2, assembly)
+        with np.errstate(invalid="ignore", over="ignore"):
+            gap = p - point
+            value = by_point * (gap.real**2 + gap.imag**2)
+            slope = by_point * (rate.conj() * gap).real
+            positive = by_point * (rate.real**2 + rate.imag**2)
+            curved = by_point * (bend.conj() * gap).real
+            if by_angle.any():
+                off = turned_from(theta, angle)
+                value, slope = value + by_angle * off**2, slope + by_angle * omega * off
+                positive, curved = positive + by_angle * omega**2, curved + by_angle * alpha * off
+            return np.nan_to_num(value, nan=np.inf), 2 * slope, 2 * positive + 2 * curved, 2 * positive
+
+    return model
+
+
+def as_good(task: Task, totals: FloatArray) -> BoolArray:
+    """Which sums of weighted misses are the least but for rounding."""
+    good: BoolArray = totals <= totals.min() * (1 + 1e-9) + len(task) * (_ROUNDING * task.size) ** 2
+    return good
+
+
+def valleys(values: FloatArray) -> IntArray:
+    """Indices of the finite values, of shape (S,), that exceed neither neighbour."""
+    padded = np.pad(values, 1, constant_values=np.inf)
+    return np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]) & np.isfinite(values))
+
+
 @dataclass(frozen=True, slots=True)
 class TaskMotion:
     """The driver from the first target to the last.
@@ -63,7 +122,7 @@ class TaskMotion:
         return cls(theta2, float(theta2[0]), float(theta2[-1]), direction, True)
 
     def closed(self) -> TaskMotion:
-        """The same, gone on to a whole turn."""
+        """The same, continued to a full turn."""
         return replace(self, end=self.start + self.direction * TURN)
 
 
@@ -72,9 +131,8 @@ def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMoti
     turns = bool((rotatability(linkage) >= 0).all())  # through a change point too, as circuits count it
     index, inside = range_index(linkage, theta2)
     if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
-        step = np.diff(inside)
         direction = 1 if inside[-1] >= inside[0] else -1
-        in_order = bool((direction * step >= -STEADY).all())
+        in_order = bool((direction * np.diff(inside) >= -STEADY).all())
         if ordered and in_order:
             return TaskMotion.ordered(inside, direction)
         return TaskMotion(inside, float(inside.min()), float(inside.max()), direction, in_order)
@@ -86,8 +144,7 @@ def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMoti
 def _turning(theta2: FloatArray, direction: int) -> TaskMotion:
     step = (direction * np.diff(theta2) + STEADY) % TURN - STEADY
     unwrapped = theta2[0] + direction * np.concatenate([[0.0], np.cumsum(step)])
-    in_order = bool(step.sum() <= TURN + STEADY)
-    return replace(TaskMotion.ordered(unwrapped, direction), in_order=in_order)
+    return replace(TaskMotion.ordered(unwrapped, direction), in_order=bool(step.sum() <= TURN + STEADY))
 
 
 def _shortest_arc(theta2: FloatArray, ordered: TaskMotion) -> TaskMotion:

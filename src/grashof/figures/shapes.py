@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 
 from grashof.analysis import Position
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import figures_of
+from grashof.analysis.judge.cylinder_drive import figures_of
 from grashof.drawing.scene import CORNERS, Scene
 from grashof.figures.parts import COLOURS, COUPLER, GROUND, PATH, SCENE
 from grashof.figures.subject import Subject

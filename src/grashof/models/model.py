@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from grashof.analysis import Position, driver_ranges, full_rotation, solve_position
+from grashof.analysis.forces.from_spec import stated_masses
 from grashof.analysis.forces.mass import Masses, uniform_bars
-from grashof.analysis.forces.stated import stated_masses
 from grashof.problems import Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN
 from grashof.problems.values.dynamics.dynamics_spec import METRES

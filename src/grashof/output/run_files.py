@@ -17,7 +17,7 @@ import numpy as np
 
 from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import cylinder_forces
+from grashof.analysis.judge.cylinder_drive import cylinder_forces
 from grashof.output.drawing import Drawer, Files, drawer
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.output.process import ExitCode, Interruption

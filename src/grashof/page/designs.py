@@ -18,7 +18,7 @@ from grashof.analysis import (
     stated_loads,
     stated_masses,
 )
-from grashof.analysis.judge.sampled_motion import driver_law, motion_ends
+from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import bodies_of
 from grashof.page.render import compact, plain

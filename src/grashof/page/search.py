@@ -17,7 +17,7 @@ from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
-from grashof.synth.search.tally import DISTINCT, Tally
+from grashof.synth.search.ledger import LISTED, Tally
 from grashof.wording.enclosure import enclosure_line
 from grashof.wording.problem import goals, summary
 from grashof.wording.proof import proof_line, work_line
@@ -118,7 +118,7 @@ def headline(result: Result) -> str:
     listed = len(result.candidates)
     if not listed:
         return "No design found." if result.complete else "Interrupted before any design was found."
-    verified = max(result.tally.totals[DISTINCT], listed)
+    verified = max(result.tally.totals[LISTED], listed)
     families = len(result.families)
     shown = f" in {counted(families, 'family')}" if families < listed else ""
     if verified > listed:

@@ -9,8 +9,8 @@ import pandas as pd
 
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.cylinder.lengths import cylinder_state
-from grashof.analysis.judge.driven import cylinder_force_peak, cylinder_forces, figures_of
-from grashof.analysis.judge.sampled_motion import motion_ends
+from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, cylinder_forces, figures_of
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.samples import Columns, curves, table

@@ -22,8 +22,8 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
+from grashof.synth.designs.candidate import same_error
 from grashof.synth.designs.ranking import pareto_goals
-from grashof.synth.quantities.scores import same_error
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
 

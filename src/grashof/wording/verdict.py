@@ -8,7 +8,7 @@ from grashof.problems import LinkageSpec, Problem, ProblemError
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.designs.caution import caution
+from grashof.synth.designs.families import caution
 from grashof.synth.designs.judging import driven_verdict
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 

@@ -10,7 +10,7 @@ from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.designs.polishing import polished_solve
-from grashof.synth.programme.exchange import solve_by_exchange
+from grashof.synth.programme.nonlinear_programme import solve_by_exchange
 from grashof.synth.programme.start import Start
 from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.proof.curve.asked import Asked

@@ -1,4 +1,4 @@
-"""The force of a cylinder on every kind of one loop: what it leaves of the drive torque is nothing."""
+"""The force of a cylinder on every kind of one loop: it leaves no drive torque."""
 
 from dataclasses import replace
 from itertools import product
@@ -18,8 +18,7 @@ from grashof.analysis import (
     system_of_equations,
     uniform_bars,
 )
-from grashof.analysis.cylinder.force import cylinder_force
-from grashof.analysis.cylinder.lengths import cylinder_state
+from grashof.analysis.cylinder.lengths import cylinder_force, cylinder_state
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
 ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2.5, r4=3, coupler_point=(1, 1))
@@ -46,7 +45,7 @@ def range_of(linkage: Linkage) -> np.ndarray:
 
 
 def left(state: Kinematics, jack: Cylinder, loads: Loads, force: np.ndarray) -> float:
-    """What torque is left where the cylinder pushes, by the links one by one and by all equations at once."""
+    """Torque left where the cylinder pushes, by the links one by one and by all equations at once."""
     found = cylinder_state(jack, state.linkage, state)
     push = force[:, None] * (found.pivot - np.array(jack.base)) / found.length[:, None]
     pushed = replace(loads, forces=(*loads.forces, AppliedForce(jack.link, jack.point, push)))

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from grashof.analysis import rotatability
+from grashof.analysis.judge.planted import RANDOM
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
@@ -68,38 +70,15 @@ EVERYTHING = {
 
 
 def _made(kind: type[Linkage], count: int, margin: float = 0.05) -> list[Linkage]:
-    """Linkages of a kind whose drivers turn fully, of all sizes, turned and placed anywhere."""
-    rng = np.random.default_rng(7 if kind is FourBar else 11)
+    """Linkages of a kind and of unit size, placed anywhere, whose drivers turn fully by a margin."""
+    rng = np.random.default_rng(7)
     found: list[Linkage] = []
     while len(found) < count:
-        one = _any(kind, rng)
-        if _room(one) > margin:
+        one = RANDOM[kind.mechanism.word](rng)
+        one = one.scaled(float(2 / one.lengths.mean()), np.zeros(2))
+        if rotatability(one).min() > margin:
             found.append(one)
     return found
-
-
-def _any(kind: type[Linkage], rng: np.random.Generator) -> Linkage:
-    if kind is FourBar:
-        r2, r3, r4 = rng.uniform(0.2, 1.5), rng.uniform(0.5, 3), rng.uniform(0.5, 3)
-        o2, o4 = rng.normal(size=2), rng.normal(size=2)
-        return FourBar(o2, o4, r2, r3, r4, rng.normal(size=2), assembly=rng.choice([-1, 1]))
-    o2, point, assembly = rng.normal(size=2), rng.normal(size=2), rng.choice([-1, 1])
-    if kind is SliderCrank:
-        r2, r3, offset = rng.uniform(0.2, 1.5), rng.uniform(0.5, 3), rng.normal() * 0.5
-        return SliderCrank(o2, r2, r3, offset, rng.uniform(-4, 4), point, assembly)
-    o4, r2, offset = rng.normal(size=2) * 1.5, rng.uniform(0.2, 3), rng.normal() * 0.3
-    return InvertedSliderCrank(o2, o4, r2, offset, point, assembly)
-
-
-def _room(linkage: Linkage) -> float:
-    """How far the driver is from a dead position at the worst, in lengths."""
-    if isinstance(linkage, FourBar):
-        r1, r2, r3, r4 = linkage.lengths
-        return float(min(r3 + r4 - 1.02 * (r1 + r2), abs(r1 - r2) - 1.02 * abs(r3 - r4)))
-    if isinstance(linkage, SliderCrank):
-        return float(linkage.r3 - linkage.r2 - np.abs(linkage.offset))
-    assert isinstance(linkage, InvertedSliderCrank)
-    return float(np.abs(linkage.r1 - linkage.r2) - np.abs(linkage.offset))
 
 
 @pytest.fixture(scope="session")

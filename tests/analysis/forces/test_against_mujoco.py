@@ -29,6 +29,7 @@ from grashof.problems.values.dynamics.load_specs import (
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
+pytestmark = pytest.mark.extra
 mujoco: Any = pytest.importorskip("mujoco")
 
 CRANK_ROCKER = FourBar((0.2, -0.1), (1.2, 0.3), 0.35, 1.1, 0.8, (0.5, 0.3))
@@ -155,7 +156,7 @@ def joints(state: Kinematics) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 @pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK, ENGINE, BACKWARDS, SHAPER, WHITWORTH])
-def test_the_torque_is_what_the_engine_takes(linkage: Linkage) -> None:
+def test_the_torque_is_that_of_the_engine(linkage: Linkage) -> None:
     """Its mass matrix, its bias, its springs, its Jacobian of the loop; our accelerations."""
     masses, loads = masses_of(linkage), stated_loads(spec_of(linkage), 1.0)
     theta2 = np.linspace(0.1, 3.0, 40)

@@ -46,7 +46,7 @@ def test_the_energy_is_stationary_and_least_where_it_is_stable(linkage: FourBar,
     found = equilibria(linkage, masses, loads, *ends(linkage), closed=linkage is JACK)
     assert found.theta2.size
     low, high = ends(linkage)
-    theta2 = np.linspace(low + 1e-3, high - 1e-3, 20_001)
+    theta2 = np.linspace(low + 1e-3, high - 1e-3, 5001)
     energy = mechanical_energy(solve_kinematics(linkage, theta2, 0.0), masses, loads)
     slope = np.diff(energy)
     turning = np.flatnonzero(slope[:-1] * slope[1:] < 0) + 1
@@ -56,8 +56,7 @@ def test_the_energy_is_stationary_and_least_where_it_is_stable(linkage: FourBar,
     np.testing.assert_array_equal(np.isfinite(found.frequency), least)
 
 
-@pytest.mark.parametrize("linkage", [JACK, ROCKER])
-@pytest.mark.parametrize("loads", [Loads(gravity=(0, -9.81)), SPRUNG])
+@pytest.mark.parametrize(("linkage", "loads"), [(JACK, SPRUNG), (ROCKER, Loads(gravity=(0, -9.81)))])
 def test_small_swings_have_the_natural_frequency(linkage: FourBar, loads: Loads) -> None:
     masses = uniform_bars(linkage, 2.0, payload=3.0)
     found = equilibria(linkage, masses, loads, *ends(linkage), closed=linkage is JACK)
@@ -65,7 +64,7 @@ def test_small_swings_have_the_natural_frequency(linkage: FourBar, loads: Loads)
     assert stable.size
     for k in stable:
         middle, frequency = float(found.theta2[k]), float(found.frequency[k])
-        time = np.linspace(0, 3 / frequency, 301)
+        time = np.linspace(0, 2.2 / frequency, 221)
         swing = free_response(linkage, masses, time, middle + 1e-3, 0.0, loads=loads)
         speed = swing.state.omega2
         back = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))

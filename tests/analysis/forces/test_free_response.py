@@ -45,15 +45,6 @@ def test_free_motion_keeps_its_energy_over_ten_turns(loads: Loads) -> None:
     assert np.ptp(free.energy) <= 1e-11 * kinetic.max()
 
 
-@pytest.mark.study
-def test_a_spring_that_is_wound_past_half_a_turn_keeps_the_energy() -> None:
-    """The moment of a torsion spring on the crank jumps there."""
-    wound = Loads(torsion_springs=(TorsionSpring(Joint.O2, 5.0, 1.0),))
-    free = free_response(JACK, BARS, np.linspace(0, 2, 50), 0.3, 10.0, loads=wound)
-    assert free.state.theta2[-1] > TURN
-    assert np.ptp(free.energy) <= 1e-8 * mechanical_energy(free.state, BARS).max()
-
-
 @pytest.mark.quick("4.0-friction0", "0.0-friction1")
 @pytest.mark.parametrize(
     "friction",
@@ -68,7 +59,7 @@ def test_a_spring_that_is_wound_past_half_a_turn_keeps_the_energy() -> None:
 def test_friction_is_that_of_inverse_dynamics(friction: Friction, omega2: float) -> None:
     """A motion without drive takes no torque, and loses what friction takes."""
     loads = Loads(SPRUNG.gravity, springs=SPRUNG.springs, friction=friction)
-    time = np.linspace(0, 1.2, 241)
+    time = np.linspace(0, 0.6, 121)
     free = free_response(JACK, BARS, time, -0.4, omega2, loads=loads)
     moving = np.abs(free.state.omega2) > 1e-6
     assert moving.sum() > 50
@@ -103,7 +94,7 @@ def test_friction_may_hold_it_from_the_start() -> None:
     still = free_response(JACK, BARS, [0, 1, 2], 0.3, 0.0, loads=held)
     assert (still.ending, still.end, still.time.tolist()) == (Ending.AT_REST, 0.0, [0])
     # A drive that is stronger sets it off.
-    driven = free_response(JACK, BARS, np.linspace(0, 0.3, 5), 0.3, 0.0, torque=2e3, loads=held)
+    driven = free_response(JACK, BARS, np.linspace(0, 0.1, 3), 0.3, 0.0, torque=2e3, loads=held)
     assert driven.ending is Ending.TIME
     assert driven.state.omega2[-1] > 0
 
@@ -153,7 +144,7 @@ def test_endings_are_named() -> None:
     assert (np.diff(rested.energy) < 0).all()
 
 
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     nothing = Masses(Body(0), Body(0), Body(0))
     rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     with pytest.raises(ProblemError, match="time is"):

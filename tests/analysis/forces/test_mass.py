@@ -32,14 +32,14 @@ def test_masses_of_the_reference_figures(golden: dict[str, Any], golden_linkages
     state = solve_kinematics(linkage, np.pi / 2)
     centre = np.array(figures["COM_rocker_only@theta2=90deg,sigma=+1"], dtype=np.float64)
     np.testing.assert_allclose(system_centre(bars, state).position, centre, rtol=1e-12)
-    # The whole beam reaches from B through O4 over A + C.
+    # The full beam reaches from B through O4 over A + C.
     length = float(figures["beam_full_length_A+C"])
     beam = uniform_bar(length, 0.04 * 7850)
     beam = Body(beam.mass, beam.inertia, (linkage.r4 - length / 2, 0))
-    whole = Masses(bars.crank, bars.coupler, beam)
-    assert whole.total == pytest.approx(float(figures["total_beam_full"]), rel=1e-12)
+    full = Masses(bars.crank, bars.coupler, beam)
+    assert full.total == pytest.approx(float(figures["total_beam_full"]), rel=1e-12)
     centre = np.array(figures["COM_beam_full@theta2=90deg,sigma=+1"], dtype=np.float64)
-    np.testing.assert_allclose(system_centre(whole, state).position, centre, rtol=1e-12)
+    np.testing.assert_allclose(system_centre(full, state).position, centre, rtol=1e-12)
 
 
 def test_triangles_and_bars_by_integration() -> None:
@@ -59,11 +59,11 @@ def test_triangles_and_bars_by_integration() -> None:
 
 
 def test_bodies_add_by_steiner() -> None:
-    whole, half = uniform_bar(2.0, 3.0), uniform_bar(1.0, 3.0)
+    full, half = uniform_bar(2.0, 3.0), uniform_bar(1.0, 3.0)
     both = half + Body(half.mass, half.inertia, half.centre + np.array([1, 0]))
-    assert both.mass == pytest.approx(whole.mass)
-    assert both.inertia == pytest.approx(whole.inertia)
-    np.testing.assert_allclose(both.centre, whole.centre)
+    assert both.mass == pytest.approx(full.mass)
+    assert both.inertia == pytest.approx(full.inertia)
+    np.testing.assert_allclose(both.centre, full.centre)
     nothing = Body(0.0) + Body(0.0)
     assert nothing.mass == 0
 
@@ -79,17 +79,7 @@ def test_payload_and_given_masses() -> None:
     np.testing.assert_array_equal(placed.coupler.centre, [1, 1])
 
 
-def test_batches() -> None:
-    batch = FourBar(o2=(0, 0), o4=(4, 0), r2=[[1.0], [0.9]], r3=4, r4=3, coupler_point=(1, 2))
-    bars = uniform_bars(batch, 2.0, payload=1.0)
-    state = solve_kinematics(batch, np.linspace(0, 1, 5))
-    together = system_centre(bars, state)
-    assert together.acceleration.shape == (2, 5, 2)
-    alone = system_centre(uniform_bars(batch[0, 0], 2.0, payload=1.0), solve_kinematics(batch[0, 0], 1.0))
-    np.testing.assert_allclose(together.acceleration[0, -1], alone.acceleration)
-
-
-def test_bad_input_is_said() -> None:
+def test_bad_input_is_reported() -> None:
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     with pytest.raises(ProblemError, match="mass is -1"):
         Body(-1)
@@ -103,15 +93,15 @@ def test_bad_input_is_said() -> None:
         system_centre(given_masses(linkage, (0, 0, 0), (0, 0, 0)), solve_kinematics(linkage, 0.0))
 
 
-def test_bodies_keep_what_they_were_put_together_from() -> None:
+def test_bodies_keep_their_parts() -> None:
     bar, weight, boss = uniform_bar(2.0, 3.0), Body(5.0, 0.0, (-1.0, 0.0)), Body(1.0, 0.2, (2.0, 0.0))
     assert bar.pieces == (bar,)
-    whole = (bar + weight) + (boss + weight)
-    assert whole.pieces == (bar, weight, boss, weight)
-    assert sum(float(piece.mass) for piece in whole.pieces) == float(whole.mass)
-    masses = Masses(whole, bar, bar).with_payload(4.0, (1.0, 1.0))
+    full = (bar + weight) + (boss + weight)
+    assert full.pieces == (bar, weight, boss, weight)
+    assert sum(float(piece.mass) for piece in full.pieces) == float(full.mass)
+    masses = Masses(full, bar, bar).with_payload(4.0, (1.0, 1.0))
     assert masses.coupler.pieces[0] is bar
     assert [float(piece.mass) for piece in masses.coupler.pieces] == [6.0, 4.0]
-    copied = pickle.loads(pickle.dumps(whole))
+    copied = pickle.loads(pickle.dumps(full))
     assert [float(piece.mass) for piece in copied.pieces] == [6.0, 5.0, 1.0, 5.0]
     assert not copied.pieces[0].centre.flags.writeable

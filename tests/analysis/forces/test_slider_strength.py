@@ -138,7 +138,7 @@ def test_an_engine_rod_is_pushed_by_gas_over_the_cosine() -> None:
     assert list(strength_at(state, structure, links=[2]).bars) == [2]
 
 
-@pytest.mark.quick("1.0-SliderCrank", "0.0254-InvertedSliderCrank")
+@pytest.mark.quick("0.0254-InvertedSliderCrank")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("metre", [1.0, 1e-3, 0.0254])
 def test_strength_over_a_turn_is_that_of_a_dense_search(
@@ -153,7 +153,7 @@ def test_strength_over_a_turn_is_that_of_a_dense_search(
         return solve_kinematics(linkage, theta2, 4.0)
 
     found = strength_over(structure, motion, [driver_samples(linkage, 0.0, TURN)])
-    dense = strength_at(motion(np.linspace(0, TURN, 4001)), structure)
+    dense = strength_at(motion(np.linspace(0, TURN, 1001)), structure)
     for link, measures in dense.bars.items():
         for key, along in measures.items():
             assert found.peak(key, f"link {link}").value == pytest.approx(along.value.max(), rel=2e-4)
@@ -167,11 +167,11 @@ def test_strength_over_a_turn_is_that_of_a_dense_search(
         long = float(longest_travel(linkage)) * metre
         euler = np.pi**2 * 210e9 * 0.03 * 0.05**3 / 12 / long**2
         crushing = 235e6 * 0.05 * 0.03
-        stands = euler if 2 * euler < crushing else crushing * (1 - crushing / (4 * euler))
-        assert limit.limit == pytest.approx(stands, rel=1e-9)
+        expected = euler if 2 * euler < crushing else crushing * (1 - crushing / (4 * euler))
+        assert limit.limit == pytest.approx(expected, rel=1e-9)
 
 
 def test_sliders_and_blocks_are_no_bars() -> None:
     engine = SliderCrank((0, 0), 1, 3)
-    with pytest.raises(ProblemError, match=r"^link 4 of a slider-crank is no bar"):
+    with pytest.raises(ProblemError, match=r"^link 4 of a slider-crank is not a bar"):
         section_forces(solve_kinematics(engine, 1.0), uniform_bars(engine, 1.0), links=[4])

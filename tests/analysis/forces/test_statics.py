@@ -35,7 +35,7 @@ LOADS = Loads(
 
 
 def angles_of(linkage: FourBar) -> np.ndarray:
-    """Driver angles that are no dead positions."""
+    """Driver angles clear of dead positions."""
     low, high = driver_ranges(linkage)[0]
     return low + (high - low) * np.linspace(0.013, 0.981, 24)
 

@@ -29,15 +29,15 @@ def followed(linkage: Linkage, theta2: FloatArray) -> FloatArray:
 
 
 @pytest.mark.quick(
-    *(f"{case}-four-bar" for case in ("3-1", "3--1", "4--1", "5-1", "9-1", "9--1")),
-    "4-1-slider-crank", "5--1-slider-crank", "9--1-inverted-slider-crank",
+    *(f"{case}-four-bar" for case in ("3-1", "9--1")),
+    "5--1-slider-crank", "9--1-inverted-slider-crank",
 )  # fmt: skip
 @pytest.mark.parametrize("mechanism", WIDE)
 @pytest.mark.parametrize("direction", [1, -1])
 @pytest.mark.parametrize("pairs", [3, 4, 5, 9])
 def test_planted_functions_are_accepted(mechanism: str, pairs: int, direction: int) -> None:
     rng = np.random.default_rng([pairs, direction + 1])
-    for _ in range(5):
+    for _ in range(3):
         task, linkage, begun = planted_function(rng, pairs, mechanism=mechanism)
         if direction < 0:  # the mirror image turns its driver clockwise
             side = "assembly" if mechanism == "four-bar" else "offset"
@@ -87,17 +87,17 @@ def test_structural_error_is_that_of_dense_continuation(norm: str, mechanism: st
 def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(norm: str) -> None:
     rng = np.random.default_rng(4)
     limited = 0
-    for _ in range(5):
+    for _ in range(3):
         task, linkage, _ = planted_function(rng, 7)
         task = FunctionTask(task.inputs, task.outputs * 1.1, norm=norm)
         free = verify(linkage, task, Requirements(exact=False, transmission_min_deg=0))
         least = np.degrees(free.transmission_min_task) + 2.0
         wanted = Requirements(exact=False, tolerance=1.0, transmission_min_deg=least)
         verdict = verify(linkage, task, wanted)
-        turned = task.inputs if norm == "rms" else np.linspace(0, task.inputs[-1], 301)
+        turned = task.inputs if norm == "rms" else np.linspace(0, task.inputs[-1], 61)
         best = np.inf
         for direction in (1, -1):
-            starts = np.linspace(-np.pi, np.pi, 4001)
+            starts = np.linspace(-np.pi, np.pi, 2001)
             ends = starts + direction * task.span[0], starts + direction * task.span[1]
             starts = starts[worst_transmission(linkage, *ends) >= np.radians(least)]
             theta4 = solve_position(linkage, starts[:, None] + direction * turned).theta4
@@ -110,17 +110,17 @@ def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(no
         assert verdict.transmission_min_task >= np.radians(least) - 1e-8
         found = np.sqrt(verdict.square / len(task)) if norm == "rms" else verdict.structural_error_max
         share = 1e-6 if norm == "rms" else 1e-3
-        assert 0.9 * best <= found <= best * (1 + share)  # the starts are 0.09 deg apart
-    assert limited > 2
+        assert 0.9 * best <= found <= best * (1 + share)  # the starts are 0.18 deg apart
+    assert limited > 1
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_greatest_error_is_least_to_all_its_digits(seed: int) -> None:
     """Samples pass by its extremes, so that those of a coarse grid have their least at another start."""
     task, linkage, _ = planted_function(np.random.default_rng(seed), 6)
     task = FunctionTask(task.inputs, task.outputs * 1.05, norm="max")
     verdict = verify(linkage, task, Requirements(exact=False, transmission_min_deg=0))
-    turned = np.linspace(0, task.inputs[-1], 8001)
+    turned = np.linspace(0, task.inputs[-1], 4001)
     begun, direction = float(verdict.theta2[0]), verdict.direction
 
     def error(start: float) -> float:

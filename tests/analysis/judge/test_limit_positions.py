@@ -55,7 +55,7 @@ def test_targets_are_where_driver_and_coupler_are_in_line(assembly: int, sense: 
         (20, 1.0, ["the swing in deg", "the time ratio"]),
     ],
 )
-def test_what_is_missed_is_told(swing: float, ratio: float, missed: list[str]) -> None:
+def test_missed_swings_and_ratios_are_reported(swing: float, ratio: float, missed: list[str]) -> None:
     verdict = verify(NORTON, StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio), LOOSE)
     assert [defect.what for defect in verdict.defects] == missed
     assert all(defect.requirement == "exact" and defect.miss > 0 for defect in verdict.defects)

@@ -8,8 +8,8 @@ import pytest
 from grashof import synthesize
 from grashof.analysis import solve_kinematics, verify
 from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_path
-from grashof.analysis.judge.sampled_motion import motion_ends
 from grashof.problems import DynamicsSpec, PathTask, Problem
 from grashof.problems.values.dynamics.load_specs import LoadSpec
 

@@ -63,7 +63,7 @@ def test_it_passes_the_four_poses_in_order_on_one_assembly(report: LinkageSpec, 
     assert verdict.full_rotation
     assert set(verdict.assembly.tolist()) == {1}
     driven = np.degrees(verdict.theta2 - verdict.theta2[0])
-    assert driven.tolist() == pytest.approx([0, *BETA], abs=2e-4)  # residuals of 6e-6 leave so much open
+    assert driven.tolist() == pytest.approx([0, *BETA], abs=2e-4)  # residuals of 6e-6 leave this much open
     assert np.degrees(verdict.transmission_min_task) == pytest.approx(22.27, abs=5e-3)
     assert np.degrees(verdict.transmission_min_cycle) == pytest.approx(8.27, abs=5e-3)
     assert not verify(report.linkage, luggage.task, luggage.requirements).ok

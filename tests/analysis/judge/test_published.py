@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.meet import meet
+from grashof.analysis.judge.how_met import meet
 from grashof.problems import PathTask, Requirements, catalogue, load
 from grashof.problems.files.published import ErrorDefinition, PublishedDesign, published
 
@@ -18,7 +18,7 @@ def recomputed(design: PublishedDesign, task: PathTask) -> float:
         gap = solve_position(design.linkage, design.theta2).p - task.points
         return float((gap**2).sum())
     if design.error_definition is ErrorDefinition.BEST_START:
-        start = np.linspace(0, 2 * np.pi, 72001)
+        start = np.linspace(0, 2 * np.pi, 18001)
         assert task.timing is not None
         by_start = np.zeros(len(start))
         for turn, point in zip(task.timing, task.points, strict=True):
@@ -60,7 +60,7 @@ def test_published_designs_are_of_problems_there_are_and_best_first() -> None:
     assert published("no such problem") == ()
 
 
-def test_what_is_known_of_single_problems() -> None:
+def test_known_errors_of_single_problems() -> None:
     assert published("path-ellipse")[0].error == pytest.approx(4.0199e-4, rel=1e-4)
     assert published("path-18-timed")[0].error == pytest.approx(9.1150e-3, rel=1e-4)
     assert published("path-vertical-line")[0].error < 1e-11

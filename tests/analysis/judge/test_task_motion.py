@@ -103,6 +103,6 @@ def test_a_step_back_is_out_of_order_unless_it_is_rounding(
             assert (found.start, found.end) == pytest.approx((theta2[0], theta2[-1]))
 
 
-def test_a_closed_motion_goes_on_to_a_turn() -> None:
+def test_a_closed_motion_continues_to_a_turn() -> None:
     there = task_motion(GROUND, np.array([-0.3, 0.1, 0.5]), True)
     assert there.closed().end == pytest.approx(-0.3 + 2 * np.pi)

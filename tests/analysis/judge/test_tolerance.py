@@ -6,8 +6,6 @@ from math import erf, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.judge.planted import (
@@ -88,23 +86,6 @@ def standard_error(share: float, samples: int = SAMPLES) -> float:
     return sqrt(share * (1 - share) / samples)
 
 
-@pytest.mark.slow
-@given(seed=st.integers(0, 2**32), assembly=st.sampled_from([1, -1]))
-@settings(max_examples=100)
-def test_derivatives_are_the_differences(seed: int, assembly: int) -> None:
-    rng = np.random.default_rng(seed)
-    linkage, theta2 = random_full_crank(rng), uneven_driver_angles(rng, 5)
-    state = solve_position(linkage, theta2, assembly)
-    near_dead = np.abs(np.sin(state.theta4 - state.theta3)) < 0.1
-    theta2 = theta2[~near_dead]
-    step = 1e-5 * float(linkage.lengths.min())
-    expected = differences(linkage, theta2, np.full(len(theta2), assembly), step)
-    found = sensitivity(linkage, theta2, assembly)
-    assert found.shape == (len(theta2), 3, 6)
-    scale = np.abs(expected).max(initial=1.0)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-5 * scale)
-
-
 def test_a_square_by_hand() -> None:
     """P at B, all angles right: only r2, r4, u and v reach it; the coupler turns by (dr4 - dr2)/2."""
     square = FourBar(o2=(0, 0), o4=(2, 0), r2=2, r3=2, r4=2, coupler_point=(2, 0), assembly=1)
@@ -144,7 +125,7 @@ def test_errors_have_three_deviations_in_the_tolerance() -> None:
     np.testing.assert_allclose((np.abs(errors) <= 0.3).mean(axis=0), 0.9973, atol=5e-4)
 
 
-def test_made_linkages_deviate_in_what_is_made_alone() -> None:
+def test_made_linkages_deviate_in_their_dimensions_alone() -> None:
     errors = 0.1 * np.random.default_rng(1).standard_normal((5, 6))
     errors[4, 2] = -CRANK_ROCKER.r3 - 1
     batch, possible = made_linkages(CRANK_ROCKER, errors)
@@ -171,7 +152,7 @@ def test_a_misplaced_coupler_point_alone_moves_as_far_as_it_is_misplaced(band: f
     assert yield_monte_carlo(CRANK_ROCKER, task, verdict, band, errors) == pytest.approx(linear, abs=1e-4)
 
 
-@pytest.mark.quick("1", "2", "3", "4", "5")
+@pytest.mark.quick("1", "4")
 @pytest.mark.parametrize("index", range(6))
 def test_one_inexact_dimension(index: int) -> None:
     """The worst target moves in proportion: a share of one normal variable."""
@@ -198,29 +179,11 @@ def test_shares_are_those_of_linkages_made_one_by_one(kind: str) -> None:
     else:
         task, linkage = planted_path(rng, 5, timed=kind == "timed path")
     verdict = verify(linkage, task, Requirements(rotatability_margin=0, link_length=(0, 1e3)))
-    errors = dimension_errors(Manufacturing(0.02 * task.size), 400, np.random.default_rng(2))
+    errors = dimension_errors(Manufacturing(0.02 * task.size), 150, np.random.default_rng(2))
     moves = moves_one_by_one(linkage, task, verdict, errors)
     for band in np.quantile(moves[np.isfinite(moves)], [0.2, 0.5, 0.9]):
         found = yield_monte_carlo(linkage, task, verdict, float(band), errors)
-        assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 400)
-
-
-@pytest.mark.slow
-@given(seed=st.integers(0, 2**32), motion=st.booleans())
-@settings(max_examples=25)
-def test_small_tolerances_agree_linearised_and_exact(seed: int, motion: bool) -> None:
-    rng = np.random.default_rng(seed)
-    task, linkage = planted_motion(rng, 4) if motion else planted_path(rng, 5)
-    verdict = verify(linkage, task, Requirements(rotatability_margin=0, link_length=(0, 1e3)))
-    if not verdict.branch_ok or verdict.transmission_min_task < np.radians(10):
-        return
-    tolerance = 1e-4 * float(linkage.lengths.min())
-    moves = robustness(linkage, task, verdict, Manufacturing(tolerance)).moves
-    found = robustness(
-        linkage, task, verdict, Manufacturing(tolerance, band=float(np.linalg.norm(moves)) * tolerance / 3)
-    )
-    assert 0.05 < found.share_linear < 0.95
-    assert abs(found.share_made - found.share_linear) < 3 * standard_error(found.share_linear)
+        assert found == pytest.approx(np.mean(moves <= band), abs=1.5 / 150)
 
 
 def test_the_difference_vanishes_with_the_tolerance() -> None:
@@ -259,7 +222,7 @@ def stretched(theta2: FloatArray, gap: float) -> tuple[FourBar, MotionTask, Verd
 def test_linkages_that_cannot_be_assembled_are_outside(theta2: list[float], closed: bool) -> None:
     """In a band that holds all others: r3 + r4 - r1 - r2 is normal with twice a dimension's deviation."""
     linkage, task, verdict = stretched(np.array(theta2), gap=0.01)
-    if closed:  # a whole turn
+    if closed:  # a full turn
         task = PathTask(task.positions, closed=True)
         verdict = verify(linkage, task, replace(ANY, order=True, same_branch=True))
         assert verdict.ok

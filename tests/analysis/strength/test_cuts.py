@@ -29,6 +29,7 @@ from grashof.analysis import (
     triangular_plate,
     uniform_bar,
 )
+from grashof.analysis.forces.loads import placed_loads
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
@@ -88,9 +89,11 @@ def from_mass(state: Kinematics, link: int, body: Body, gravity: Floats, cut: fl
 
 
 def from_loads(state: Kinematics, link: int, loads: Loads, found: Dynamics) -> Iterator[Acting]:
-    linkage = state.linkage
-    length = float(getattr(linkage, f"r{link}"))
-    moments, still, none = found.joint_moments, np.zeros((*state.shape, 2)), np.zeros(state.shape)
+    length, moments, none = (
+        float(getattr(state.linkage, f"r{link}")),
+        found.joint_moments,
+        np.zeros(state.shape),
+    )
 
     def pushed(at: Any, force: Any) -> Acting:
         place = np.asarray(at, dtype=np.float64)
@@ -103,33 +106,9 @@ def from_loads(state: Kinematics, link: int, loads: Loads, found: Dynamics) -> I
     }[link]
     yield pushed((0, 0), ends[0])._replace(couple=ends[1])
     yield pushed((length, 0), ends[2])._replace(couple=ends[3])
-    for force in loads.forces:
-        if force.link == link:
-            value = np.asarray(force.force(state) if callable(force.force) else force.force)
-            if force.turning:
-                turn = np.exp(1j * state.angular(link)[0]) * (value[..., 0] + 1j * value[..., 1])
-                value = np.stack([turn.real, turn.imag], axis=-1)
-            yield pushed(force.at, value)
-    for moment in loads.moments:
-        if moment.link == link:
-            at = moment.at if moment.at is not None else linkage.coupler_point if link == 3 else (0, 0)
-            value = np.asarray(moment.moment(state) if callable(moment.moment) else moment.moment)
-            yield pushed(at, still)._replace(couple=value)
-    for spring in loads.springs:
-        ends_of = [(spring.first_link, spring.first_at), (spring.second_link, spring.second_at)]
-        moving = [
-            (np.array(at), np.zeros(2)) if number == 1
-            else (state.point(number, at).position, state.point(number, at).velocity)
-            for number, at in ends_of
-        ]  # fmt: skip
-        way, rate = moving[1][0] - moving[0][0], moving[1][1] - moving[0][1]
-        long = np.linalg.norm(way, axis=-1, keepdims=True)
-        unit = way / long
-        pull = unit * (spring.stiffness * (long - spring.free_length)
-                       + spring.damping * (unit * rate).sum(axis=-1, keepdims=True))  # fmt: skip
-        for (number, at), sign in zip(ends_of, (1, -1), strict=True):
-            if number == link:
-                yield pushed(at, sign * pull)
+    for load in placed_loads(state, loads):
+        if load.link == link:
+            yield pushed(load.at, load.force)._replace(couple=load.moment)
 
 
 def cut_by_equilibrium(
@@ -223,8 +202,8 @@ def test_every_cut_is_in_equilibrium(four_bars: Drawer, kind: GrashofClass, data
         values = np.stack(bar.at(cuts))[:, clear]
         every = [cut_by_equilibrium(state, link, masses, loads, found, cut) for cut in cuts]
         expected = np.stack(every, axis=-1)[:, clear]
-        whole = np.stack(bar.at(np.linspace(first, last, 40)))[:, clear]
-        peak = np.abs(whole).max(axis=-1, keepdims=True) + 1e-12
+        along = np.stack(bar.at(np.linspace(first, last, 40)))[:, clear]
+        peak = np.abs(along).max(axis=-1, keepdims=True) + 1e-12
         peak[:2] = peak[:2].max(axis=0)
         peak[2] += peak[0] * (last - first)
         assert (np.abs(values - expected) < 1e-9 * peak).all()
@@ -235,7 +214,7 @@ def test_every_cut_is_in_equilibrium(four_bars: Drawer, kind: GrashofClass, data
 @pytest.mark.parametrize("smallest_mu", [1e-3, 1e-5])
 def test_the_far_end_closes_close_to_dead_positions(smallest_mu: float) -> None:
     rng = np.random.default_rng(5)
-    for _ in range(20):
+    for _ in range(4):
         # At theta2 = 0 the diagonal is r1 - r2, and mu little.
         r2, r3 = rng.uniform(0.5, 1.5), rng.uniform(2.5, 4.0)
         r4 = rng.uniform(2.0, 4.0)

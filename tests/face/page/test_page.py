@@ -16,7 +16,7 @@ import pytest
 
 import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
-from grashof.analysis.forces.stated import stated_masses
+from grashof.analysis.forces.from_spec import stated_masses
 from grashof.output.run_files import write_run
 from grashof.page.analysis import analysis_page
 from grashof.page.columns import Column
@@ -26,7 +26,7 @@ from grashof.problems import FourBar, LinkageSpec, PathTask, Problem, load, load
 from grashof.survey import report_on
 from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
-from grashof.synth.search.tally import DISTINCT, Tally
+from grashof.synth.search.ledger import LISTED, Tally
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}
@@ -125,7 +125,7 @@ def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: R
     assert "smallest within 1.5 times" in parts.text
     families = [each["figures"]["family"] for each in parts.data["designs"]]
     assert families == [each.family for each in alike.candidates]
-    some = page_of(replace(alike.top(2), tally=Tally(totals=Counter({DISTINCT: 8}))))
+    some = page_of(replace(alike.top(2), tally=Tally(totals=Counter({LISTED: 8}))))
     assert "8 distinct verified designs, listed are the best 5 in 2 families." in Parts(some).text
     plain = Parts(page_of(replace(alike, candidates=alike.candidates[2:5], tally=Tally()))).text
     assert "like this" not in plain

@@ -15,7 +15,7 @@ from grashof import load
 from grashof.output.cluster import cluster
 from grashof.problems import SolverError
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.search.workers import CrashError, Elsewhere, Here, screen
+from grashof.synth.search.workers import CrashError, OnExecutor, Work, screen
 
 
 def crash(_scaled, code):
@@ -47,13 +47,13 @@ if __name__ == "__main__":
     scheduler = subprocess.Popen([sys.executable, "scheduler.py"], env=once, **piped)
     scaled = ScaledProblem.of(load("luggage"))
     with cluster(scheduler.stdout.readline().strip(), 1) as (executor, width):
-        work = Elsewhere(executor, width)
+        work = OnExecutor(executor, width)
         try:
             work.made(crash, scaled, 7)
         except CrashError as error:
             print("failed:", error)
         starts = screen(scaled, 0, 0, 50, 0).starts[:3]
-        known = Here().attempts(scaled, starts, 0)
+        known = Work().attempts(scaled, starts, 0)
         made = work.attempts(scaled, starts, 0)
         print([one.status for one in made] == [one.status for one in known], flush=True)
         work.begin(nap, scaled, 30)

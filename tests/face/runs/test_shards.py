@@ -89,7 +89,7 @@ def test_merging_of_shards_none_of_which_is_done_searches_for_nothing(
     done = grashof("merge", "out", "--partial")
     assert (done.exit_code, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()
-    assert line == "grashof: out: none of its shards is done; the command that began one goes on with it"
+    assert line == "grashof: out: none of its shards is done; the command that began one continues it"
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["shards"]
 
 

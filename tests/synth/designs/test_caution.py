@@ -1,4 +1,4 @@
-"""Designs that do all that is asked and that hardly anybody would build: they come last, and say why."""
+"""Designs that meet all requirements but are impractical: they come last, and state why."""
 
 from __future__ import annotations
 
@@ -21,8 +21,7 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.synth import Candidate
-from grashof.synth.designs.caution import caution
-from grashof.synth.designs.families import listed
+from grashof.synth.designs.families import caution, listed
 
 TASK = PathTask([[0.0, 0], [1, 0.5], [2, 0.5], [4, 0]])  # size 4
 PROBLEM = Problem(task=TASK, requirements=Requirements(exact=True))
@@ -63,13 +62,13 @@ def asking(**requirements: Any) -> Problem:
         ({"linkage": FOLDING}, "it nearly folds: 0.0089 left of its lengths", {"rotatability_margin": 0.002}),
     ],
 )
-def test_what_speaks_against_a_design(odd: dict[str, Any], said: str, allowed: dict[str, Any]) -> None:
+def test_cautions_of_a_design(odd: dict[str, Any], said: str, allowed: dict[str, Any]) -> None:
     assert caution(PROBLEM, design(**odd)) == said
     assert caution(asking(**allowed), design(**odd)) == ""  # the user's own limit wins
     assert caution(replace(PROBLEM, objective=Objective(compactness=0.1)), design(**odd)) == ""
 
 
-def test_nothing_speaks_against_what_keeps_all() -> None:
+def test_a_design_that_keeps_all_has_no_caution() -> None:
     assert caution(PROBLEM, design(size=3.0, turn=15.001, cycle=15.001)) == ""
     turning = asking(rotatability=Rotatability.ANY)
     assert caution(turning, design(cycle=1.0)) == caution(turning, design(linkage=FOLDING)) == ""

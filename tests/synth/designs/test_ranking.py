@@ -103,7 +103,7 @@ def test_the_order_is_total(
 
 
 def test_rounding_decides_nothing() -> None:
-    """What two processors find: angles apart by 1e-9 deg, sizes by 1e-12."""
+    """Results of two processors: angles apart by 1e-9 deg, sizes by 1e-12."""
     one, other = design(1, mu=40 - 7e-10, size=2 * (1 + 1e-12)), design(2, mu=40 - 3e-10, size=2)
     again = design(1, mu=40 - 3e-10, size=2), design(2, mu=40 - 7e-10, size=2 * (1 - 1e-12))
     assert order(EXACT, one, other) == order(EXACT, *again)
@@ -123,7 +123,7 @@ def test_the_score_of_a_search_is_the_error_that_counts() -> None:
     assert design(1, 0.0, 45).score(EXACT) == pytest.approx(0.5)
 
 
-def test_ranking_keeps_what_a_design_is_best_at() -> None:
+def test_ranking_keeps_the_strength_of_a_design() -> None:
     some = design(1, 0.01, best_at="least error"), design(2, 0.011, best_at="smallest within 1.5 times")
     told = [each.best_at for each in ranked(LEAST_SQUARES, some)]
     assert told == ["least error", "smallest within 1.5 times"]

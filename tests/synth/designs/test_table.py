@@ -1,15 +1,16 @@
-"""The table: the columns of the contract, and numbers that come back from CSV as they were."""
+"""The table: the columns of the contract, figures of the motion, and numbers that survive CSV."""
 
 import csv
 from collections import Counter
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from grashof.problems import Problem
+from grashof.analysis import over_task
+from grashof.problems import DynamicsSpec, Problem
 from grashof.problems.values.requirements.quantities import MEASURED
 from grashof.synth import Result
 from grashof.synth.designs.table import LISTED, NAMES, to_frame
@@ -111,12 +112,12 @@ def test_pareto_marks(frame: pd.DataFrame) -> None:
         assert row.pareto == (not better.any())
 
 
-def test_what_has_no_meaning_stays_empty(frame: pd.DataFrame) -> None:
+def test_meaningless_columns_stay_empty(frame: pd.DataFrame) -> None:
     assert frame[[name for name in WITHOUT_MEANING if name != "caution"]].isna().all(axis=None)
     assert frame.drop(columns=WITHOUT_MEANING).notna().all(axis=None)
 
 
-def test_what_a_design_is_best_at_is_told(luggage_result: Result, luggage: Problem) -> None:
+def test_the_strength_of_a_design_is_listed(luggage_result: Result, luggage: Problem) -> None:
     first, second = luggage_result.candidates[:2]
     told = to_frame(luggage, (replace(first, best_at="least error"), second))["best_at"]
     assert told[0] == "least error"
@@ -184,3 +185,51 @@ def test_every_column_has_a_name_in_words() -> None:
     counts = Counter(NAMES[column] for column in COLUMNS)
     of_both = {"greatest structural error", "structural error (root mean square)"}  # turning or sliding
     assert {name for name, count in counts.items() if count > 1} == of_both
+
+
+MOTION = ("omega4_max", "point_speed_max", "point_acceleration_max", "coupler_fit_r2")
+DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
+
+
+@pytest.mark.slow
+def test_figures_are_the_analysis(frame: pd.DataFrame, luggage_result: Result) -> None:
+    for row, candidate in zip(
+        frame[[*MOTION, *DYNAMICS]].itertuples(), luggage_result.candidates, strict=True
+    ):
+        found = asdict(over_task(candidate.linkage, luggage_result.problem, candidate.verdict))
+        assert {name: getattr(row, name) for name in found} == found
+
+
+def test_figures_make_sense(frame: pd.DataFrame, luggage_result: Result) -> None:
+    """On the way from (5, 4) to (1, 0) P goes 1.5 + 1.8 + 3.2 at least, in the time the driver takes."""
+    way = 1.5 + np.hypot(1.5, 1) + np.hypot(1, 3)
+    seconds = np.radians(frame["theta2_end_deg"] - frame["theta2_start_deg"]).abs()
+    assert (frame["point_speed_max"] >= way / seconds).all()
+    assert (frame["torque_peak"] >= frame["torque_rms"]).all()
+    # O2 and O4 carry all links, and the system's centre is not in free fall all the way.
+    assert (frame["joint_force_peak"] > 1.0).all()
+    assert frame["coupler_fit_r2"].between(0.99, 1).all()
+
+
+def test_without_dynamics_the_columns_of_torque_are_empty(luggage_result: Result) -> None:
+    problem = replace(luggage_result.problem, dynamics=None)
+    bare = replace(luggage_result.top(4), problem=problem).to_frame()[:4]
+    assert bare[list(DYNAMICS)].isna().all(axis=None)
+    np.testing.assert_allclose(bare[list(MOTION)], luggage_result.to_frame()[list(MOTION)][:4], rtol=1e-12)
+
+
+def test_the_driver_s_speed_is_that_of_the_problem(luggage_result: Result) -> None:
+    few = luggage_result.top(4)
+    specs = (DynamicsSpec(2.0, speed_rpm=rpm) for rpm in (10.0, 20.0))
+    slow, fast = (replace(few, problem=replace(few.problem, dynamics=spec)).to_frame() for spec in specs)
+    for name, power in {"omega4_max": 1, "point_speed_max": 1, "point_acceleration_max": 2}.items():
+        np.testing.assert_allclose(fast[name], 2**power * slow[name], rtol=1e-12)
+    for name in DYNAMICS:  # no gravity: all is inertia
+        np.testing.assert_allclose(fast[name], 4 * slow[name], rtol=1e-9)
+
+
+def test_a_miss_without_a_motion_has_no_figures(luggage_result: Result) -> None:
+    first = luggage_result.candidates[0]
+    torn = replace(first, verdict=replace(first.verdict, branch_ok=False))
+    row = to_frame(luggage_result.problem, (torn,))
+    assert row[[*MOTION, *DYNAMICS]].isna().all(axis=None)

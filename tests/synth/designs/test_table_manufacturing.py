@@ -41,11 +41,3 @@ def test_figures_make_sense(frame: pd.DataFrame) -> None:
     assert (frame["worst_move"] <= 0.02 * moves.sum(axis=1) * (1 + 1e-12)).all()
     assert frame["share_within_made"].between(0.01, 0.999).all()
     np.testing.assert_allclose(frame["share_within_linear"], frame["share_within_made"], atol=0.02)
-
-
-def test_the_other_columns_do_not_change(frame: pd.DataFrame, luggage_result: Result) -> None:
-    without = luggage_result.to_frame()
-    assert without[list(MANUFACTURING)].isna().all(axis=None)
-    pd.testing.assert_frame_equal(
-        frame.drop(columns=list(MANUFACTURING)), without.drop(columns=list(MANUFACTURING))
-    )

@@ -21,7 +21,7 @@ EVERY = ONE_LOOP | SIX_BARS
 
 
 def given_of(linkage: Linkage) -> dict[str, Any]:
-    """What `chained` takes."""
+    """Arguments of `chained`."""
     values = {row.name: np.asarray(getattr(linkage, row.name)) for row in linkage.mechanism.parameters}
     return {name: Vector(*value) if value.shape == (2,) else value for name, value in values.items()}
 

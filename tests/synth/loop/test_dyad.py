@@ -7,10 +7,10 @@ import pytest
 from random_linkages import any_linkages
 
 from grashof.analysis import solve_kinematics, transmission_angle
-from grashof.problems import FourBar, Linkage
+from grashof.problems import Linkage
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.loop.dimensions import Closure
-from grashof.synth.loop.dyad import Bars, Standing, as_complex, as_vector, coupler_of, root_or_zero
+from grashof.synth.loop.dyad import Bars, PlacedLoop, as_complex, as_vector, coupler_of, root_or_zero
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.kinds import KINDS
 
@@ -50,7 +50,7 @@ def test_the_loop_and_its_rates_are_those_of_the_judge(word: str, seed: int) -> 
 
 
 @pytest.mark.parametrize(("word", "seed"), SINGLE)
-def test_what_moves_b_turns_link_3_and_moves_the_output(word: str, seed: int) -> None:
+def test_moving_b_turns_link_3_and_the_output(word: str, seed: int) -> None:
     """A driver that is moved a little moves B as its rate says."""
     _, own = drawn(word, seed)
     dyad, step, ground = KINDS[word].dyad, 1e-6, as_vector(np.asarray(own.ground))
@@ -75,7 +75,7 @@ def test_what_moves_b_turns_link_3_and_moves_the_output(word: str, seed: int) ->
 def test_the_gap_is_zero_where_the_loop_closes_and_there_alone(word: str, seed: int) -> None:
     """With the direction of link 3 from the closure, and turned from there by 0.1 rad."""
     linkage, own = drawn(word, seed)
-    dyad, at = KINDS[word].dyad, Standing()
+    dyad, at = KINDS[word].dyad, PlacedLoop()
     at.o2, at.normal = Vector(*linkage.o2), as_vector(np.asarray(own.ground))
     at.o4 = at.o2 + at.normal
     at.r1, at.r2, at.r3 = abs(own.ground), linkage.r2, own.r3
@@ -126,7 +126,7 @@ def as_pair(point: complex) -> tuple[float, float]:
     return point.real, point.imag
 
 
-def test_where_the_loop_is_open_there_is_no_number_unless_asked() -> None:
+def test_an_open_loop_has_numbers_only_on_request() -> None:
     """A is 5.1, 4 and 0.5 from O4."""
     sizes = np.float64(3), np.float64(2), 1.0
     crank = np.array([-5.1j, -4 + 0j, -0.5])
@@ -137,8 +137,3 @@ def test_where_the_loop_is_open_there_is_no_number_unless_asked() -> None:
     assert coupler[1].imag > 0  # B left of the line from A to O4
     nearest, _ = coupler_of(Bars(), 0.0, crank, *sizes, root_or_zero)
     assert np.isfinite(nearest).all()
-
-
-def test_vectors_are_complex_numbers() -> None:
-    assert complex(as_complex(Vector(1.0, 2.0))) == 1 + 2j
-    assert isinstance(any_linkages(FourBar, 1, np.random.default_rng(0))[0], Linkage)

@@ -22,7 +22,7 @@ margin = st.floats(0, 0.2)
 
 
 def linkage_of(word: str, sizes: Sizes) -> Linkage:
-    """With the ground line, or what is across the slide, along x: phi is theta2."""
+    """With the ground line, or the normal of the slide, along x: phi is theta2."""
     origin = np.zeros(2)
     if word == "four-bar":
         return FourBar(origin, (1.0, 0.0), sizes.r2, sizes.r3, sizes.r4)
@@ -96,7 +96,7 @@ def test_there_are_none_besides(word: str, longer: bool, mu_deg: float, least: f
 
 
 def of_share(word: str, sizes: Sizes) -> list[FloatArray]:
-    """What grows or falls evenly with each share."""
+    """Quantities that grow or fall evenly with each share."""
     longest = np.maximum(sizes.r2, 1.0)
     if word == "four-bar":
         return [sizes.r2 / longest**2, 1 / (sizes.r3 + sizes.r4), np.abs(sizes.r3 - sizes.r4)]

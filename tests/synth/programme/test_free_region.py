@@ -7,7 +7,7 @@ from scipy.spatial import Delaunay
 from grashof.problems import Requirements
 from grashof.problems.values.areas import solid
 from grashof.synth.programme.free_region import half_planes
-from grashof.synth.quantities.keep_out_depth import depth, points_kept_out
+from grashof.synth.quantities.screening import keep_out_violation, points_kept_out
 
 STAIRS = np.array([[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]], dtype=float)
 TWO = (np.array([[-1.0, 0], [1, 0], [0, 2]]), np.array([[2.0, 0], [4, 0], [3, 2]]))
@@ -56,20 +56,20 @@ def test_from_inside_the_nearest_boundary_is_taken() -> None:
     assert held(planes, np.array([[4.9, 1.0]])).all()
 
 
-def test_depth_is_asked_of_those_named_and_of_the_ends_of_links() -> None:
+def test_named_points_and_ends_of_links_keep_out() -> None:
     square = [[[0, 0], [4, 0], [4, 4], [0, 4]]]
     assert points_kept_out(Requirements()) == ()
     for names, expected in ((("b", "o2"), ("o2", "b")), (("links",), ("o2", "o4", "a", "b", "p"))):
         wanted = Requirements(keep_out=square, keep_out_for=names)  # type: ignore[arg-type]
         assert points_kept_out(wanted) == expected
         for name in ("o2", "o4", "a", "b", "p"):
-            found = depth(wanted, name, np.array([[1 + 2j, 5 + 5j, 4 + 0j]]))
-            assert found.tolist() == [[1.0 if name in expected else 0.0, 0.0, 0.0]]
+            found = keep_out_violation(name, np.array([[1 + 2j], [5 + 5j], [4 + 0j]]), wanted)
+            assert found.tolist() == [1.0 if name in expected else 0.0, 0.0, 0.0]
 
 
 def test_depth_against_a_triangulation() -> None:
     triangle = np.array([[0.0, 0], [3, 1], [1, 4]])
     points = np.random.default_rng(0).uniform(-1, 5, (500, 2))
     inside = Delaunay(triangle).find_simplex(points) >= 0
-    found = depth(Requirements(keep_out=(triangle,)), "o2", points @ np.array([1, 1j]))
+    found = keep_out_violation("o2", points @ np.array([[1], [1j]]), Requirements(keep_out=(triangle,)))
     assert ((found > 0) == inside).all()

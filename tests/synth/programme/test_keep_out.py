@@ -13,7 +13,7 @@ from grashof.analysis import verify
 from grashof.problems import FourBar, MotionTask, Problem, Requirements
 from grashof.synth import Result
 from grashof.synth.programme.start import Start
-from grashof.synth.quantities.keep_out_motion import depth_on_the_way
+from grashof.synth.programme.whole_screening import depth_on_the_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.finder import finder_for
@@ -81,7 +81,7 @@ def test_without_the_area_the_best_pivots_lie_in_it() -> None:
 
 @pytest.mark.study
 @pytest.mark.usefixtures("small_search")
-def test_no_crank_turns_fully_outside_a_floor_that_goes_on_and_the_note_says_so(
+def test_no_crank_turns_fully_outside_an_endless_floor_and_the_note_says_so(
     relaxing_only: Callable[..., None],
 ) -> None:
     relaxing_only("keep_out", "rotatability")

@@ -8,7 +8,7 @@ from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import PathTask, Problem, Requirements
 from grashof.synth.programme import nonlinear_programme as nlp
-from grashof.synth.programme.long_programme import STOPPED, StopCondition, jacobian_by_rows
+from grashof.synth.programme.builder import STOPPED, IterationCallback, jacobian_by_rows
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -49,7 +49,7 @@ def test_a_long_solve_ends_when_that_is_overdue(monkeypatch: pytest.MonkeyPatch)
     assert np.isfinite(solve.points).all()
 
 
-def test_none_is_begun_when_asked_to_stop() -> None:
+def test_no_long_solve_is_begun_after_a_stop() -> None:
     scaled, start = noisy_start(nlp.LONG + 1)
     with stopping.stopping(lambda: True):
         solve = nlp.solve(scaled, start)
@@ -60,7 +60,7 @@ def test_none_is_begun_when_asked_to_stop() -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_what_interrupts_a_long_solve_interrupts_the_search(
+def test_an_interrupt_of_a_long_solve_interrupts_the_search(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """CasADi would take it for an answer."""
@@ -70,7 +70,7 @@ def test_what_interrupts_a_long_solve_interrupts_the_search(
     def interrupted(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(StopCondition, "eval_buffer", interrupted)
+    monkeypatch.setattr(IterationCallback, "eval_buffer", interrupted)
     with pytest.raises(KeyboardInterrupt):
         nlp.solve(scaled, start)
     capfd.readouterr()

@@ -1,4 +1,4 @@
-"""The programme: what it ends with keeps every requirement and is no worse than where it began."""
+"""The programme: its designs keep every requirement and are no worse than their starts."""
 
 from collections import defaultdict
 from collections.abc import Callable
@@ -101,12 +101,12 @@ def test_from_a_feasible_pair_it_ends_at_least_as_good_and_keeps_the_requirement
     luggage_scaled: SetupOf, feasible_pairs: PairsOf, kind: str
 ) -> None:
     scaled = luggage_scaled(**ALONE[kind])
-    starts = best_apart(scaled, feasible_pairs(scaled), 3)
+    starts = best_apart(scaled, feasible_pairs(scaled), 2)
     assert starts
     check_climb(scaled, starts)
 
 
-@pytest.mark.parametrize("seed", [0, 7, 16])
+@pytest.mark.parametrize("seed", [0])
 def test_double_cranks(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], feasible_pairs: PairsOf, seed: int
 ) -> None:
@@ -120,10 +120,10 @@ def test_double_cranks(
 def test_required_angles_are_kept(luggage_scaled: SetupOf, feasible_pairs: PairsOf, key: str) -> None:
     free = luggage_scaled()
     pairs = feasible_pairs(free)
-    for start in best_apart(free, pairs, 3):
+    for start in best_apart(free, pairs, 2):
         angle = np.degrees(start.theta1 if key == "ground_angle_deg" else start.theta2[0])
         begun = judged(free, start_points(start), start.assembly)
-        for turns in (0, 360, -720):
+        for turns in (0, -720):
             scaled = luggage_scaled(**{key: float(angle) + turns})
             verdict = ended(scaled, start).verdict
             assert verdict.defects == ()  # to 1e-9 rad
@@ -142,7 +142,7 @@ def test_it_climbs_beyond_the_best_pair(luggage_scaled: SetupOf, feasible_pairs:
     assert best > pairs.transmission.max() + 1e-4
 
 
-@pytest.mark.parametrize("radius", [0.2, 0.02, 1e-3])
+@pytest.mark.parametrize("radius", [0.2, 1e-3])
 def test_with_a_radius_it_stays_in_its_box(
     luggage_scaled: SetupOf, feasible_pairs: PairsOf, radius: float
 ) -> None:
@@ -191,7 +191,7 @@ def nearest_by_slsqp(scaled: ScaledProblem, target: FloatArray) -> float:
 def test_stay_goes_to_the_nearest_feasible_design(luggage_scaled: SetupOf, feasible_pairs: PairsOf) -> None:
     wide = luggage_scaled(rotatability="any")
     tight = luggage_scaled(rotatability="any", link_length=(1.0, 5.0), coupler_arms=(0.3, 4.5))
-    for start in best_apart(wide, feasible_pairs(wide), 6):
+    for start in best_apart(wide, feasible_pairs(wide), 3):
         point = start.points
         solved = run(tight, start.under(stay=True))
         assert solved.status == "Solve_Succeeded"
@@ -242,7 +242,7 @@ RELAXED: dict[str, tuple[str, dict[str, Any]]] = {
 LENGTH_KEYS: dict[str, set[str]] = defaultdict(set, link_length={"r1", "r2", "r3", "r4"})
 
 
-@pytest.mark.quick("short links", "o2 far away", "b in a corner", "pivots far out", "start angle")
+@pytest.mark.quick("short links", "b in a corner", "start angle")
 @pytest.mark.parametrize("kind", RELAXED)
 def test_relaxed_misses_nothing_else_and_less_than_any_traced_pair(
     luggage_scaled: SetupOf, kind: str
@@ -300,7 +300,7 @@ def check_no_success(scaled: ScaledProblem, start: Start) -> None:
     assert result.candidate.verdict.ok or result.status != "Solve_Succeeded"
 
 
-@pytest.mark.quick("8", "36")
+@pytest.mark.quick("8")
 @pytest.mark.parametrize("seed", [8, 11, 20, 36])
 def test_no_success_going_back(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int
@@ -317,7 +317,7 @@ def test_no_success_going_back(
         check_no_success(scaled, replace(start, theta2=tuple(theta2), direction=sense))
 
 
-@pytest.mark.quick("0", "7")
+@pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 1, 2, 7])
 def test_no_success_beyond_a_turn(
     planted_scaled: Callable[..., tuple[ScaledProblem, FourBar]], seed: int

@@ -104,17 +104,7 @@ def test_no_worse_than_least_squares_by_another_method(poses: int) -> None:
     assert usable >= 2
 
 
-@pytest.mark.slow
-def test_the_planted_rivals_are_mostly_usable() -> None:
-    """So that the test above says something: how far the fit goes below the planted linkage."""
-    gains = []
-    for seed in range(6):
-        problem, linkage, verdict = noisy(seed, 6)
-        gains.append(solved(problem, linkage, verdict).verdict.square / verdict.square)
-    assert np.median(gains) < 0.5
-
-
-@pytest.mark.quick("0", "4")
+@pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 1, 2, 4])  # of 3 Ipopt runs out of iterations: links as long as 30 tasks
 def test_a_heavy_pose_is_met_more_closely(seed: int) -> None:
     problem, linkage, _ = noisy(seed, 8)
@@ -147,14 +137,14 @@ def test_the_length_of_an_angle_weighs_angles_against_places() -> None:
     assert (angles.angle_error**2).sum() < (places.angle_error**2).sum()
 
 
-@pytest.mark.quick("7-places0-angles0", "4-places2-angles2")
+@pytest.mark.quick("4-places2-angles2")
 @pytest.mark.parametrize(
     ("poses", "places", "angles"), [(7, [], [1, 2, 4, 5]), (6, [1, 3], []), (4, [], [1]), (3, [1], [2])]
 )
 def test_exact_tasks_with_free_parts_keep_their_targets(
     poses: int, places: list[int], angles: list[int]
 ) -> None:
-    """From a linkage that is a little off: what is given is met, and transmission is no worse for it."""
+    """From a linkage slightly off: the given parts are met, and transmission is no worse."""
     met = usable = 0
     for seed in range(8):
         rng = np.random.default_rng([72, seed])

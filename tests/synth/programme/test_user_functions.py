@@ -1,4 +1,4 @@
-"""The user's own constraints: held by every design, refused where unusable, named when in the way."""
+"""The user's own constraints: held by every design, refused where unusable, named where they prevent it."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -90,7 +90,7 @@ def without() -> Result:
     return synthesize(THREE, enough=10)
 
 
-@pytest.mark.quick("a_stays_low", "pivots_in_a_disc")
+@pytest.mark.quick("pivots_in_a_disc")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_design_holds_the_constraint(kind: str, without: Result) -> None:
     assert worst(kind, without) > 0.01  # or it would say nothing
@@ -101,20 +101,12 @@ def test_every_design_holds_the_constraint(kind: str, without: Result) -> None:
     assert {candidate.id for candidate in result.candidates} != {found.id for found in without.candidates}
 
 
+@pytest.mark.slow
 def test_two_at_once_hold_both() -> None:
     result = synthesize(THREE, constraints=[level, short_driver], enough=6)
     assert len(result) >= 6
     assert worst("level", result) <= HELD
     assert worst("short_driver", result) <= HELD
-
-
-@pytest.mark.slow
-def test_what_all_designs_hold_changes_nothing(without: Result) -> None:
-    result = synthesize(THREE, constraints=[lambda design: design.r2 - 1e3], enough=10)
-    ours, plain = (
-        max(each.verdict.transmission_min_task for each in one.candidates) for one in (result, without)
-    )
-    assert ours == pytest.approx(plain, rel=1e-4)
 
 
 def mixed(design: Design) -> Any:
@@ -128,7 +120,7 @@ def every(design: Design) -> tuple[Any, Any, Any, list[Any]]:
     return design.a, design.b, design.p, [design.theta2[i] for i in range(len(design.a))]
 
 
-def test_finds_lack_what_the_judge_finds() -> None:
+def test_screening_finds_the_violations_of_the_judge() -> None:
     task, _ = planted_path(np.random.default_rng([82, 3]), 5)
     scaled = ScaledProblem.of(Problem(task=task), [mixed])
     finds = search(scaled, 20, np.random.default_rng(0))[:50]
@@ -237,7 +229,7 @@ def test_where_a_constraint_has_no_value_it_is_missed() -> None:
     assert np.isnan(greatest_of(short_root, design))
 
 
-def test_what_is_no_number_on_numbers_is_named() -> None:
+def test_values_that_are_not_numbers_are_named() -> None:
     def matrix(design: Design) -> Any:
         return ca.SX.ones(2, 2) * design.r1
 
@@ -249,11 +241,6 @@ def test_a_lambda_is_refused_where_it_would_have_to_travel() -> None:
     with pytest.raises(ProblemError, match="<lambda> cannot be sent to other processes") as refused:
         synthesize(THREE, constraints=[lambda design: design.r2 - 1], workers=2)
     assert "with workers it must be a function of a module" in str(refused.value)
-
-
-def test_the_same_seed_gives_the_same_designs() -> None:
-    one, other = (synthesize(THREE, constraints=[level], enough=3) for _ in range(2))
-    assert [c.id for c in one.candidates] == [c.id for c in other.candidates]
 
 
 def near_ground(design: Design) -> Any:
@@ -286,3 +273,52 @@ def test_the_mode_of_numpy_is_left_as_it_was(mode: int) -> None:
         assert ca.GlobalOptions.getNumpyMode() == mode
     finally:
         ca.GlobalOptions.setNumpyMode(0)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "said"),
+    [
+        (lambda design: design.r2 < 1, "gives a truth value.*a - b instead of a < b"),
+        (lambda design: [design.r3 - 2, design.r2 == 1], "gives a truth value"),
+        (lambda _: True, "gives a truth value"),
+        (lambda _: np.bool_(False), "gives a truth value"),
+        (lambda _: None, "gives None; it must give a scalar"),
+        (lambda _: "r2", "gives 'r2'; it must give a scalar"),
+        (lambda _: [], "gives nothing; it must give a scalar"),
+        (lambda design: np.max([design.r2, design.r3]), "fails on symbols: .*CasADi"),
+        (
+            lambda design: max(design.r2, design.r3),
+            "fails on symbols: Cannot compute the truth value of .*casadi.fmax",
+        ),
+        (lambda design: design.o2[5], "fails on symbols: Slice .* out of bounds"),
+        (lambda design: sum(design.theta2), "fails on symbols: .*CasADi"),
+        (lambda design: design.r9, "fails on symbols: .*r9"),
+    ],
+)
+def test_unusable_amounts_are_refused_in_one_line(constraint: Any, said: str) -> None:
+    with pytest.raises(ProblemError, match=f"constraint <lambda> {said}") as caught:
+        synthesize(THREE, constraints=[constraint])
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("constraints", [lambda design: design.r2 - 1, None, 5, "r2"])
+def test_constraints_are_a_list(constraints: Any) -> None:
+    with pytest.raises(ProblemError, match=r"constraints is .*; it must be a list of functions of a design"):
+        synthesize(THREE, constraints=constraints)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"time_limit": "a"}, "time_limit is 'a'; it must be a finite number"),
+        ({"time_limit": True}, "time_limit is True; it must be a finite number"),
+    ],
+)
+def test_no_time(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(ProblemError, match=said):
+        synthesize(THREE, **options)
+
+
+def test_a_name_is_not_accepted_as_a_problem() -> None:
+    with pytest.raises(ProblemError, match="problem is a str; it must be a Problem, such as load gives"):
+        synthesize("luggage")  # type: ignore[arg-type]

@@ -1,16 +1,30 @@
-"""Zones and the error factor: every listed design keeps them, recomputed from the linkage alone."""
+"""The designs chosen for a list: zones and error factor, functions, and surrogates of long tasks."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from grashof import synthesize
-from grashof.analysis import verify
-from grashof.problems import DynamicsSpec, FourBar, MotionTask, Objective, PathTask, Problem, Requirements
+from grashof.analysis import Design, verify
+from grashof.analysis.judge.planted import planted_function, planted_motion, planted_path
+from grashof.problems import (
+    DynamicsSpec,
+    FourBar,
+    FunctionTask,
+    MotionTask,
+    Objective,
+    PathTask,
+    Problem,
+    Requirements,
+)
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.results.choice import best_at
+from grashof.synth.results.surrogate import FEW, LONG, Surrogate
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -117,3 +131,131 @@ def test_the_error_factor_bounds_the_error() -> None:
             assert np.sqrt(design.verdict.square / 6) <= result.most_error * (1 + 1e-6)
         best.append(result.best.objective(result.problem))
     assert best[0] < best[1] < best[2]
+
+
+def test_errors_of_rounding_are_all_the_least() -> None:
+    task, linkage, _ = planted_function(np.random.default_rng(1), 5)
+    problem = Problem(task=task, requirements=Requirements(exact=False))
+    verdict = verify(linkage, task, problem.requirements)
+
+    def name(error: float, least: float) -> str:
+        design = Candidate(linkage, replace(verdict, square=error**2 * len(task)), problem, 0, 0)
+        assert abs(design.error(problem) - error) < 1e-12 * error
+        return best_at(problem, design, least)
+
+    assert name(3e-16, 1e-16) == name(5e-10, 1e-16) == "least error"
+    assert name(2e-4, 1.9e-4) == name(2e-9, 1e-16) == "least error nearby"
+    assert name(2e-4, 1.9999e-4) == "least error"
+
+
+SIX = FunctionTask.from_degrees([0, 20, 45, 70, 90, 110], [0, 5, 12, 22, 27, 26])
+
+
+def test_errors_are_angles_whatever_the_size() -> None:
+    wanted = Requirements(r1=(200, 200), exact=False, transmission_min_deg=60)
+    found = synthesize(Problem(task=SIX, requirements=wanted))
+    least = min(one.error(found.problem) for one in found.candidates)
+    assert found.least_error == pytest.approx(least, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_a_list_offers_more_transmission_for_more_error() -> None:
+    best, *others = synthesize(Problem(task=SIX), effort=0.4).candidates
+    assert best.best_at == "least error"
+    transmission = [float(np.degrees(one.verdict.transmission_min_task)) for one in others]
+    assert "transmission from 60 deg" in {one.best_at for one in others}
+    assert all(any(level - 2 < each < level + 2 for each in transmission) for level in (30, 40, 50, 60))
+
+
+FIVE = FunctionTask.from_degrees([0, 20, 45, 70, 90], [0, 12, 31, 55, 80])
+
+
+@pytest.mark.quick("transmission_min_deg")
+@pytest.mark.parametrize(
+    ("task", "wanted", "key"),
+    [
+        (SIX, {"structural_error_max_deg": (0.0, 0.01)}, "structural_error_max_deg"),
+        (FIVE, {"transmission_min_deg": 40.0}, "transmission_min_deg"),
+        (FIVE, {"link_ratio_max": 1.5}, "link_ratio_max"),
+    ],
+    ids=["structural_error_max_deg", "transmission_min_deg", "link_ratio_max"],
+)
+def test_the_relaxation_that_is_named_would_do(task: FunctionTask, wanted: dict[str, Any], key: str) -> None:
+    problem = Problem(task=task, requirements=Requirements(**wanted))
+    found = synthesize(problem, effort=0.3)
+    assert not found.candidates
+    assert f"{key} " in found.note
+    said = found.note.split(f"{key} ")[1].removeprefix("up to ")
+    value = float(said.split()[0])
+    ranges = isinstance(wanted[key], tuple)
+    looser = replace(problem.requirements, **{key: (0.0, value) if ranges else value})
+    assert synthesize(replace(problem, requirements=looser), effort=0.3).best.verdict.ok
+
+
+def long_coupler(design: Design) -> Any:
+    return 20.0 - design.r3
+
+
+def test_a_users_own_constraint_is_relaxed() -> None:
+    found = synthesize(Problem(task=FIVE), constraints=[long_coupler], effort=0.2)
+    assert not found.candidates
+    allowed = float(found.note.split("constraint long_coupler up to ")[1].split()[0])
+    assert found.nearest[0].linkage.r3 + allowed >= 20.0  # type: ignore[attr-defined]
+
+
+MANY = 3 * LONG
+
+
+@pytest.fixture(scope="module", params=["motion", "path"])
+def result(request: pytest.FixtureRequest) -> Result:
+    rng = np.random.default_rng([41, request.param == "path"])
+    noise = 0.005
+    if request.param == "path":
+        path = planted_path(rng, MANY)[0]
+        task: MotionTask | PathTask = PathTask(path.points + rng.normal(0, noise * path.size, (MANY, 2)))
+    else:
+        motion = planted_motion(rng, MANY)[0]
+        places = motion.positions + rng.normal(0, noise * motion.size, (MANY, 2))
+        task = MotionTask(places, motion.angles + rng.normal(0, noise, MANY))
+    return synthesize(Problem(task=task, requirements=Requirements(exact=False)), effort=0.3)
+
+
+@pytest.mark.quick("path")
+@pytest.mark.slow
+def test_the_error_on_all_targets_is_that_of_the_surrogate_and_the_least(result: Result) -> None:
+    scaled = ScaledProblem.of(result.problem)
+    least = result.least_error / result.problem.task.size
+    best = min(result.candidates, key=lambda one: one.error(result.problem))
+    surrogate = Surrogate.of(scaled, best, least)
+    few = surrogate.scaled.problem
+    assert len(few.task) == FEW
+    for one in result.candidates:
+        added = surrogate.taken(one).error(few) * few.task.size / result.problem.task.size
+        assert np.hypot(least, added) == pytest.approx(one.error(result.problem), rel=0.1)
+
+
+@pytest.mark.quick("path")
+@pytest.mark.slow
+def test_offered_designs_are_judged_on_all_targets(result: Result) -> None:
+    least = min(one.error(result.problem) for one in result.candidates)
+    offered = [one for one in result.candidates if "within" in one.best_at]
+    assert offered
+    for one in offered:
+        verdict = verify(one.linkage, result.problem.task, result.problem.requirements)
+        assert verdict.ok
+        assert len(verdict.theta2) == MANY
+        assert verdict.square == pytest.approx(one.verdict.square, rel=1e-9)
+        assert one.error(result.problem) <= 2 * least * (1 + 1e-6)
+
+
+def test_short_tasks_and_those_with_user_constraints_have_no_surrogate() -> None:
+    task, linkage = planted_motion(np.random.default_rng(0), LONG + 1)
+    problem = Problem(task=task, requirements=Requirements(exact=False))
+    short = Problem(task=MotionTask(task.positions[1:], task.angles[1:]), requirements=problem.requirements)
+    own = (lambda design: design.r2 - 1,)
+    for scaled in (ScaledProblem.of(short), ScaledProblem.of(problem, own)):
+        surrogate = Surrogate.of(scaled, None, 0.1)  # type: ignore[arg-type]
+        assert surrogate.is_itself
+        assert surrogate.scaled is scaled
+        assert surrogate.most_error(0.3, 1.0) == 0.3
+    assert linkage.shape == ()

@@ -9,7 +9,7 @@ import pytest
 
 from grashof.problems import Box, FourBar
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.programme import exchange
+from grashof.synth.programme import nonlinear_programme
 from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -19,8 +19,14 @@ from grashof.synth.search.finder import finder_for
 SetupOf = Callable[..., ScaledProblem]
 
 
-def first_starts(scaled: ScaledProblem, count: int) -> list[Start]:
-    return finder_for(scaled).round(0, 50, np.random.default_rng(0), 1).starts[:count]
+@pytest.fixture(scope="module")
+def scaled(luggage_scaled: SetupOf) -> ScaledProblem:
+    return luggage_scaled()
+
+
+@pytest.fixture(scope="module")
+def starts(scaled: ScaledProblem) -> list[Start]:
+    return list(finder_for(scaled).round(0, 50, np.random.default_rng(0), 1).starts)
 
 
 def off_circles(linkage: FourBar, scaled: ScaledProblem) -> float:
@@ -39,9 +45,8 @@ def off_circles(linkage: FourBar, scaled: ScaledProblem) -> float:
     )
 
 
-def test_a_candidate_is_exact_beyond_the_solver(luggage_scaled: SetupOf) -> None:
-    scaled = luggage_scaled()
-    for number, start in enumerate(first_starts(scaled, 10)):
+def test_a_candidate_is_exact_beyond_the_solver(scaled: ScaledProblem, starts: list[Start]) -> None:
+    for number, start in enumerate(starts[:10]):
         candidate = attempt(scaled, start, number).candidate
         assert candidate is not None
         assert candidate.verdict.ok
@@ -51,20 +56,18 @@ def test_a_candidate_is_exact_beyond_the_solver(luggage_scaled: SetupOf) -> None
         assert candidate.verdict.error_max < 1e-12 * scaled.frame.scale
 
 
-def test_a_design_with_defects_is_kept_with_them(luggage_scaled: SetupOf) -> None:
-    start = first_starts(luggage_scaled(), 1)[0]
+def test_a_design_with_defects_is_kept_with_them(luggage_scaled: SetupOf, starts: list[Start]) -> None:
     scaled = luggage_scaled(o2=Box((50, 60), (50, 60)))
-    candidate = attempt(scaled, start, 0).candidate
+    candidate = attempt(scaled, starts[0], 0).candidate
     assert candidate is not None
     assert not candidate.verdict.ok
 
 
 @pytest.mark.parametrize("relaxed", [("order",), ("link_length", "same_branch")])
-def test_what_no_smooth_constraint_can_relax_is_not_solved(
-    luggage_scaled: SetupOf, relaxed: tuple[str, ...]
+def test_discrete_requirements_are_not_solved_for(
+    scaled: ScaledProblem, starts: list[Start], relaxed: tuple[str, ...]
 ) -> None:
-    scaled = luggage_scaled()
-    start = first_starts(scaled, 1)[0].under(relaxed=relaxed)
+    start = starts[0].under(relaxed=relaxed)
     result = attempt(scaled, start, 3)
     assert result.status == "Not_Solved"
     assert result.candidate is not None
@@ -74,19 +77,17 @@ def test_what_no_smooth_constraint_can_relax_is_not_solved(
     )
 
 
-def test_coinciding_pivots_are_no_linkage(luggage_scaled: SetupOf) -> None:
-    scaled = luggage_scaled()
-    start = first_starts(scaled, 1)[0]
+def test_coinciding_pivots_are_no_linkage(scaled: ScaledProblem, starts: list[Start]) -> None:
+    start = starts[0]
     # Both dyads the same: exact, so that polishing does not part them.
     same = replace(start, o4=start.o2, b=start.a).under(relaxed=("order",))
     assert attempt(scaled, same, 0).candidate is None
 
 
 def test_numbers_that_are_not_finite_are_no_linkage(
-    luggage_scaled: SetupOf, monkeypatch: pytest.MonkeyPatch
+    scaled: ScaledProblem, starts: list[Start], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scaled = luggage_scaled()
-    start = first_starts(scaled, 1)[0]
+    start = starts[0]
     broken = Solve(
         (complex("nan"), start.o4, start.a, start.b, start.p),
         start.theta2,
@@ -95,25 +96,25 @@ def test_numbers_that_are_not_finite_are_no_linkage(
         "Invalid_Number_Detected",
         7,
     )
-    monkeypatch.setattr(exchange, "solve", lambda *_: broken)
+    monkeypatch.setattr(nonlinear_programme, "solve", lambda *_: broken)
     result = attempt(scaled, start, 0)
     assert (result.status, result.candidate) == ("Invalid_Number_Detected", None)
 
 
-def test_the_solver_is_not_believed(luggage_scaled: SetupOf, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_solver_is_not_believed(
+    scaled: ScaledProblem, starts: list[Start], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A solve that says it succeeded, but ended somewhere else, is judged by where it ended."""
-    scaled = luggage_scaled()
-    start = first_starts(scaled, 1)[0]
+    start = starts[0]
     moved = (start.o2 + 2, start.o4 - 3j, start.a, start.b, start.p)
     ended = Solve(moved, start.theta2, start.theta3, start.body_angle, "Solve_Succeeded", 7)
-    monkeypatch.setattr(exchange, "solve", lambda *_: ended)
+    monkeypatch.setattr(nonlinear_programme, "solve", lambda *_: ended)
     candidate = attempt(scaled, start, 0).candidate
     assert candidate is None or not candidate.verdict.ok
 
 
-def test_an_attempt_and_its_inputs_pickle(luggage_scaled: SetupOf) -> None:
-    scaled = luggage_scaled()
-    start = first_starts(scaled, 1)[0]
+def test_an_attempt_and_its_inputs_pickle(scaled: ScaledProblem, starts: list[Start]) -> None:
+    start = starts[0]
     there = attempt(*pickle.loads(pickle.dumps((scaled, start, 5))))
     back = pickle.loads(pickle.dumps(there))
     here = attempt(scaled, start, 5)

@@ -1,4 +1,4 @@
-"""What happened to a run: what ended it, what was taken from its record, what is logged of it."""
+"""The history of a run: its ending, steps from its record, and its log."""
 
 import logging
 from datetime import UTC, datetime, timedelta
@@ -12,7 +12,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.history import StopCondition, StopReason
 from grashof.synth.search.searches import Run
-from grashof.synth.search.workers import CRASHED, Here
+from grashof.synth.search.workers import CRASHED, Work
 
 pytestmark = pytest.mark.usefixtures("small_search")
 ENDINGS = {
@@ -25,7 +25,7 @@ ENDINGS = {
 
 @pytest.mark.quick("whole", "stopped", "late, not stopped")
 @pytest.mark.parametrize("how", ENDINGS)
-def test_the_story_tells_what_ended_the_search(how: str) -> None:
+def test_the_history_states_why_the_search_ended(how: str) -> None:
     options, ending = ENDINGS[how]
     before = datetime.now(UTC)
     history = synthesize(load("luggage"), starts=8, **options).history
@@ -40,8 +40,8 @@ def test_the_story_tells_what_ended_the_search(how: str) -> None:
     )
 
 
-def test_once_asked_to_end_it_stays_so() -> None:
-    """What was cut short by an answer must not count as whole because of the next one."""
+def test_a_stop_condition_stays_met() -> None:
+    """Work cut short by one answer must not count as complete because of the next one."""
     answers = iter([False, True, False])
     asked = StopCondition(None, lambda: next(answers))
     assert [asked(), asked(), asked()] == [False, True, True]
@@ -49,7 +49,7 @@ def test_once_asked_to_end_it_stays_so() -> None:
     assert asked.ending is StopReason.STOPPED
 
 
-class Crashing(Here):
+class Crashing(Work):
     """Two starts of each batch end the process that solves them."""
 
     def attempts(self, scaled: ScaledProblem, starts: list[Start], first: int, /) -> list[Attempt]:
@@ -65,11 +65,11 @@ def test_starts_that_crash_are_named(caplog: pytest.LogCaptureFixture) -> None:
     run.solve(scaled, found.starts[:5], 10)
     assert run.crashed == [11, 13]
     assert [each.getMessage() for each in caplog.records if each.levelno == logging.WARNING] == [
-        f"start {number} ends the process that solves it, and is given up" for number in (11, 13)
+        f"start {number} ends the process that solves it, and is skipped" for number in (11, 13)
     ]
 
 
-def test_the_log_tells_rounds_and_starts(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_log_states_rounds_and_starts(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.DEBUG, logger="grashof"):
         result = synthesize(load("luggage"), starts=20)
     told = [each.getMessage() for each in caplog.records]
@@ -84,7 +84,7 @@ def test_the_log_tells_rounds_and_starts(caplog: pytest.LogCaptureFixture) -> No
     assert all(each.name.startswith("grashof.synth.") for each in caplog.records)
 
 
-def test_the_log_tells_what_stopped_it(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_log_states_why_the_search_stopped(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, logger="grashof"):
         synthesize(load("luggage"), time_limit=1e-6)
     told = [each.getMessage() for each in caplog.records]

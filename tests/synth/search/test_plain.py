@@ -40,7 +40,7 @@ def test_arrays_come_back(dtype: type, shape: tuple[int, ...]) -> None:
     assert not found.flags.writeable
 
 
-def test_a_scalar_is_no_array() -> None:
+def test_a_scalar_is_not_an_array() -> None:
     assert type(back(np.float64(0.1))) is np.float64
 
 
@@ -76,7 +76,7 @@ def test_rounds_come_back(name: str) -> None:
         "[" * 900 + "]" * 900,
     ],
 )
-def test_what_is_no_value_is_refused(text: str) -> None:
+def test_malformed_values_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no plain form"):
         restored(json.loads(text), load("luggage"))
 

@@ -1,4 +1,4 @@
-"""Work in other processes: the same lists, whatever happens to them."""
+"""Work in other processes, and on a Dask cluster that loses one: the same lists."""
 
 import multiprocessing
 import os
@@ -20,7 +20,7 @@ from grashof.synth import Result
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain
-from grashof.synth.search.workers import CrashError, Elsewhere, Here, Processes, screen
+from grashof.synth.search.workers import CrashError, OnExecutor, Processes, Work, screen
 
 CONVEYOR = MotionTask.from_degrees([[0, 0, 0], [60, 90, 15], [180, 140, 40], [300, 90, 70], [360, 0, 90]])
 SEARCHES = {
@@ -67,7 +67,7 @@ def nap(_scaled: ScaledProblem, seconds: float) -> float:
 
 
 @pytest.mark.study
-def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Processes) -> None:
+def test_a_start_that_ends_its_process_is_skipped_and_the_next_is_not(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     assert processes.begin(crash, scaled, 7)  # else it is done here as long as they begin
     with pytest.raises(CrashError, match="a worker process was lost twice"):
@@ -78,7 +78,7 @@ def test_what_ends_its_process_is_given_up_and_the_next_is_not(processes: Proces
 
 
 @pytest.mark.study
-def test_what_a_lost_process_did_is_done_again(processes: Processes) -> None:
+def test_the_work_of_a_lost_process_is_repeated(processes: Processes) -> None:
     scaled = ScaledProblem.of(load("luggage"))
     naps = (0.5, 2.5, 0.1)
     assert [processes.begin(nap, scaled, seconds) for seconds in (*naps, 0.5)] == [True, True, True, False]
@@ -108,7 +108,7 @@ class Killing(Executor):
         return future
 
 
-class Replaced(Elsewhere):
+class Replaced(OnExecutor):
     """Work whose lost processes are replaced at once."""
 
     def _lost(self, _error: BrokenExecutor) -> None:
@@ -116,12 +116,12 @@ class Replaced(Elsewhere):
 
 
 @pytest.mark.slow
-def test_of_a_bundle_only_the_start_at_fault_is_given_up() -> None:
+def test_only_the_faulty_start_of_a_bundle_is_skipped() -> None:
     scaled = ScaledProblem.of(load("luggage"))
     found = screen(scaled, 0, 0, 50, 0)
     assert found is not None
     starts = found.starts[:10]
-    alone = Here().attempts(scaled, starts, 5)
+    alone = Work().attempts(scaled, starts, 5)
     work = Replaced(Killing([starts[2], starts[9]]), 2)
     work.begin_attempts(scaled, starts)
     made = work.attempts(scaled, starts, 5)
@@ -138,11 +138,11 @@ import multiprocessing
 from grashof import load, synthesize
 from dataclasses import replace
 
-def tell(_):
+def report(_):
     print(*(child.pid for child in multiprocessing.active_children()), flush=True)
 
 if __name__ == "__main__":
-    synthesize(load("path-ellipse"), effort=20, workers=2, progress=tell)
+    synthesize(load("path-ellipse"), effort=20, workers=2, progress=report)
 """
 
 
@@ -165,3 +165,62 @@ def test_workers_end_with_their_parent(tmp_path: Path, number: int) -> None:
     while any(Path(f"/proc/{child}/status").exists() for child in children) and time.monotonic() < end:
         time.sleep(0.1)
     assert not any(Path(f"/proc/{child}/status").exists() for child in children)
+
+
+SCRIPT = """
+import os
+import signal
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Timer
+from time import sleep
+
+from distributed import Client, LocalCluster
+
+from grashof import load, synthesize
+from grashof.synth.merging import merge_shards
+from grashof.synth.shards import Shard, solve_shard
+
+MORE = {"effort": 4}
+SEARCHES = {"luggage": {"starts": 400, "enough": 200}, "path-ellipse": {"effort": 0.6}, "dwell": MORE}
+
+
+def kill_a_worker(cluster):
+    # while a lost process is being started again, the other one is there, or in a moment this one
+    while not (pids := [worker.pid for worker in list(cluster.workers.values()) if worker.pid]):
+        sleep(0.05)
+    os.kill(pids[0], signal.SIGKILL)
+
+
+def in_one_shard(name, executor=None):
+    with TemporaryDirectory() as folder:
+        solve_shard(load(name), Shard(1, 1), Path(folder), effort=2, executor=executor, workers=2)
+        return merge_shards(Path(folder))
+
+
+if __name__ == "__main__":
+    started = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+    with started as cluster, Client(cluster) as client:
+        ways = [lambda executor=None, given=given: synthesize(load(given[0]), **given[1], executor=executor,
+                workers=2) for given in SEARCHES.items()]
+        for way in (*ways, partial(in_one_shard, "luggage")):
+            alone = way()
+            lost = Timer(1.0, kill_a_worker, (cluster,))
+            lost.start()
+            shared = way(executor=client.get_executor())
+            lost.join()
+            same = shared.to_frame().to_csv() == alone.to_frame().to_csv() and shared.ended == alone.ended
+            print(len(alone), "the same list" if same else "another list", flush=True)
+"""
+
+
+@pytest.mark.study
+def test_a_cluster_that_loses_a_worker_gives_the_same_list(tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    (tmp_path / "cluster.py").write_text(SCRIPT, encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "cluster.py"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("the same list") == 4, done.stdout

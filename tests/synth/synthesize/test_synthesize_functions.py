@@ -3,13 +3,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof import load
-from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_function
 from grashof.problems import Box, FourBar, FunctionTask, Objective, Problem, Requirements, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import synthesize
-from grashof.synth.search.run import Progress
 
 DEG = float(np.degrees(1.0))
 # Greatest structural error over the range, deg; link ratio up to 10, better of both senses. Ipopt from 12
@@ -105,16 +102,6 @@ def test_full_crank_references_are_reached(law: str, options: dict[str, Any], re
     assert best.verdict.structural_error_max * DEG <= 1.005 * reference
 
 
-@pytest.mark.study
-def test_least_squares_of_the_references() -> None:
-    """rms over the range; at 61 even samples 0.00455 deg with a link ratio of 50."""
-    task = FunctionTask.from_degrees(
-        law="log10", x=(1, 2), input_range_deg=60, output_range_deg=90, sense="either"
-    )
-    best = synthesize(Problem(task=task, requirements=Requirements(link_ratio_max=50))).best
-    assert best.verdict.structural_error_rms * DEG < 0.00455
-
-
 KINDS = ["four-bar", "slider-crank", "inverted-slider-crank"]
 
 
@@ -155,8 +142,8 @@ def test_boxes_lengths_and_senses_are_kept() -> None:
         transmission_min_deg=30, driver_sense="cw",
     )  # fmt: skip
     task = FunctionTask.from_degrees([0, 45, 90], [0, 31, 80])
-    result = synthesize(Problem(task=task, requirements=wanted, length_unit="mm"), enough=10)
-    assert len(result) == 10
+    result = synthesize(Problem(task=task, requirements=wanted, length_unit="mm"), enough=4, effort=0.3)
+    assert len(result) >= 4
     for each in result.candidates:
         assert each.verdict.direction == -1
         assert each.linkage.o2.tolist() == [100, 50]
@@ -173,26 +160,6 @@ def test_error_factor_lets_the_objective_decide() -> None:
     least = tight.best.error(tight.problem)
     assert all(each.error(free.problem) <= 20.01 * max(least, 1e-6) for each in free.candidates)
     assert free.best.verdict.transmission_min_task > tight.best.verdict.transmission_min_task
-
-
-def test_the_same_seed_gives_the_same_list() -> None:
-    lists = [synthesize(load("function-five-pairs")).to_frame() for _ in range(2)]
-    assert lists[0].equals(lists[1])
-
-
-@pytest.mark.study
-def test_designs_are_told_of_as_they_are_found() -> None:
-    told: list[Progress] = []
-    problem = load("function-sin")
-    found = synthesize(problem, progress=told.append)
-    counts = [(step.solved, step.verified) for step in told]
-    assert counts == sorted(counts)
-    assert counts[0] == (1, 1)
-    assert counts[-1] > (8, 4)
-    assert len(counts) > 4
-    first = told[0].designs[0]
-    assert verify(first.linkage, problem.task, problem.requirements).ok
-    assert first.error(problem) < 1.01 * found.best.error(problem)
 
 
 @pytest.mark.slow
@@ -229,7 +196,7 @@ BLOCKS = {
 
 
 def slide_error(linkage: SliderCrank, start: float, sense: int, turned: FloatArray) -> FloatArray:
-    """Place of B where the circle about A cuts the slide, of crossings the one that goes on, along it."""
+    """Place of B where the circle about A cuts the slide, of crossings the continuous one, along it."""
     e = np.exp(1j * float(linkage.slide_angle))
     a = float(linkage.r2) * np.exp(1j * (start + sense * turned)) / e
     half = np.sqrt(float(linkage.r3) ** 2 - (float(linkage.offset) - a.imag) ** 2)
@@ -348,22 +315,6 @@ def test_slides_of_any_size(size: float) -> None:
     )
 
 
-@pytest.mark.study
-def test_kinds_whose_output_turns_share_a_list() -> None:
-    task = FunctionTask.from_degrees(
-        law="sqrt", x=(1, 4), input_range_deg=90, output_range_deg=90, sense="either", norm="max"
-    )
-    kinds = ["four-bar", "inverted-slider-crank"]
-    result = synthesize(
-        Problem(task=task, mechanism=kinds, requirements=Requirements(transmission_min_deg=20))
-    )
-    assert {each.linkage.mechanism.word for each in result.candidates} == set(kinds)
-    errors = [each.verdict.structural_error_max for each in result.candidates]
-    assert errors[0] == min(errors)
-    assert all(each.verdict.ok for each in result.candidates)
-    assert errors[0] * DEG < 0.0017
-
-
 @pytest.mark.slow
 @pytest.mark.quick("inverted-slider-crank-1-ccw")
 @pytest.mark.parametrize(("direction", "sense"), [(1, "ccw"), (-1, "cw")])
@@ -385,6 +336,7 @@ SHORT = {"r2": (1.0, 1.0), "r3": (50.0, 60.0)}
 NO_GROUND = {"o2": Box((0, 0), (0, 0)), "o4": Box((1, 1), (0, 0)), "r1": (3.0, 4.0)}
 
 
+@pytest.mark.quick("ground", "no slider-crank")
 @pytest.mark.parametrize(
     ("task", "mechanism", "wanted", "why"),
     [
@@ -394,7 +346,10 @@ NO_GROUND = {"o2": Box((0, 0), (0, 0)), "o4": Box((1, 1), (0, 0)), "r1": (3.0, 4
         (TRAVEL, "slider-crank", SHORT, "r2 and r3 contradict"),
         (TRAVEL, "slider-crank", {"transmission_min_deg": 89}, "no slider-crank goes through the 5 pairs"),
     ],
+    ids=["no four-bar", "ground", "lengths", "lengths of a slider-crank", "no slider-crank"],
 )
-def test_an_empty_list_says_why(task: FunctionTask, mechanism: str, wanted: dict[str, Any], why: str) -> None:
+def test_an_empty_list_states_why(
+    task: FunctionTask, mechanism: str, wanted: dict[str, Any], why: str
+) -> None:
     result = synthesize(Problem(task=task, requirements=Requirements(**wanted), mechanism=mechanism))
     assert why in result.note

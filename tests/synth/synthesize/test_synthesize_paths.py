@@ -1,9 +1,7 @@
 """Path generation from a problem to a list: published cases, planted problems, cognates, bytes."""
 
 from collections.abc import Callable
-from concurrent.futures import Executor
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -196,23 +194,8 @@ def test_fixed_pivots_have_no_cognates() -> None:
     assert all(np.abs(candidate.linkage.o2).max() < 1e-9 for candidate in result.candidates)
 
 
-def csv_of(result: Result, folder: Path) -> bytes:
-    result.to_csv(folder / "out.csv")
-    return (folder / "out.csv").read_bytes()
-
-
-@pytest.mark.slow
-def test_workers_change_no_byte(tmp_path: Path, other_process: Executor) -> None:
-    problem = Problem(task=PathTask(LINE), requirements=case1().requirements)
-    few: dict[str, Any] = {"starts": 20, "enough": 16, "seed": 3}
-    alone = csv_of(synthesize(problem, **few), tmp_path)
-    assert alone.count(b"\n") > 10
-    assert csv_of(synthesize(problem, executor=other_process, **few), tmp_path) == alone
-    assert csv_of(synthesize(problem, **(few | {"seed": 4})), tmp_path) != alone
-
-
 @pytest.mark.study
-def test_an_impossible_path_says_what_stands_in_the_way(relaxing_only: Callable[..., None]) -> None:
+def test_an_impossible_path_names_the_obstacle(relaxing_only: Callable[..., None]) -> None:
     relaxing_only("o2")
     far = Box((1000, 1001), (1000, 1001))
     result = synthesize(case1(o2=far), enough=5, starts=8)

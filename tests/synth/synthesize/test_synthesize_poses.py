@@ -1,7 +1,6 @@
-"""Any number of poses from problem to list: planted and noisy ones, free parts, and what is in the way."""
+"""Any number of poses from problem to list: planted and noisy ones, free parts, and obstacles."""
 
 from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import replace
 from itertools import combinations
 from typing import Any
@@ -52,7 +51,7 @@ def check_exact(result: Result, judge: Judge) -> None:
     assert all(one.id != other.id for one, other in combinations(result.candidates, 2))
 
 
-@pytest.mark.quick("0-3", "0-6", "0-12", "1-3", "1-6", "1-12")
+@pytest.mark.quick("0-3", "0-6", "1-12")
 @pytest.mark.parametrize("poses", [2, 3, 5, 6, 8, 12])
 @pytest.mark.parametrize("seed", range(2))
 def test_planted_poses_are_met_exactly(poses: int, seed: int, independent_judge: Judge) -> None:
@@ -152,7 +151,7 @@ MIXES: dict[str, tuple[int, list[int], list[int]]] = {
 }
 
 
-@pytest.mark.quick("7 poses, 4 angles free", "3 poses, a place and an angle free")
+@pytest.mark.quick("3 poses, a place and an angle free")
 @pytest.mark.parametrize("mix", MIXES)
 def test_poses_with_free_parts_are_met_exactly(mix: str) -> None:
     poses, places, angles = MIXES[mix]
@@ -224,11 +223,3 @@ def test_a_constraint_that_the_only_linkage_breaks_is_named() -> None:
     result = synthesize(Problem(task=task, requirements=EXACT), constraints=[too_long], starts=8)
     assert len(result) == 0
     assert "; this alone would do: constraint too_long up to 1010 instead of 0" in result.note
-
-
-@pytest.mark.slow
-def test_workers_change_nothing(tmp_path: Any, other_process: Executor) -> None:
-    problem, _ = noisy(1, 6)
-    for name, executor in (("here", None), ("there", other_process)):
-        synthesize(problem, effort=0.2, executor=executor).to_csv(tmp_path / name)
-    assert (tmp_path / "here").read_bytes() == (tmp_path / "there").read_bytes()

@@ -1,7 +1,5 @@
-"""How a search runs: where, how long, in what order, with what told on the way."""
+"""How a search runs: where, how long, in what order, with which reports."""
 
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -26,7 +24,6 @@ from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.searches import Run
 from grashof.synth.search.workers import solved_there
-from grashof.synth.starts.exact_poses import FewPoses
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -112,18 +109,6 @@ def test_a_lost_executor_is_an_error_of_the_surroundings(
         synthesize(luggage, starts=10, executor=executor)
 
 
-@pytest.mark.slow
-def test_progress_grows_until_enough(luggage: Problem) -> None:
-    seen: list[Progress] = []
-    result = synthesize(luggage, enough=25, progress=seen.append)
-    assert len(seen) >= 2
-    assert [step.solved for step in seen] == sorted({step.solved for step in seen})
-    assert [step.verified for step in seen] == sorted(step.verified for step in seen)
-    assert all(step.solved <= step.starts and step.enough == 25 for step in seen)
-    assert seen[-1].verified == len(result) >= 25
-    assert seen[-2].verified < 25
-
-
 def same_designs(first: Sequence[Candidate], second: Sequence[Candidate]) -> bool:
     return [one.id for one in first] == [one.id for one in second]
 
@@ -150,7 +135,7 @@ def test_progress_has_the_designs_that_are_chosen_from(name: str, monkeypatch: p
 
 
 @pytest.mark.slow
-def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path: Path) -> None:
+def test_reported_designs_of_a_stopped_search_make_a_list(luggage: Problem, tmp_path: Path) -> None:
     seen: list[Progress] = []
     stopped = synthesize(luggage, progress=seen.append, stop=lambda: len(seen) > 1)
     assert not stopped.complete
@@ -162,7 +147,7 @@ def test_what_was_seen_of_a_stopped_search_is_of_use(luggage: Problem, tmp_path:
 
 
 def of_two_poses(luggage: Problem) -> Problem:
-    """The same with its first two poses, so that no proof says at once that there is no design."""
+    """The problem with its first two poses, so that no proof excludes designs at once."""
     task = luggage.task
     rows = np.column_stack([task.positions, np.degrees(task.angles)])[:2]
     return replace(luggage, task=MotionTask.from_degrees(rows))
@@ -171,7 +156,9 @@ def of_two_poses(luggage: Problem) -> Problem:
 def test_enough_is_enough(luggage: Problem) -> None:
     seen: list[Progress] = []
     synthesize(luggage, enough=8, progress=seen.append)
-    assert [step.solved for step in seen][:2] == [2, 8]  # a batch is no greater than enough
+    solved, verified = [step.solved for step in seen], [step.verified for step in seen]
+    assert (solved, verified) == (sorted(set(solved)), sorted(verified))
+    assert solved[:2] == [2, 8]  # a batch does not exceed enough
     assert seen[-1].solved <= 16
     assert seen[-2].verified < 8 <= seen[-1].verified
     assert seen[0].starts == luggage.search.starts > 16
@@ -190,7 +177,7 @@ def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPat
     assert seen[0].starts == luggage.search.starts > 16
 
 
-@pytest.mark.parametrize("starts", [1, 5, 17])
+@pytest.mark.parametrize("starts", [1, 17])
 def test_no_more_solves_than_starts(luggage: Problem, starts: int) -> None:
     executor = Inline()
     result = synthesize(luggage, starts=starts, executor=executor)
@@ -223,7 +210,7 @@ def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
 
 
 def test_stopped_before_anything_was_found(luggage: Problem) -> None:
-    """What a quick pass found is tried, and no more where that is a design."""
+    """Starts of a quick pass are tried, and no more where they give a design."""
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 2
@@ -232,22 +219,15 @@ def test_stopped_before_anything_was_found(luggage: Problem) -> None:
     assert result.ended == "the search ended after 2 of 200 solves: it was stopped"
 
 
-def test_stopped_after_a_glance_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What the screening found is tried, and no more."""
+def test_stopped_after_a_quick_pass_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Starts of the screening are tried, and no more."""
     monkeypatch.setattr(import_module("grashof.synth.starts.exact_poses"), "QUICK_PAIRS", 1)
+    monkeypatch.setattr(import_module("grashof.synth.theory.stopping"), "GRACE", 60.0)  # on a busy machine
     executor = Inline()
     result = synthesize(luggage, stop=lambda: True, executor=executor)
     assert executor.jobs == 8
     assert 1 <= len(result) <= 8
     assert not result.complete
-
-
-@pytest.mark.slow
-def test_a_glance_takes_nothing_from_the_list(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
-    with_glance = {each.id for each in synthesize(luggage).candidates}
-    monkeypatch.setattr(FewPoses, "quick_pass", lambda *_: None)
-    without = {each.id for each in synthesize(luggage).candidates}
-    assert without <= with_glance
 
 
 def test_stopped_with_nothing(luggage: Problem) -> None:
@@ -263,22 +243,3 @@ def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
     assert not result.complete
     assert executor.jobs == 2
     assert synthesize(luggage, starts=3, time_limit=1000).complete
-
-
-THREADS = """
-from concurrent.futures import ThreadPoolExecutor
-from grashof import load, synthesize
-
-problem = load("luggage")
-alone = [each.id for each in synthesize(problem, starts=8).candidates]
-with ThreadPoolExecutor(2) as pool:
-    solved_there = synthesize(problem, starts=8, executor=pool)
-    both = [pool.submit(synthesize, problem, starts=8) for _ in range(2)]
-    found = [solved_there, *(each.result() for each in both)]
-assert all([each.id for each in result.candidates] == alone for result in found)
-"""
-
-
-@pytest.mark.slow
-def test_threads_do_not_crash_the_interpreter() -> None:
-    subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)

@@ -48,7 +48,7 @@ def test_the_published_quick_return_is_first_then_a_family_to_choose_from() -> N
     assert (frame["grashof_class"] == "crank-rocker").all()
 
 
-@pytest.mark.quick("30-1.0-wanted0", "100-1.0-wanted9")
+@pytest.mark.quick("30-1.0-wanted0")
 @pytest.mark.parametrize(
     ("swing", "ratio", "wanted"),
     [
@@ -74,7 +74,7 @@ def test_limits_are_kept(swing: float, ratio: float, wanted: dict[str, Any]) -> 
     assert worst(result)[0] <= np.degrees(best_transmission(np.radians(swing), ratio)) + 1e-6
 
 
-@pytest.mark.quick("None-wanted1-link_ratio_max 1.562 instead of 1.5", "2.9-wanted8-rotatability_margin")
+@pytest.mark.quick("2.9-wanted8-rotatability_margin")
 @pytest.mark.parametrize(
     ("ratio", "wanted", "words"),
     [  # a crank-rocker where there is no time ratio, else a slider-crank
@@ -89,17 +89,14 @@ def test_limits_are_kept(swing: float, ratio: float, wanted: dict[str, Any]) -> 
         (2.9, {"rotatability_margin": 1e-3}, "rotatability_margin"),
     ],
 )
-def test_an_empty_list_names_what_would_do(ratio: float | None, wanted: dict[str, Any], words: str) -> None:
+def test_an_empty_list_names_sufficient_changes(
+    ratio: float | None, wanted: dict[str, Any], words: str
+) -> None:
     result = found(**wanted) if ratio is None else slides(ratio, **wanted)
     assert len(result) == 0
     assert result.complete
     assert words in result.note
     assert len(result.nearest) > 0
-
-
-def test_near_the_greatest_ratio_the_margin_of_rotatability_is_in_the_way() -> None:
-    result = found(80, 6.0)
-    assert "rotatability_margin" in result.note
 
 
 AREA = {"keep_out": [[[2, 0], [3, 0], [3, 1], [2, 1]]], "keep_out_for": ["links"]}
@@ -152,13 +149,6 @@ def test_a_stroke_that_no_crank_rocker_does_well_is_listed_and_advised() -> None
     assert found(40, 1.1).note == ""
 
 
-@pytest.mark.study
-def test_the_list_does_not_depend_on_workers() -> None:
-    problem = load("quick-return")
-    alone, together = synthesize(problem), synthesize(problem, workers=2)
-    assert [each.id for each in alone.candidates] == [each.id for each in together.candidates]
-
-
 @pytest.mark.slow
 @pytest.mark.quick("0.2")
 @pytest.mark.parametrize("effort", [0.2, 3])
@@ -174,7 +164,7 @@ def slides(ratio: float = 1.2, travel: float = 1.0, **wanted: Any) -> Result:
     return synthesize(problem_from(document, "slide"), enough=8)
 
 
-@pytest.mark.quick("1.05-67.641-0.49088-2.53044-0.47171", "2.5-3.214-0.47051-0.54314-0.07177")
+@pytest.mark.quick("2.5-3.214-0.47051-0.54314-0.07177")
 @pytest.mark.parametrize(("ratio", "angle", "r2", "r3", "offset"), SLIDES)
 def test_the_best_slide_is_first(ratio: float, angle: float, r2: float, r3: float, offset: float) -> None:
     result = slides(ratio, 100.0)
@@ -212,7 +202,7 @@ def check_turned(place: FloatArray, travel: float, near: float, ratio: float, ne
     assert slow / (2 * np.pi - slow) == pytest.approx(ratio, rel=near_ratio)
 
 
-@pytest.mark.quick("wanted0", "wanted8")
+@pytest.mark.quick("wanted0")
 @pytest.mark.parametrize(
     "wanted",
     [
@@ -265,7 +255,9 @@ def test_no_slide_within_limits_does_better() -> None:
         (["slider-crank"], {"stroke": 9, "time_ratio": 3.0}, "it must be less than 2.999 for a slider-crank"),
     ],
 )
-def test_what_a_kind_cannot_do_is_refused(mechanism: list[str], stroke: dict[str, float], words: str) -> None:
+def test_impossible_strokes_of_a_kind_are_refused(
+    mechanism: list[str], stroke: dict[str, float], words: str
+) -> None:
     with pytest.raises(ProblemError, match=words):
         problem_from({"kind": "stroke", "mechanism": mechanism, "stroke": stroke}, "slide")
 
@@ -279,15 +271,14 @@ def test_a_slide_almost_three_times_as_slow_is_listed_with_how_badly_it_transmit
 
 
 def test_as_long_both_ways_the_longest_rod_is_first_and_none_has_an_offset() -> None:
-    for travel in (1.0, 50.0):
-        result = slides(1.0, travel)
-        best = result.best.linkage
-        lengths = [float(getattr(best, name)) for name in ("r2", "r3", "offset")]
-        assert lengths == pytest.approx([travel / 2, 10 * travel, 0.0], abs=1e-9)  # 20 times the crank
-        assert worst(result)[0] == worst(result).max()
+    result = slides(1.0, 50.0)
+    best = result.best.linkage
+    lengths = [float(getattr(best, name)) for name in ("r2", "r3", "offset")]
+    assert lengths == pytest.approx([25.0, 500.0, 0.0], abs=1e-9)  # 20 times the crank
+    assert worst(result)[0] == worst(result).max()
 
 
-@pytest.mark.quick("box0-cw", "box1-cw")
+@pytest.mark.quick("box1-cw")
 @pytest.mark.parametrize("sense", ["ccw", "cw"])
 @pytest.mark.parametrize("box", [{"x": [0, 1], "y": [0, 0]}, {"x": [0, 0.75], "y": [0, 0.75]}])
 def test_the_best_slide_lies_in_a_box_that_just_holds_its_stroke(box: dict[str, Any], sense: str) -> None:
@@ -302,6 +293,7 @@ def test_a_box_that_cannot_hold_the_stroke_is_refused() -> None:
         slides(1.2, b={"x": [0, 0.5], "y": [0, 0.5]})
 
 
+@pytest.mark.quick("20.0")
 @pytest.mark.parametrize("swing", [20.0, 80.0, 150.0])
 def test_crank_shapers_by_their_swing(swing: float) -> None:
     ratio = (180 + swing) / (180 - swing)

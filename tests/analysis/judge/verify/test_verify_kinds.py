@@ -1,4 +1,4 @@
-"""Verdicts on linkages of every kind: planted tasks are met, and what is wrong is found."""
+"""Verdicts on linkages of every kind: planted tasks are met, and errors are found."""
 
 from __future__ import annotations
 
@@ -18,10 +18,9 @@ from grashof.analysis import (
     verify,
 )
 from grashof.analysis.judge.design import Design
-from grashof.analysis.judge.made_moves import made_moves
 from grashof.analysis.judge.measures import PARTS, Values
 from grashof.analysis.judge.planted import RANDOM, planted_motion, planted_path
-from grashof.analysis.judge.tolerance import made_linkages, robustness
+from grashof.analysis.judge.tolerance import made_linkages, made_moves, robustness
 from grashof.problems import (
     FourBar,
     InvertedSliderCrank,
@@ -41,12 +40,11 @@ ANY = Requirements(
 SWINGING = [GrashofClass.NON_GRASHOF, GrashofClass.SLIDER_ROCKER, GrashofClass.INVERTED_SLIDER_ROCKER]
 
 
-@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("timed", [False, True], ids=["free", "timed"])
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_planted_tasks_are_met(mechanism, timed, seed) -> None:
+def test_planted_tasks_are_met(mechanism, timed) -> None:
     for plant, targets in ((planted_motion, 4), (planted_path, 8)):
-        task, linkage = plant(np.random.default_rng(seed), targets, timed=timed, mechanism=mechanism)
+        task, linkage = plant(np.random.default_rng(0), targets, timed=timed, mechanism=mechanism)
         verdict = verify(linkage, task, ANY)
         assert verdict.ok, verdict.defects
         assert verdict.error_max < 1e-11 * task.size
@@ -54,7 +52,7 @@ def test_planted_tasks_are_met(mechanism, timed, seed) -> None:
         assert (verdict.assembly == linkage.assembly).all()
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_a_target_moved_away_is_missed_by_its_distance_at_most(mechanism, seed) -> None:
     task, linkage = planted_path(np.random.default_rng(seed), 6, mechanism=mechanism)
@@ -71,7 +69,7 @@ def test_a_target_moved_away_is_missed_by_its_distance_at_most(mechanism, seed) 
 
 @pytest.mark.parametrize("kind", SWINGING)
 def test_drivers_that_swing_do_planted_tasks_in_either_sense(linkages, kind) -> None:
-    @settings(max_examples=12)
+    @settings(max_examples=5)
     @given(linkages(kind), st.booleans(), st.booleans())
     def check(linkage, back, poses) -> None:
         low, high = driver_ranges(linkage)[0]
@@ -95,7 +93,7 @@ def test_drivers_that_swing_do_planted_tasks_in_either_sense(linkages, kind) -> 
 
 @pytest.mark.parametrize("kind", SWINGING)
 def test_both_assemblies_are_one_circuit_and_two_branches(linkages, kind) -> None:
-    @settings(max_examples=8)
+    @settings(max_examples=4)
     @given(linkages(kind))
     def check(linkage) -> None:
         low, high = driver_ranges(linkage)[0]
@@ -121,10 +119,9 @@ def test_the_two_assemblies_of_a_full_crank_are_two_circuits(mechanism) -> None:
     assert verdict.error_max < 1e-9 * task.size
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_every_quantity_has_a_value_or_is_not_of_the_kind(mechanism, seed) -> None:
-    task, linkage = planted_path(np.random.default_rng(seed), 6, mechanism=mechanism)
+def test_every_quantity_has_a_value_or_is_not_of_the_kind(mechanism) -> None:
+    task, linkage = planted_path(np.random.default_rng(0), 6, mechanism=mechanism)
     problem = Problem(
         task=task, requirements=ANY, mechanism=mechanism, manufacturing=Manufacturing(1e-3 * task.size)
     )
@@ -147,7 +144,7 @@ _MAY_LACK = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_stroke_is_the_way_of_the_slider(seed) -> None:
     rng = np.random.default_rng(seed)
     task, linkage = planted_path(rng, 5, mechanism="slider-crank")
@@ -161,7 +158,7 @@ def test_the_stroke_is_the_way_of_the_slider(seed) -> None:
         assert values["stroke"] == pytest.approx(np.ptp(travel), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("mechanism", RANDOM)
 def test_swing_and_size_are_those_of_dense_positions(mechanism, seed) -> None:
     task, linkage = planted_path(np.random.default_rng(seed), 5, mechanism=mechanism)
@@ -176,10 +173,9 @@ def test_swing_and_size_are_those_of_dense_positions(mechanism, seed) -> None:
         assert values["output_swing"] == pytest.approx(np.ptp(theta4), rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) -> None:
-    task, linkage = planted_path(np.random.default_rng(seed), 5, mechanism=mechanism)
+def test_small_deviations_move_targets_as_exact_positions_do(mechanism) -> None:
+    task, linkage = planted_path(np.random.default_rng(0), 5, mechanism=mechanism)
     verdict = verify(linkage, task, ANY)
     step = 1e-6 * task.size
     made = robustness(linkage, task, verdict, Manufacturing(step))
@@ -198,9 +194,9 @@ def test_small_deviations_move_targets_as_exact_positions_do(mechanism, seed) ->
     assert np.allclose(moves.theta4, turned.T, rtol=1e-3, atol=1e-8)
 
 
-@pytest.mark.quick("slider-crank", "inverted-slider-crank")
+@pytest.mark.quick("inverted-slider-crank")
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_what_reaches_into_an_area_is_named(mechanism) -> None:
+def test_parts_that_reach_into_an_area_are_named(mechanism) -> None:
     task, linkage = planted_path(np.random.default_rng(2), 5, mechanism=mechanism)
     verdict = verify(linkage, task, ANY)
     theta2 = verdict.theta2.mean()
@@ -241,7 +237,7 @@ def test_a_verdict_does_not_depend_on_place_size_and_direction(mechanism) -> Non
 
 
 @pytest.mark.parametrize("mechanism", RANDOM)
-def test_a_closed_path_is_gone_round(mechanism) -> None:
+def test_a_closed_path_is_followed_all_around(mechanism) -> None:
     linkage = RANDOM[mechanism](np.random.default_rng(1))
     theta2 = np.linspace(0, 2 * np.pi, 13)[:-1]
     task = PathTask(solve_position(linkage, theta2).p, closed=True)
@@ -255,7 +251,7 @@ def test_a_closed_path_is_gone_round(mechanism) -> None:
     assert 0 < values["hausdorff"] <= values["frechet"] * (1 + 1e-9)
 
 
-def test_a_design_has_what_its_kind_has() -> None:
+def test_a_design_has_the_dimensions_of_its_kind() -> None:
     angles, signs = np.array([0.3, 0.5]), np.array([1, 1])
     slider = Design.of(SliderCrank(o2=(0, 0), r2=1, r3=3, offset=0.5), angles, signs)
     assert (slider.o4, slider.r1, slider.r4) == (None, None, None)

@@ -1,4 +1,4 @@
-"""The judge on paths: what it asks of exact, approximate, closed and timed ones."""
+"""The judge on paths: requirements of exact, approximate, closed and timed ones."""
 
 from dataclasses import replace
 
@@ -76,7 +76,7 @@ def test_the_motion_used_is_from_first_to_last_point() -> None:
     assert verdict.size == pytest.approx(diagonal(reach_box(CRANK_ROCKER, 0.5, 2.5)))
 
 
-def test_a_closed_path_uses_the_whole_turn() -> None:
+def test_a_closed_path_uses_the_full_turn() -> None:
     points = solve_position(CRANK_ROCKER, [0.5, 1, 2, 2.5]).p
     verdict = verify(CRANK_ROCKER, PathTask(points, closed=True), Requirements())
     assert verdict.transmission_min_task == pytest.approx(worst_transmission_cycle(CRANK_ROCKER))
@@ -104,8 +104,8 @@ def test_a_closed_task_needs_a_driver_that_turns(poses: bool) -> None:
         task = MotionTask(state.p, state.theta3, closed=closed) if poses else path
         verdict = verify(ROCKER, task, Requirements(rotatability="any"))  # type: ignore[arg-type]
         assert [defect.requirement for defect in verdict.defects] == ["rotatability"] * closed
-        whole = f"a closed {task.kind} takes a whole turn"
-        assert all(whole in str(defect) for defect in verdict.defects)
+        reason = f"a closed {task.kind} takes a full turn"
+        assert all(reason in str(defect) for defect in verdict.defects)
 
 
 def test_a_driver_that_does_not_cover_the_timing_is_refused_though_nothing_is_exact() -> None:

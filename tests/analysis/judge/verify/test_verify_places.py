@@ -121,16 +121,16 @@ def test_a_fixed_pivot_is_a_box_without_room() -> None:
         ("theta2_start_deg", "driver angle at the first target", DEGREES[0]),
     ],
 )
-def test_angles_that_are_asked_for(key: str, what: str, angle: float) -> None:
-    for whole in (-360, 0, 360):
-        assert judged(**{key: angle + whole}).ok
+def test_required_angles(key: str, what: str, angle: float) -> None:
+    for turns in (-360, 0, 360):
+        assert judged(**{key: angle + turns}).ok
     for wrong in (angle + 1e-3, angle - 1e-3, angle + 180):
         defect = only(judged(**{key: wrong}), key, f"the {what} in deg", angle)
         assert defect.allowed == f"{wrong:g}"
         assert defect.miss == pytest.approx(np.radians(abs(wrong - angle)), rel=1e-6)
 
 
-def test_every_defect_is_told_at_once() -> None:
+def test_all_defects_are_reported_at_once() -> None:
     verdict = judged(
         r2=(2, 3),
         coupler_arms=(0, 1),

@@ -1,8 +1,8 @@
-"""A long task of least squares stood in for by a short one, where solves only look for other virtues.
+"""A short surrogate for a long least-squares task, in solves that trade error for other qualities.
 
-Of all targets a few are kept, and moved to where the design of the least error e meets them. At that
-design the errors are orthogonal to whatever the linkage can do, so that another one misses all targets by
-the square e^2 + d^2, where d is what it misses the moved ones by. What is found is judged on all targets.
+It keeps a few targets, moved to where the design of the least error e meets them. At that design the errors
+are orthogonal to all changes of the linkage, so that a design that misses the moved targets by d misses all
+targets by the square e^2 + d^2. Its designs are judged on all targets.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again, judged_in_time
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
-LONG, FEW = 40, 24  # more targets than the first are stood in for by so many
-KEPT = 0.98  # of the error that may be added: the judge looks at all targets
+LONG, FEW = 40, 24  # targets above which a task gets a surrogate, and those of the surrogate
+KEPT = 0.98  # of the error that may be added: the judge counts all targets
 
 
 @dataclass(frozen=True, slots=True)
-class StandIn:
-    """The problem whose targets stand in for those of another one; that problem itself where it is short."""
+class Surrogate:
+    """The surrogate of a problem; that problem itself where it is short."""
 
     scaled: ScaledProblem
-    least: float = 0.0  # the least error of all targets, sizes; zero where the problem stands for itself
+    least: float = 0.0  # the least error of all targets, sizes; zero where the problem has no surrogate
 
     @classmethod
-    def of(cls, scaled: ScaledProblem, best: Candidate, least: float) -> StandIn:
-        """What stands in for a problem; the user's own functions may look at any target."""
+    def of(cls, scaled: ScaledProblem, best: Candidate, least: float) -> Surrogate:
+        """The surrogate of a problem, unless user functions may depend on any target."""
         count = len(scaled.problem.task)
         if count <= LONG or scaled.constraints or scaled.own_objective is not None:
             return cls(scaled)
@@ -45,23 +45,23 @@ class StandIn:
 
     @property
     def is_itself(self) -> bool:
-        """Whether the problem stands for itself."""
+        """Whether the problem has no surrogate."""
         return self.least == 0
 
     def most_error(self, most: float, size: float) -> float:
-        """Error of the stand-in, its sizes, that makes `most` of all targets, whose task has this size."""
+        """Error of the surrogate, its sizes, that makes `most` of all targets, whose task has this size."""
         if self.is_itself:
             return most
         added = KEPT * float(np.sqrt(max(most**2 - self.least**2, 0.0)))
         return added * size / self.scaled.problem.task.size
 
     def taken(self, candidate: Candidate) -> Candidate:
-        """A design of the whole problem, judged by the stand-in."""
+        """A design of the full problem, judged by the surrogate."""
         return candidate if self.is_itself else judged_again(self.scaled, candidate)
 
 
 def met_by(best: Candidate, task: Task, index: IntArray) -> Task:
-    """Some targets of a task, those that `index` has in order, where a design meets them."""
+    """The targets `index` of a task, in order, moved to where a design meets them."""
     linkage, verdict = best.linkage, best.verdict
     state = solve_position(linkage, verdict.theta2[index], verdict.assembly[index])
     places, turned = np.array(state.p), state.theta3 + float(linkage.body_angle)
@@ -72,6 +72,6 @@ def met_by(best: Candidate, task: Task, index: IntArray) -> Task:
 
 
 def on_all_targets(scaled: ScaledProblem, found: list[Candidate], most: float) -> list[Candidate]:
-    """Designs of a stand-in that the judge accepts on all targets, up to some error (sizes)."""
+    """Designs of a surrogate that the judge accepts on all targets, up to some error (sizes)."""
     once = {one.id: one for one in found}
     return [one for one in judged_in_time(scaled, list(once.values()), most) if one.verdict.ok]

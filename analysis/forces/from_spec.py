@@ -1,25 +1,24 @@
-"""Masses and loads as a problem or linkage file states them, for one linkage."""
+"""Masses and loads of a linkage from the specification in a problem or linkage file."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy
 
-from grashof.analysis.forces.curve_through import curve_through
 from grashof.analysis.forces.joints import Joint, joint_motion, slides_of
 from grashof.analysis.forces.loads import AppliedForce, AppliedMoment, Friction, Loads, Spring, TorsionSpring
 from grashof.analysis.forces.mass import Body, Masses, given_masses, loaded, uniform_bars
 from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.problems import DynamicsSpec, ProblemError
+from grashof.problems import DynamicsSpec, Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import refuse
 from grashof.problems.values.dynamics.load_specs import TURNING, LoadSpec, Place
-from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place
 
-# Joints by their links, which tell them apart in whatever kind of linkage.
+# Joints by their links, which distinguish them in any kind of linkage.
 _JOINTS = {joint.links: Joint(k) for row in MECHANISMS for k, joint in enumerate(row.every_joint)}
 TRAVEL_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
 
@@ -62,7 +61,7 @@ def stated_masses(linkage: Linkage, spec: DynamicsSpec, metre: float = 1.0) -> M
 
 
 def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -> Loads:
-    """What acts on the links, as a problem states it.
+    """Loads on the links, as a problem states them.
 
     Parameters
     ----------
@@ -82,7 +81,7 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
     Raises
     ------
     ProblemError
-        A load over time where there is no clock.
+        A load over time without a clock.
     """
     friction = Friction()
     if spec.friction is not None:
@@ -114,13 +113,33 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
     )
 
 
+def curve_through(
+    rows: Sequence[Sequence[float]], *, period: float | None = None
+) -> Callable[[FloatArray], FloatArray]:
+    """The monotone cubic (Fritsch & Carlson 1980) through rows (N, 1 + K) of a rising place and K values.
+
+    A function from places (...) to values (..., K), NaN outside the rows; or of a period, in the unit of the
+    places, from one end of which the rows go to the other, with equal values there. It has no overshoot of a
+    spline at the corners of a measured load.
+    """
+    table = np.array(rows, dtype=np.float64)
+    places, values = table[:, 0], table[:, 1:]
+    if period is None:
+        return scipy.interpolate.PchipInterpolator(places, values, extrapolate=False)
+    beside = min(2, len(places) - 1)  # its slopes look at the neighbours
+    places = np.concatenate([places[-1 - beside : -1] - period, places, places[1 : 1 + beside] + period])
+    values = np.concatenate([values[-1 - beside : -1], values, values[1 : 1 + beside]])
+    curve, first = scipy.interpolate.PchipInterpolator(places, values), float(table[0, 0])
+    return lambda place: np.asarray(curve(first + (place - first) % period))
+
+
 def _ends(between: tuple[Place, Place]) -> tuple[int, tuple[float, float], int, tuple[float, float]]:
     first, second = between
     return first.link, first.at, second.link, second.at
 
 
 def _each(values: tuple[float, ...]) -> FloatArray:
-    """One for each joint, or one that is meant for all pins."""
+    """One for each joint, or one for all pins."""
     return np.array(values if len(values) > 1 else values[0])
 
 
@@ -168,7 +187,5 @@ def _within(travel: FloatArray, load: LoadSpec) -> FloatArray:
     least, most = known.min(initial=high), known.max(initial=low)
     if least < low - slack or most > high + slack:
         past = least if least < low - slack else most
-        raise BeyondLoadError(
-            f"a load over travel covers {low:g} to {high:g}; the slide comes to {past:.6g}, too"
-        )
+        raise BeyondLoadError(f"a load over travel covers {low:g} to {high:g}; the slide reaches {past:.6g}")
     return np.clip(travel, low, high)

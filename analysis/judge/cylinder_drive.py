@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 
 import numpy as np
 
-from grashof.analysis.cylinder.force import cylinder_force
-from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
+from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures, cylinder_force
 from grashof.analysis.cylinder.travel import Travel, travel
-from grashof.analysis.forces.stated import BeyondLoadError, stated_loads, stated_masses
-from grashof.analysis.judge.sampled_motion import as_used, driver_law, motion_ends, sampled
+from grashof.analysis.forces.from_spec import BeyondLoadError, stated_loads, stated_masses
+from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.numerics.peaks import peaks
@@ -25,7 +24,7 @@ SLACK = 1e-9  # share of a limit, or of the size of the task
 _KEY = "driver.cylinder"
 
 
-def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
+def cylinder_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | None:
     """The task motion as a cylinder drives it, on links 3 and 4 through dead positions; else None."""
     if verdict.branch_ok:
         return travel(linkage, verdict.theta2, verdict.assembly, motion_ends(task, verdict))
@@ -37,7 +36,7 @@ def driven_travel(linkage: Linkage, task: Task, verdict: Verdict) -> Travel | No
 def cylinder_defects(
     spec: CylinderSpec, cylinder: Cylinder | None, moved: Travel | None, size: float
 ) -> Iterator[Defect]:
-    """What a cylinder misses of its limits; `cylinder` is None where none was found.
+    """Limits that a cylinder misses; `cylinder` is None where none was found.
 
     `moved` is None where no motion joins the targets, which another defect reports; `size` is the length of
     the task.
@@ -54,7 +53,7 @@ def cylinder_defects(
         return
     found = cylinder_figures(cylinder, moved)
     if not found.monotone:
-        what = "the number of ways in which the length goes, or 2 where it stands,"
+        what = "the number of senses in which the length changes, or 2 where it is stationary,"
         yield Defect(_KEY, what, 2, "1 (longer all the way, or shorter)", 1.0)
     yield from _beyond(
         f"{_KEY}.closed", "the closed length", found.closed, spec.closed or (0.0, np.inf), size
@@ -72,32 +71,31 @@ def _beyond(key: str, what: str, value: float, allowed: Limits, scale: float) ->
 
 
 def figures_of(linkage: Linkage, task: Task, verdict: Verdict) -> CylinderFigures | None:
-    """What the cylinder of a verdict does in the task motion; None where there is none, or no motion."""
+    """Figures of the cylinder of a verdict in the task motion; None without a cylinder or a motion."""
     if verdict.cylinder is None:
         return None
-    moved = driven_travel(linkage, task, verdict)
+    moved = cylinder_travel(linkage, task, verdict)
     return None if moved is None else cylinder_figures(verdict.cylinder, moved)
 
 
 def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) -> float:
-    """Greatest magnitude of the cylinder's force over the task motion, N; infinite where the length stands.
+    """Greatest magnitude of the cylinder's force over the task motion, N; infinite at a stationary length.
 
     NaN without dynamics, through a dead position of link 2 (whose speed the problem states), or beyond the
     rows of a load.
     """
-    if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
+    force, ends = _force_in(problem, verdict), motion_ends(problem.task, verdict)
+    if force is None:
         return np.nan
-    ends = motion_ends(problem.task, verdict)
     theta2, law = sampled(linkage, *ends), driver_law(problem, *ends)
 
-    def force(place: FloatArray) -> FloatArray:
-        state = solve_kinematics(as_used(linkage, verdict), *law.at_place(place))
-        return np.abs(_force(problem, verdict, state))[None]
+    def size(place: FloatArray) -> FloatArray:
+        return np.abs(force(solve_kinematics(as_used(linkage, verdict), *law.at_place(place))))[None]
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         with suppress(BeyondLoadError):  # a defect by itself
-            return float(peaks(force, law.stretches(theta2))[0][0])
+            return float(peaks(size, law.stretches(theta2))[0][0])
     return np.nan
 
 
@@ -120,7 +118,7 @@ def cylinder_forces(
     -------
     ndarray, shape (N,), N
         Positive where it pushes; NaN without dynamics or cylinder, and where the motion is torn or a dead
-        position asks for more than any force.
+        position requires an infinite force.
 
     Notes
     -----
@@ -145,22 +143,26 @@ def cylinder_forces(
     [1759.1, 1132.8]
     """
     theta2 = verdict.theta2 if theta2 is None else theta2
-    if problem.dynamics is None or verdict.cylinder is None or not verdict.branch_ok:
-        return np.full(len(theta2), np.nan)
-    law = driver_law(problem, *motion_ends(problem.task, verdict))
+    force, law = _force_in(problem, verdict), driver_law(problem, *motion_ends(problem.task, verdict))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeadPositionWarning)
         with suppress(BeyondLoadError):
-            return _force(problem, verdict, law.state(as_used(linkage, verdict), theta2))
+            if force is not None:
+                return force(law.state(as_used(linkage, verdict), theta2))
     return np.full(len(theta2), np.nan)
 
 
-def _force(problem: Problem, verdict: Verdict, state: Kinematics) -> FloatArray:
+def _force_in(problem: Problem, verdict: Verdict) -> Callable[[Kinematics], FloatArray] | None:
+    """The cylinder's force, N, in states of the task motion; None without dynamics, cylinder or motion."""
     spec, cylinder = problem.dynamics, verdict.cylinder
-    if spec is None or cylinder is None:
-        return np.full(state.shape, np.nan)
+    if spec is None or cylinder is None or not verdict.branch_ok:
+        return None
     metre = metres(problem.length_unit)
     law = driver_law(problem, *motion_ends(problem.task, verdict))
-    masses = stated_masses(state.linkage, spec, metre)
     loads = stated_loads(spec, metre, lambda moved: law.time_at(moved.theta2))
-    return metre * cylinder_force(state, cylinder, masses, loads)
+
+    def force(state: Kinematics) -> FloatArray:
+        masses = stated_masses(state.linkage, spec, metre)
+        return metre * cylinder_force(state, cylinder, masses, loads)
+
+    return force
