@@ -204,7 +204,7 @@ def test_parts_of_a_folder_may_be_begun_at_the_same_moment(tmp_path: Path) -> No
             (own / "search.json").touch()
 
     with ThreadPoolExecutor(count) as threads:
-        for turn in range(40):
+        for turn in range(15):
             folder = tmp_path / str(turn) / "out"
             list(threads.map(part, [folder] * count, range(count)))  # raises what one of them raises
             assert len(list(folder.glob("shards/*/search.json"))) == count

@@ -49,6 +49,7 @@ def stroke(tmp_path: Path) -> Callable[[float, float], str]:
     return stated
 
 
+@pytest.mark.slow
 def test_check_states_a_stroke(grashof: Grashof) -> None:
     done = grashof("check", "quick-return")
     assert done.exit_code == 0, done.output
