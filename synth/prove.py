@@ -16,8 +16,8 @@ from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import closing_dyad
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
-from grashof.synth.proof.curve.asked import POSES, refusal
-from grashof.synth.proof.curve.trail import Trail
+from grashof.synth.proof.curve.required import POSES, refusal
+from grashof.synth.proof.curve.table import Trail
 from grashof.synth.proof.functions.few_pairs import FOUR, THREE
 from grashof.synth.proof.poses.certificate import certificate_of, without_check, writable, write
 from grashof.synth.proof.poses.five_poses import FIVE

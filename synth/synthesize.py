@@ -14,8 +14,7 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import readable
 from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusable
 from grashof.synth.proof.claims.bounds import Proving
-from grashof.synth.proof.poses.atlas import atlas_of
-from grashof.synth.proof.poses.first_round import round_of_regions
+from grashof.synth.proof.poses.atlas import atlas_of, round_of_regions
 from grashof.synth.proof.provers import bounds_after, bounds_before, certified_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.conclusion import conclude, needless

@@ -18,7 +18,7 @@ from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusab
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.starts.design_finder import DesignFinder
 
 _TRADED = 1.001  # times the least error: designs with more traded it for something else
 
@@ -114,7 +114,7 @@ def _moved(scaled: ScaledProblem, design: Candidate, number: int, most_error: fl
     Of a function or a stroke: the design of the new task that is nearest to it.
     """
     finder = finder_for(scaled)
-    if isinstance(finder, WholeDesigns):
+    if isinstance(finder, DesignFinder):
         tried = [attempt(scaled, each, number).candidate for each in finder.follow(design)]
         nearest = next((one for one in tried if one is not None), judged_again(scaled, design))
         return replace(nearest, best_at=design.best_at, family=design.family)

@@ -13,13 +13,13 @@ from grashof.analysis.judge.planted import uneven_driver_angles
 from grashof.problems import InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.theory.eight_point_linkages import (
-    STEPS,
     Through,
     inverted_slider_cranks_through,
     slider_cranks_through,
 )
-from grashof.synth.theory.eight_points import FAMILIES
 from grashof.synth.theory.homotopy import follow
+from grashof.synth.theory.point_families import FAMILIES
+from grashof.synth.theory.solutions import STEPS
 
 THROUGH: dict[str, Callable[..., Through[Any]]] = {
     "slider-crank": slider_cranks_through,

@@ -16,7 +16,7 @@ from grashof.figures import plot_section
 from grashof.figures.files import STYLE
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
-from grashof.sections import SECTIONS
+from grashof.sections import sections_of
 from grashof.study.asked import Asked
 from grashof.study.section import Plot
 from grashof.study.study import LinkageStudy
@@ -48,7 +48,7 @@ class Analysis:
         """The analysis of a linkage, asked as `grashof analyse` is."""
         study = LinkageStudy.of(spec, Asked(**asked))
         with dead_positions_unwarned():
-            sections = [section for each in SECTIONS if (section := each(study)) is not None]
+            sections = sections_of(study)
         plots = {plot.key: plot for section in sections for plot in section.plots}
         tables = {key: table for section in sections for key, table in section.tables.items()}
         return cls(study, plots, tables)

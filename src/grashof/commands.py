@@ -40,7 +40,7 @@ from grashof.problems import (
 def check(problem: ProblemName) -> None:
     """Read PROBLEM and print what will be required of a design, without solving."""
     from grashof.output.terminal import folded
-    from grashof.synth.proof.curve.asked import enclosed
+    from grashof.synth.proof.curve.required import enclosed
     from grashof.synth.results.explain import advice
     from grashof.synth.search.finder import refuse_unsearchable
     from grashof.wording.problem import summary
@@ -82,7 +82,7 @@ def judge(linkage: LinkageName, problem: ProblemName) -> ExitCode:
     By the judge of every search, from the linkage alone. Exit code 0: it does; 1: it does not; 2: bad input;
     3: environment error.
     """
-    from grashof.wording.verdict import judged_for, verdict_lines
+    from grashof.wording.problem import judged_for, verdict_lines
 
     spec = load_linkage_spec(linkage)
     judged = judged_for(load(problem), spec)

@@ -10,7 +10,7 @@ from grashof.synth.programme.nonlinear_programme import Solve
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Dyads, polish
-from grashof.synth.theory.polish import Polished, Wish, polish_path
+from grashof.synth.theory.polish import ExactTargets, Polished, polish_path
 
 NUDGE = 0.1  # sizes: a polish that moves a start farther has lost it
 CLOSE = 1e-4  # sizes: error up to which a least-squares design can be made exact
@@ -58,7 +58,7 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
         assembly = np.ones(len(theta2))
     else:
         assembly = np.where((turned.conj() * (at_a + abs(b - a) * turned - o4)).imag >= 0, 1.0, -1.0)
-    targets = Wish(
+    targets = ExactTargets(
         points=scaled.targets,
         has_point=scaled.weights > 0,
         turns=scaled.turns,

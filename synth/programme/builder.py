@@ -102,7 +102,7 @@ class Builder:
         }
 
     def programme(self, cost: ca.SX, options: dict[str, Any], *, long: bool = False) -> Programme:
-        """The programme that minimises a cost; a `long` one can be stopped, by `StopRequested`."""
+        """The programme that minimises a cost; a `long` one may raise `StopRequested`."""
         stated = self.stated(cost)
         callback = IterationCallback(stated) if long else None
         if long:

@@ -14,7 +14,7 @@ from grashof.synth.proof.poses.five_poses import Certified, certified_poses
 from grashof.synth.proof.poses.four_poses import bounds_of_four
 from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
 from grashof.synth.proof.poses.three_poses import bounds_of_three
-from grashof.synth.proof.strokes.bounds import bounds_of_stroke
+from grashof.synth.proof.strokes.cover import bounds_of_stroke
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 _PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_cranks
@@ -30,14 +30,14 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
 
 
 def bounds_before(scaled: ScaledProblem, proving: Proving) -> Bounds | None:
-    """What is proven before a search, in a second; None where nothing is, or it would take minutes."""
+    """Bounds proven before a search, in a second; None where there are none, or they would take minutes."""
     return bounds_of(scaled, replace(proving, minutes=False))
 
 
 def bounds_after(
     scaled: ScaledProblem, proving: Proving, before: Bounds | None, designs: Sequence[Candidate]
 ) -> Bounds | None:
-    """What is proven in the end of a search: where minutes are given, bounds above its best design.
+    """Bounds proven at the end of a search: where minutes are given, bounds above its best design.
 
     `before` is what was proven before it, and `designs` are what it found.
     """
@@ -51,6 +51,6 @@ def bounds_after(
 
 
 def certified_of(scaled: ScaledProblem) -> Certified | None:
-    """All dyads of five whole poses or five pairs of a function; None of other problems."""
+    """All dyads of five whole poses or five pairs of a function; None for other problems."""
     found = (each(scaled) for each in (certified_poses, certified_functions))
     return next((dyads for dyads in found if dyads is not None), None)

@@ -22,7 +22,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import search_designs
-from grashof.synth.starts.strokes.limit_positions import places_of
+from grashof.synth.starts.strokes.limit_positions import stroke_kind_of
 from grashof.synth.theory.limit_positions import best_transmission
 from grashof.synth.theory.stopping import StopRequested
 
@@ -219,10 +219,10 @@ time ratios up to 1.30 allow 40 deg, and a six-bar may do it as asked
     task = problem.task
     if not task.at_limits:
         return ""
-    places = places_of(ScaledProblem.of(problem).kind)
-    if not places.advised or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
+    stroke_kind = stroke_kind_of(ScaledProblem.of(problem).kind)
+    if not stroke_kind.advised or (best := best_transmission(task.swing, task.time_ratio)) >= GOOD:
         return ""
-    kinds, what = places.what, places.advised
+    kinds, what = stroke_kind.what, stroke_kind.advised
     usual = f"{np.degrees(GOOD):.0f} deg"
     ratio = _ratio_that_allows(task)
     smaller = (

@@ -32,8 +32,8 @@ from grashof.synth.results.relaxed_limits import (
 )
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.run import Run
+from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.selection import closest_starts
-from grashof.synth.starts.whole_designs import WholeDesigns
 
 SOLVES = 6  # starts for each requirement
 DEAD = 1e-3  # rad: a transmission angle near a dead position
@@ -92,7 +92,7 @@ def _candidates(
 ) -> list[Candidate]:
     """Designs that narrowly miss a requirement, and no others if possible."""
     finder = finder_for(loose)
-    if isinstance(finder, WholeDesigns):
+    if isinstance(finder, DesignFinder):
         return _judged(scaled, loose, finder.closest_to(scaled, key, rng), run)
     linkages = rejudged(scaled, finder.near(rng))
     starts = closest_starts(scaled, linkages, key, SOLVES)

@@ -28,7 +28,7 @@ LAST = 8  # solves at most of a search that is stopped before it has a design
 
 
 def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
-    """One chunk of at most `starts` solves, a function of its arguments; `StopRequested` if it has to end."""
+    """One chunk of at most `starts` solves, a function of its arguments; `StopRequested` if it must end."""
     return _made_by(Work(), scaled, number, enough, seed, starts)
 
 
@@ -45,7 +45,7 @@ def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: 
 
 
 def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> Iterator[Chunk]:
-    """Chunks of at most `starts` solves by number, several at a time; `StopRequested` if it has to end."""
+    """Chunks of at most `starts` solves by number, several at a time; `StopRequested` if it has to stop."""
     rest = arguments(run.search, starts)
     for place, number in enumerate(numbers):
         if not run.journal.recorded:

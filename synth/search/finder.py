@@ -13,12 +13,12 @@ from grashof.problems.values.checks import located, whole_number
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
+from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
 from grashof.synth.starts.strokes.limit_positions import LimitPositions
-from grashof.synth.starts.whole_designs import WholeDesigns
 
 # The first that suits a problem is taken.
 KINDS: tuple[Any, ...] = (
@@ -100,10 +100,10 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
         number += 1 + found.skip
 
 
-def finder_for(scaled: ScaledProblem) -> StartFinder | WholeDesigns:
+def finder_for(scaled: ScaledProblem) -> StartFinder | DesignFinder:
     """The first kind of search that suits a problem."""
     suitable = (kind(scaled) for kind in KINDS if kind.suits(scaled))
-    made: StartFinder | WholeDesigns = next(suitable, LeastSquares(scaled))
+    made: StartFinder | DesignFinder = next(suitable, LeastSquares(scaled))
     return made
 
 

@@ -21,7 +21,7 @@ from grashof.synth.search.journal import Journal
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.recorded_designs import are_attempts, is_round
 from grashof.synth.search.workers import CRASHED, Work, quick_pass, screen
-from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.starts.design_finder import DesignFinder
 
 _LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take, begun ahead
@@ -106,7 +106,7 @@ class Run:
     def onward(self, ledger: Ledger) -> Sequence[Proposal]:
         """Linkages that verified designs lead to, of a finder that proposes whole designs."""
         scaled, finder = ledger.scaled, finder_for(ledger.scaled)
-        if not isinstance(finder, WholeDesigns) or not ledger.best:
+        if not isinstance(finder, DesignFinder) or not ledger.best:
             return ()
         of = tuple(each.id for each in ledger.best)
         found = self.step("onward", of, scaled, lambda: Round(finder.onward(ledger.best), {}), is_round)

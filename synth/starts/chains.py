@@ -1,10 +1,9 @@
 """Linkages of any mechanism that come near points and angles: many at once, by the rows of `MECHANISMS`.
 
 With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a linkage is a shape and its driver angles at the
-targets. Where it stands, its size and its coupler point are linear in three complex numbers, P = z0 + z1 Q +
-z2 e with the origin Q and direction e of the link that carries P, and are solved for exactly (variable
-projection, see `loop_search`). The first loop of a shape that is drawn closes by construction; those of which
-another one does not are left out.
+targets. P = z0 + z1 Q + z2 e, with the origin Q and direction e of the link that carries it, is linear in
+z0, z1, z2, which are solved for exactly (variable projection, see `loop_search`). The first loop of a drawn
+shape closes by construction; those of which another one does not are left out.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ FEW, ROUND = 3, 24  # positions of the driver at which a drawn shape has to clos
 LONGER = 0.4  # share of drivers longer than the ground link
 SPREAD = 1.0  # of logarithms of lengths, over r1
 NO_ERROR = 1e-20  # sizes squared
-STAGES = ((400, 8), (100, 15), (30, 150))  # how many of the best go on, for how many steps
+STAGES = ((400, 8), (100, 15), (30, 150))  # numbers of the best that continue, and their steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +63,7 @@ class Shapes:
         return sum(1 + row.paired for row in self.rows)
 
     def given(self, columns: Sequence[Any]) -> dict[str, Any]:
-        """What `chained` takes, from a number for each column; lengths are given by their logarithms."""
+        """Arguments of `chained` from a number for each column, lengths by their logarithms."""
         rest = list(columns)
         made: dict[str, Any] = {"o4": Vector(1.0, 0.0), "r3": 1.0, "slide_angle": 0.0}
         for row in self.rows:
@@ -100,7 +99,7 @@ def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Gener
     number = len(drawn)
     first = rng.uniform(-np.pi, np.pi, (number, 1))
     angles = [first]
-    if not target.timed:  # the last gap is what is left of the turn
+    if not target.timed:  # the last gap is the rest of the turn
         gaps = drawn_gaps(target, number, rng)
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         angles += [gaps, np.log(rng.uniform(0.03, 4, (number, 1)))]
@@ -171,7 +170,7 @@ def _by_all(vector: Vector, by_angle: FloatArray) -> tuple[ComplexArray, Complex
 def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared.
 
-    What is missed are positions, angles of the body and outputs, those that the targets have.
+    The errors are those of positions, angles of the body and outputs, as far as the targets have them.
     """
 
     def model(some: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -214,7 +213,7 @@ def _turns(target: SearchTargets, at: Carried) -> tuple[FloatArray, FloatArray] 
 
 
 def _outputs(target: SearchTargets, at: Carried) -> tuple[FloatArray, FloatArray] | None:
-    """Outputs missed with the best zero (n, N), with derivatives; None where none is asked for."""
+    """Outputs missed with the best zero (n, N), with derivatives; None where the targets have none."""
     if target.outputs is None:
         return None
     sense = at.direction[:, None]

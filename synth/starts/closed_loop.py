@@ -1,7 +1,6 @@
 """Linkages of a search as unknowns: the closed loop at every target, and its derivatives.
 
-The driver angles and proportions are such that a linkage is feasible by construction; the loop is
-taken in the frame that `grashof.synth.quantities.kinds` gives to its kind.
+The unknowns make linkages feasible by construction; the loop is in the frame of its kind (`Kind`).
 """
 
 from __future__ import annotations
@@ -15,6 +14,7 @@ from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.quantities.formulas import Part, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
@@ -22,7 +22,7 @@ SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
 @dataclass(frozen=True, slots=True)
 class SearchTargets:
-    """What the coupler has to pass: N targets, lengths in sizes, angles in rad."""
+    """N targets of the coupler, lengths in sizes, angles in rad."""
 
     points: ComplexArray  # (N,), without a last one that repeats the first
     weights: FloatArray  # (N,), of the squared distances; zero where the position is free
@@ -31,7 +31,7 @@ class SearchTargets:
     timing: FloatArray  # (N,), driver rotation from the first point; all zero where it is free
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
     kind: Kind
-    closed: bool = False  # the task motion is a whole turn
+    closed: bool = False  # the task motion is a full turn
     # (N,), rad: how far the last link has turned from the first target on, in the driver's sense
     outputs: FloatArray | None = None
     # field, part and range of all that is limited and has a formula
@@ -41,6 +41,25 @@ class SearchTargets:
         limited = parts_of(self.wanted.limited, self.kind.formulas)
         rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
         object.__setattr__(self, "limited", rows)
+
+    @classmethod
+    def of(cls, scaled: ScaledProblem) -> SearchTargets:
+        """The targets of a problem; a last point that repeats the first counts as its second half."""
+        last = -1 if scaled.problem.task.returns else None
+        weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
+        if last:
+            weights[0] += scaled.weights[-1]
+            turn_weights[0] += scaled.turn_weights[-1]
+        return cls(
+            points=scaled.targets[:last],
+            weights=weights,
+            turns=scaled.turns[:last],
+            turn_weights=turn_weights,
+            timing=scaled.timing[:last],
+            wanted=scaled.wanted,
+            closed=scaled.closed,
+            kind=scaled.kind,
+        )
 
     @property
     def timed(self) -> bool:
@@ -180,7 +199,7 @@ def by_angles(target: SearchTargets, batch: Batch, before: int = PROPORTIONS) ->
 
 
 def shares_of_turn(log_gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What gaps between N driver angles, and the rest, have of a turn; and what is gone at each; (n, N)."""
+    """Shares of a turn: gaps between N driver angles and the rest, and the way to each angle; (n, N)."""
     share = np.exp(log_gaps - log_gaps.max(axis=1, keepdims=True))
     share /= share.sum(axis=1, keepdims=True)
     return share, np.concatenate([np.zeros((len(share), 1)), np.cumsum(share[:, :-1], axis=1)], axis=1)

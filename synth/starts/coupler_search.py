@@ -15,12 +15,11 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
-from grashof.synth.starts.loop_search import draw, fitting, improve, place
-from grashof.synth.starts.search_targets import judged, search_targets
+from grashof.synth.starts.loop_search import draw, fitting, improve, judged, place
 from grashof.synth.starts.selection import feasible_starts, mended_starts, relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
 
-# Draws, and how many of the best go on for how many steps: few solutions, or a whole family.
+# Draws, and numbers of the best that continue and their steps: few solutions, or a family.
 ISOLATED = (4000, ((300, 8), (80, 12), (20, 50)))
 FAMILY = (6000, ((1500, 10), (800, 10)))
 TIMED = (600, ((60, 6), (20, 60)))
@@ -48,7 +47,7 @@ class CouplerSearch:
 
     def refuse(self) -> None:
         """Raise `ProblemError` for too few distinct targets, or timed angles without places."""
-        task, count = self.scaled.problem.task, len(search_targets(self.scaled).points)
+        task, count = self.scaled.problem.task, len(SearchTargets.of(self.scaled).points)
         if task.is_timed and (placed := int(task.has_position.sum())) < 2:
             raise ProblemError(
                 f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
@@ -84,12 +83,12 @@ class CouplerSearch:
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Empty: there is no theory of these targets."""
+        """Empty: these targets have no theory."""
         return ""
 
 
 def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> Round:
-    """The starts of one round of the search for what is to be met."""
+    """The starts of one round of the search for linkages that meet the targets."""
     linkages = search(scaled, enough, rng)
     feasible = linkages[linkages.feasible]
     starts = feasible_starts(scaled, feasible, enough)
@@ -104,7 +103,7 @@ def search(
     scaled: ScaledProblem, enough: int, rng: np.random.Generator, *, to_boxes: bool = True
 ) -> Screened:
     """One round of the search, drawn towards the pivots' boxes or not, its linkages judged."""
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     if not to_boxes:
         target = replace(target, wanted=replace(target.wanted, o2=None, o4=None))
     lacking = PLACED - int(np.count_nonzero(target.weights))
@@ -122,7 +121,7 @@ def _searched(
     rng: np.random.Generator,
     parts: int = 1,
 ) -> Screened:
-    """Linkages that pass all of `anchored`, judged at the targets; so many parts make a round."""
+    """Linkages that pass all of `anchored`, judged at the targets; `parts` of them make a round."""
     effort = FAMILY if has_family(scaled) else TIMED if target.timed else ISOLATED
     draws, (*stages, (keep, steps)) = effort
     some, index = thinned(anchored, FEW_POINTS)
@@ -168,7 +167,7 @@ def has_family(scaled: ScaledProblem) -> bool:
 
 def leaves_freedom(scaled: ScaledProblem) -> bool:
     """Whether designs that meet all targets have more unknowns than equations."""
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     unknowns = target.unknowns + 6 + target.has_angles - (target.wanted.order and not target.timed)
     equations = 2 * np.count_nonzero(target.weights) + np.count_nonzero(target.turn_weights)
     return bool(unknowns > equations + _equalities(scaled.wanted))

@@ -1,7 +1,4 @@
-"""Screening: all pairs of dyads judged at once, either one as the driver, under all requirements.
-
-Lengths are in sizes of the task, points are complex, poses are columns.
-"""
+"""All pairs of dyads judged at once, either one driving; in sizes, points complex, poses as columns."""
 
 from __future__ import annotations
 
@@ -27,7 +24,7 @@ from grashof.synth.theory.burmester import Displacements, Dyads
 
 @dataclass(frozen=True, slots=True)
 class _Side:
-    """What is known of dyads by themselves, as drivers or as driven ones."""
+    """Dyads by themselves, as drivers or as driven ones: places, violations, driver angles."""
 
     dyads: Dyads
     places: ComplexArray
@@ -47,7 +44,7 @@ def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
     """All feasible pairs of the given dyads; `body` is the guided point at the first pose."""
     driver, driven = _sides(motion, body, dyads, wanted)
     driver, driven = driver[met(driver.violations)], driven[met(driven.violations)]
-    # beyond so many pairs to judge they are thinned
+    # where there are more pairs, dyads are thinned
     stride = max(1, int(np.ceil(np.sqrt(len(driver) * len(driven) / pairs))))
     driver, driven = driver[::stride], driven[::stride]
     if not len(driver) or not len(driven):

@@ -1,7 +1,7 @@
-"""Linkages of a long task fitted to every target: each target touches its own driver angle only.
+"""Linkages of a long task fitted to every target: each target concerns its own driver angle only.
 
-So the normal equations are a small block that all targets share, bordered by one number a target, which
-is eliminated target by target (Schur complement). A step takes time and memory as the targets are many.
+The normal equations are a small block that all targets share, bordered by one number a target, which is
+eliminated (Schur complement): a step takes time and memory in proportion to the targets.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
 STEPS = 30
 DONE = 1e-8  # share of its error: a linkage that gains less is done
-PASSES = 1
 LONGEST = 0.3  # rad: no driver angle moves farther in a step
 LEAST_GAP = 1e-9  # share of a turn, between driver angles that are the same
 HEAVY = 1e6  # damping under which no step is worth trying
@@ -80,7 +79,7 @@ def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArr
 
 
 def _with_angles(target: SearchTargets, batch: Batch, places: int) -> Batch:
-    """Linkages with driver angles in place of the gaps between them, before so many columns of places."""
+    """Linkages with driver angles in place of the gaps between them, before `places` columns of places."""
     inner, last = np.split(batch.unknowns, [batch.unknowns.shape[1] - places], axis=1)
     angles = Loop.of(target, replace(batch, unknowns=inner)).theta2
     return replace(batch, unknowns=np.concatenate([inner[:, :3], angles, last], axis=1))
@@ -194,13 +193,13 @@ def _weights(own: FloatArray) -> FloatArray:
 
 
 def _moved(target: SearchTargets, batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
-    """Driver angles after a step (n, N), in order where that is asked."""
+    """Driver angles after a step (n, N), in order where that is required."""
     sense = batch.direction[:, None]
     angles: FloatArray = batch.unknowns[:, 3 : 3 + step.shape[1]]
     if target.jumbled:
         return angles + np.clip(step, -LONGEST, LONGEST)
-    wish = sense * (angles + np.clip(step, -LONGEST, LONGEST))
-    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(wish, weights, strict=True)])
+    desired = sense * (angles + np.clip(step, -LONGEST, LONGEST))
+    ordered: FloatArray = np.stack([_in_order(*row) for row in zip(desired, weights, strict=True)])
     return sense * ordered
 
 

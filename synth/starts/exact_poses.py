@@ -1,8 +1,7 @@
 """Whole poses, met exactly: dyads by theory, and all their pairs; parallelograms for pure translations.
 
-Two and three poses leave a dyad free in three and two numbers, which are sampled; four poses leave a
-curve of dyads (Burmester), which is traced; five leave up to four dyads, and what meets more poses is
-among the dyads of five of them.
+Dyads of two and three poses are sampled, those of four traced on their curve (Burmester); five have up to
+four, and those of more poses are among the dyads of five of them.
 """
 
 from __future__ import annotations
@@ -64,7 +63,7 @@ AT_ONCE = 1024  # poses compared with all others
 
 
 @dataclass(frozen=True, slots=True)
-class WholePoses:
+class ExactPoses:
     """Poses with position and angle, all of them to be met."""
 
     scaled: ScaledProblem
@@ -92,7 +91,7 @@ class WholePoses:
         return "there are no other starts" if self.freedom else "the poses leave no freedom"
 
     def refuse(self) -> None:
-        """Raise `ProblemError` when two of the poses are equal: fewer are asked for then."""
+        """Raise `ProblemError` when two of the poses are equal: fewer are required then."""
         equal = first_equal(self.scaled.targets, self.motion.rotation)
         if equal is not None:
             i, j = equal
@@ -120,7 +119,7 @@ class WholePoses:
 
 
 @dataclass(frozen=True, slots=True)
-class Parallelograms(WholePoses):
+class Parallelograms(ExactPoses):
     """Three poses or more that are pure translations of each other."""
 
     @staticmethod
@@ -144,12 +143,12 @@ class Parallelograms(WholePoses):
         return relaxed_starts(self.scaled, self.near(rng))
 
     def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Why there is no parallelogram linkage; empty where there may be one."""
+        """Why parallelogram linkages are impossible; empty where they may exist."""
         return parallelogram_obstacle(self.scaled)
 
 
 @dataclass(frozen=True, slots=True)
-class DyadPairs(WholePoses, ABC):
+class DyadPairs(ExactPoses, ABC):
     """Poses whose linkages are pairs of dyads that theory gives."""
 
     @abstractmethod
@@ -157,7 +156,7 @@ class DyadPairs(WholePoses, ABC):
         """Dyads that meet the poses."""
 
     def pairs(self, dyads: Dyads, most: int | None = None) -> Screened:
-        """Pairs that meet all requirements but, perhaps, the user's own constraints; of so many at most."""
+        """Pairs that meet all requirements but, perhaps, the user's constraints; of at most `most`."""
         scaled = self.scaled
         most = most or (SAMPLED_PAIRS if len(scaled.targets) < 4 else PAIRS)
         dyads = with_stated_joints(scaled, dyads)
@@ -199,7 +198,7 @@ class FewPoses(DyadPairs):
         return Round(starts[:QUICK_STARTS], {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
-        """A round of dyads; where these are samples, of two or three poses, the search for points goes on."""
+        """A round of dyads; where these are samples, of two or three poses, the search for points follows."""
         if number:
             last = SEARCHES if len(self.scaled.targets) < 4 else 0
             return searched_round(self.scaled, enough, rng) if number <= last else None

@@ -1,9 +1,7 @@
-"""Starts where the squared errors are made least.
+"""Starts of least squares: linkages feasible by construction, placed best on the targets.
 
-Linkages that are feasible by construction are placed best on the targets. Where the best of them keep
-every limit, that is all there is to it. Where they do not, their places are unknowns, too, and what
-oversteps a limit counts as an error, more so from stage to stage: so the search ends where the
-programme does, whichever limits are active.
+Where the best of them break a limit, places become unknowns, and oversteps of limits count as errors that
+grow from stage to stage: so the search ends where the programme does, whichever limits are active.
 """
 
 from __future__ import annotations
@@ -28,30 +26,30 @@ from grashof.synth.starts.loop_search import (
     draw,
     fitting,
     improve,
+    judged,
     place,
     standing,
     with_places,
     within_limits,
 )
-from grashof.synth.starts.search_targets import judged, search_targets
 from grashof.synth.starts.thinning import refined, thinned
 from grashof.synth.theory.stopping import raise_if_overdue
 
 DRAWS, TIMED_DRAWS = 2000, 600
 ASTRAY = 0.3  # share of them on which P makes a detour between two targets
 FEW_TARGETS = 40  # of a longer task decide which linkages are worth the rest
-# Where no limit binds: how many of the best go on for how many steps.
+# Where no limit binds: numbers of the best that continue, and their steps.
 FREE_STAGES, TIMED_STAGES = ((200, 6), (60, 10), (20, 50)), ((60, 6), (20, 60))
 MOST_CURVES = 6  # starts of such a round
-# Times the least error: what promises more is not solved; where the search may shift the ends of the
-# motion, its expected error is a little off.
+# Times the least error: starts with a greater expected error are not solved; where the search may shift the
+# ends of the motion, it is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
 SAME_ERROR = 1e-3  # share: a feasible linkage so near to the best one shows that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
-# Where limits bind: how many of the best distinct go on, for how many steps, at what weight of the
+# Where limits bind: numbers of the best distinct ones that continue, their steps, and the weight of the
 # limits (in sizes).
 STAGES = ((400, 8, 0.3), (200, 10, 1.0), (80, 20, 5.0), (40, 40, 5.0))
-LONG, LONG_STEPS = 24, 20  # of a thinned task so many are improved on all targets
+LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all targets, and their steps
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one
@@ -77,7 +75,7 @@ class LeastSquares(CouplerSearch):
 
     def round(self, _number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round:
         """A round of `size` times the usual number of draws and starts; there is always another one."""
-        scaled, target = self.scaled, search_targets(self.scaled)
+        scaled, target = self.scaled, SearchTargets.of(self.scaled)
         some, index = thinned(target, FEW_TARGETS)
         drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
@@ -112,7 +110,7 @@ def _on_all_targets(target: SearchTargets, index: IntArray, batch: Batch, size: 
 
 def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
     """Starts from linkages that fit best; None where the best of them break a limit."""
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     with np.errstate(all="ignore"):
         placed = place(target, batch)
     sound = np.isfinite(placed.error)
@@ -168,7 +166,7 @@ def _limited_round(
 
 def _search(scaled: ScaledProblem, drawn: Batch, best: Batch, size: int) -> tuple[Batch, Batch]:
     """Linkages after the first stage, and after the last one."""
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     some, index = thinned(target, FEW_TARGETS)
     with np.errstate(all="ignore"):
         batch = early = with_places(some, drawn)
@@ -207,7 +205,7 @@ def _with_places_refined(target: SearchTargets, index: IntArray, batch: Batch) -
 
 def _ranked(scaled: ScaledProblem, batch: Batch) -> tuple[Screened, FloatArray]:
     """Linkages of the search, best first, and their errors with what limits add (n,), sizes."""
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     placed = standing(target, batch)
     if _all_fitted(target):
         with np.errstate(all="ignore"):
@@ -250,7 +248,7 @@ def _distinct(placed: Placed) -> IntArray:
 
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
     start = Start.of_screened(linkages, index, scaled.objective)
-    fitted = _all_fitted(search_targets(scaled)) and not scaled.constraints
+    fitted = _all_fitted(SearchTargets.of(scaled)) and not scaled.constraints
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, expected_error=float(error[index])).under(settled=met or fitted)
 

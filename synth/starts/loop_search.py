@@ -1,10 +1,8 @@
 """Search for linkages whose coupler curve comes near given points: many at once, in NumPy.
 
-A linkage that is feasible by construction is described by its proportions and its driver angles at
-the points; where it stands, how large it is, how it is turned and where its coupler point lies is
-then linear: P_i = z0 + z1 exp(i theta2_i) + z2 exp(i theta3_i) with three complex numbers, solved
-exactly (variable projection, Golub & Pereyra 1973, with Kaufman's Jacobian). Levenberg-Marquardt
-improves the proportions and angles of a whole batch.
+Linkages, feasible by construction, are their proportions and driver angles at the points; place, size, turn
+and coupler point are linear, P_i = z0 + z1 exp(i theta2_i) + z2 exp(i theta3_i), and solved for exactly
+(variable projection, Golub & Pereyra 1973, with Kaufman's Jacobian). Levenberg-Marquardt improves the rest.
 """
 
 from __future__ import annotations
@@ -16,7 +14,11 @@ from typing import TypeAlias
 import numpy as np
 
 from grashof.problems import Rotatability
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.driver_motion import as_they_come
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.starts.closed_loop import (
     Batch,
     Leading,
@@ -30,7 +32,7 @@ from grashof.synth.starts.closed_loop import (
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
-# So many steps on end that take less than this share of its error away end the work on a linkage.
+# Consecutive steps that reduce the error by less than this share end the work on a linkage.
 LOOK, STALL = 5, 1e-3
 HEAVY = 1e4  # damping under which no step is worth trying
 DETOUR = (0.1, 1.5)  # driver rotation of a detour, as a share of all others
@@ -57,7 +59,7 @@ class Placed:
         return Placed(*(getattr(self, name)[index] for name in self.__slots__))
 
     def at_first(self, count: int) -> Placed:
-        """The same where they pass the first so many points alone."""
+        """The same at the first `count` points alone."""
         passed = {name: getattr(self, name)[:, :count] for name in ("a", "b", "p", "theta2")}
         return replace(self, **passed)
 
@@ -125,13 +127,29 @@ def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatAr
     )
 
 
+def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, direction: FloatArray) -> Screened:
+    """Placed linkages and how far each violates the requirements."""
+    a, b, theta2 = placed.a, placed.b, placed.theta2
+    if scaled.problem.task.returns:
+        a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
+        theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
+    visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)
+    if not target.wanted.order:
+        visit, theta2, direction = as_they_come(theta2)
+    p = placed.p[:, 0]
+    found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction, scaled.kind)
+    violations = violations_apart(found, p, placed.p, scaled.wanted)
+    error = np.sqrt(placed.error / len(scaled.targets))
+    return fully_screened(scaled, judge(found, p, error, violations, scaled.wanted, placed.body_angle))
+
+
 def improve(
     model: Model, batch: Batch, steps: int, tolerance: float, until: int = 1
 ) -> tuple[Batch, FloatArray]:
     """Levenberg-Marquardt on every linkage of a batch, and the errors (n,) in sizes squared.
 
     At most `steps`; stops as soon as `until` linkages have no greater error than `tolerance`, in sizes
-    squared. The model is what is made small: see `fitting` and `within_limits`.
+    squared. For models see `fitting` and `within_limits`.
     """
     raise_if_overdue()
     result = replace(batch, unknowns=batch.unknowns.copy())

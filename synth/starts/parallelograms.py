@@ -4,7 +4,7 @@ With r1 = r3 and r2 = r4 the coupler keeps its angle, and every point of the bod
 radius r2: the driver stands at theta2 where P stands at C + r2 exp(i theta2). So three poses or more
 have to lie on one circle, whose centre C is given by them; two poses leave C free on their bisector.
 At theta2 = theta1 and theta1 + pi all four joints lie on one line, the change points, past which the
-linkage may go on as an antiparallelogram: the task motion has to lie between them.
+linkage may continue as an antiparallelogram: the task motion has to lie between them.
 """
 
 from __future__ import annotations

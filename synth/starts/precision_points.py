@@ -1,7 +1,4 @@
-"""Targets to be met exactly, other than whole poses alone: rounds of the search.
-
-Exact paths through nine points have it followed by all linkages that there are.
-"""
+"""Targets to be met exactly, other than whole poses alone; for nine or eight points all linkages."""
 
 from __future__ import annotations
 
@@ -21,15 +18,14 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.coupler_search import CouplerSearch, searched_round
-from grashof.synth.starts.loop_search import Placed
-from grashof.synth.starts.search_targets import judged, search_targets
+from grashof.synth.starts.loop_search import Placed, judged
 from grashof.synth.starts.selection import starts_of
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4
 from grashof.synth.theory.eight_point_linkages import Through, slider_cranks_through
-from grashof.synth.theory.eight_points import SLIDER_CRANKS
-from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
+from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+from grashof.synth.theory.point_families import FOUR_BARS, SLIDER_CRANKS
 
-BARREN = 12  # so many rounds on end without a start end the search
+BARREN = 12  # consecutive rounds without a start after which the search ends
 SEARCHES = 6  # rounds of the search before all linkages through nine points are computed
 THROUGH = "linkages through the points"  # counted
 FOLLOWED = "known solutions followed"  # counted: complex ones among them, cognates as one
@@ -67,12 +63,12 @@ class EveryLinkage(PrecisionPoints, ABC):
 
     @classmethod
     def suits(cls, scaled: ScaledProblem) -> bool:
-        """So many points, to be met exactly."""
+        """As many points as determine the linkages, to be met exactly."""
         if not isinstance(scaled.kind.dyad, cls.dyad) or not scaled.exact or scaled.timed:
             return False
         if not scaled.problem.task.only_points:
             return False
-        points = search_targets(scaled).points
+        points = SearchTargets.of(scaled).points
         if len(points) != cls.points:
             return False
         apart = np.abs(points[:, None] - points) + np.eye(len(points))
@@ -106,11 +102,11 @@ class NinePoints(EveryLinkage):
 
     points: ClassVar[int] = 9
     dyad: ClassVar[type[ClosingDyad]] = Bars
-    solutions: ClassVar[int] = TRIPLETS
+    solutions: ClassVar[int] = FOUR_BARS.count
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """Of every triplet of cognates through the points the first feasible one; the others follow."""
-        target = search_targets(self.scaled)
+        target = SearchTargets.of(self.scaled)
         through, followed = linkages_through(target.points, rng)
         linkages = judged(self.scaled, target, *_at_points(_driven_from_both_sides(through), target))
         feasible = _usable(linkages).reshape(-1, 3, 2)
@@ -130,7 +126,7 @@ class EightPoints(EveryLinkage):
 
     def _all_linkages(self, rng: np.random.Generator) -> Round:
         """All that are feasible; cognates among them are linkages of their own."""
-        target = search_targets(self.scaled)
+        target = SearchTargets.of(self.scaled)
         through = slider_cranks_through(target.points, rng)
         linkages = judged(self.scaled, target, *_sliders_at_points(through, target))
         chosen = np.flatnonzero(_usable(linkages))

@@ -7,12 +7,14 @@ import numpy as np
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.burmester import Displacements, Dyads, radius_error
-from grashof.synth.theory.three_poses import (
+from grashof.synth.theory.burmester import (
+    Displacements,
+    Dyads,
     bisector_dyads,
     bisector_dyads_of_ground,
     circle_dyads,
     circle_dyads_of_ground,
+    radius_error,
 )
 
 SAMPLES = 4000

@@ -145,7 +145,7 @@ def _signatures(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def scores(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """Score of each linkage; its size is that of a box around what is known of it at the first target."""
+    """Score of each linkage; its size is that of a box around its known points at the first target."""
     if not scaled.exact:
         return -linkages.error
     if scaled.own_objective is not None:
@@ -157,7 +157,7 @@ def scores(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
-    """What the objective counts a quantity as, greater is better."""
+    """The value of a quantity to the objective, greater is better."""
     worth: FloatArray = np.zeros(len(linkages))
     if key == "transmission":
         worth = linkages.transmission / (np.pi / 2)

@@ -1,4 +1,4 @@
-"""What theory gives: dyads, cognates, all linkages through nine points."""
+"""Theory: dyads, cognates, all linkages through nine or eight points."""
 
 from grashof.synth.theory.burmester import Displacements, Dyads, radius_error, trace_four_pose_curves
 from grashof.synth.theory.cognates import cognate_points

@@ -8,7 +8,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 
 SAME = 1e-6  # sine of the angle between two points (as vectors): below it they are one
 CONVERGED = 1e-9  # length of a step of Newton's method on unit vectors
-TINY = 1e-15  # stands in for a coefficient that vanishes
+TINY = 1e-15  # replaces a coefficient that vanishes
 
 
 def conic_intersections(first: FloatArray, second: FloatArray) -> ComplexArray:
@@ -70,13 +70,13 @@ def _by_quartic(first: FloatArray, second: FloatArray) -> ComplexArray:
     share1, share2 = (
         np.where(xx > 0, part / np.where(xx > 0, xx, 1), 1)[:, None, None] for part in (xx1, xx2)
     )
-    whole, linear = share1 * first + share2 * second, share1 * second - share2 * first  # in x^2; in x
+    square, linear = share1 * first + share2 * second, share1 * second - share2 * first  # in x^2; in x
     slope, rest = _in_y(linear)
-    whole_slope, whole_rest = _in_y(whole)
+    square_slope, square_rest = _in_y(square)
     quartic = (
         xx[:, None] * _product(rest, rest)
-        - _product(_product(whole_slope, slope), rest)
-        + _product(_product(slope, slope), whole_rest)
+        - _product(_product(square_slope, slope), rest)
+        + _product(_product(slope, slope), square_rest)
     )
     y = _roots(quartic)
     divisor = slope[:, :1] + y * slope[:, 1:]
@@ -87,7 +87,7 @@ def _by_quartic(first: FloatArray, second: FloatArray) -> ComplexArray:
 
 
 def _in_y(conic: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What stands with x (linear) and without x (quadratic), constant first, at points (x, y, 1)."""
+    """Coefficients in y of x (linear) and of x^0 (quadratic), constant first, at points (x, y, 1)."""
     with_x = np.stack([2 * conic[:, 0, 2], 2 * conic[:, 0, 1]], axis=-1)
     without = np.stack([conic[:, 2, 2], 2 * conic[:, 1, 2], conic[:, 1, 1]], axis=-1)
     return with_x, without

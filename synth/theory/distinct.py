@@ -20,8 +20,7 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
 
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
-    where one is given: with the middle of the task there, what is distinct does not depend on where the
-    user's own origin lies.
+    where one is given: from the middle of the task they do not depend on the origin of the user.
     """
     middle = np.zeros(2) if origin is None else origin
     if "o4" in linkage.mechanism.ground:
@@ -41,7 +40,7 @@ def mirrored(kind: Mechanism) -> tuple[int, ...]:
     return (6, 8) if kind.slides else (8,)
 
 
-EQUAL = 1e-9  # share of scores by which those differ at most that tie
+EQUAL = 1e-9  # largest difference of scores that tie, as a share of them
 
 
 def apart(one: FloatArray, others: FloatArray) -> FloatArray:
@@ -82,14 +81,14 @@ def pick_apart(
 def best_first(score: FloatArray) -> IntArray:
     """Indices by score, the greatest first; what differs by rounding alone stays in its order, shape (n,).
 
-    Scores tie that are no further apart than `EQUAL` of themselves, one after the other.
+    Scores tie that differ from the next one by at most `EQUAL` of themselves.
 
     >>> best_first(np.array([0.5, 1.0 - 1e-12, 1.0, 2.0])).tolist()
     [3, 1, 2, 0]
     """
     order = np.argsort(-score, kind="stable")
     value = score[order]
-    with np.errstate(invalid="ignore"):  # differences of infinite ones, and what is not a number
+    with np.errstate(invalid="ignore"):  # differences of infinite ones, and NaN
         step = ~(np.abs(np.diff(value)) <= EQUAL * np.abs(value[1:])) & (value[1:] != value[:-1])
     rank = np.empty(len(score), dtype=np.int64)
     rank[order] = np.concatenate([[0], np.cumsum(step)])[: len(order)]

@@ -1,8 +1,7 @@
-"""Burmester's dyads: all that carry a body exactly through five poses.
+"""Burmester's dyads: all (at most four) that carry a body exactly through five poses.
 
-Five poses leave at most four dyads. Most have both pivots within reach. Where the ground pivot is at
-infinity the moving pivot keeps to a straight guide; where the moving pivot is, a guide in the body
-keeps to a ground pivot.
+Where the ground pivot is at infinity the moving pivot keeps to a straight guide; where the moving pivot is, a
+guide in the body keeps to a ground pivot.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ def five_pose_dyads(motion: Displacements, reach: float = FAR) -> Dyads:
     """All dyads, up to four, that carry a body exactly through five poses.
 
     In no particular order; one that the poses determine twice is there once. Pivots farther than `reach` from
-    the origin are at infinity: see `five_pose_guides`. None where a whole family of dyads does it: two equal
+    the origin are at infinity: see `five_pose_guides`. None where a family of dyads does it: two equal
     poses (a curve of them, see `trace_four_pose_curves`), pure translation, pure rotation. Not reliable where
     a family of guides does it (the motion of a trammel, all of whose circle is guided). The method is that of
     `five_pose_dyads_of_sets`. ValueError where there are not five poses.

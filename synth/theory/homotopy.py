@@ -14,9 +14,9 @@ from grashof.synth.theory.stopping import raise_if_stopped
 System = Callable[[ComplexArray, ComplexArray, ComplexArray], tuple[ComplexArray, ComplexArray, ComplexArray]]
 
 FIRST, LARGEST, SMALLEST = 0.02, 0.25, 1e-9  # steps, as shares of the path
-GROW_AFTER = 3  # so many good steps on end double the step
+GROW_AFTER = 3  # consecutive good steps that double the step
 CORRECTIONS = 2  # Newton steps after each prediction
-FAR = 1e7  # a solution so large has gone to infinity
+FAR = 1e7  # a larger solution has gone to infinity
 STEPS = 2000
 
 

@@ -1,8 +1,7 @@
 """Linkages by the limit positions of their output, where driver and coupler are in line.
 
-All crank-rockers with one swing and time ratio, and all slider-cranks with one stroke and time ratio, are
-families of one number, the share of the driver's length in the coupler's. Transmission is best somewhere
-in between, or where a limit ends the family.
+All crank-rockers with a swing and time ratio, and slider-cranks with a stroke and time ratio, are families of
+one number, r2 / r3. Transmission is best somewhere in between, or where a limit ends the family.
 """
 
 from __future__ import annotations
@@ -29,8 +28,8 @@ _ROUNDING = 1e-12  # margins down to that are zero
 
 
 @dataclass(frozen=True, slots=True)
-class Members:
-    """Members of a family; arrays (n,), angles in rad."""
+class StrokeLinkages:
+    """Linkages of a family; arrays (n,), angles in rad."""
 
     share: FloatArray  # r2 / r3
     # (n, k): r1 (1), r2, r3, r4 of crank-rockers; r2, r3, offset, in strokes, of slider-cranks
@@ -43,14 +42,14 @@ class Members:
     last: FloatArray
     assembly: FloatArray
 
-    def __getitem__(self, index: Any) -> Members:
-        return Members(*(getattr(self, name)[index] for name in self.__slots__))
+    def __getitem__(self, index: Any) -> StrokeLinkages:
+        return StrokeLinkages(*(getattr(self, name)[index] for name in self.__slots__))
 
     def __len__(self) -> int:
         return len(self.share)
 
     @property
-    def mirrored(self) -> Members:
+    def mirrored(self) -> StrokeLinkages:
         """Their mirror images, in which the driver turns the other way."""
         return replace(self, first=-self.last, last=-self.first, assembly=-self.assembly)
 
@@ -61,9 +60,9 @@ class Members:
 
 
 _LEAST_SHARE = float(_GRID[0])
-Family: TypeAlias = Callable[[FloatArray], Members]
+Family: TypeAlias = Callable[[FloatArray], StrokeLinkages]
 # How far members are inside limits, (n,): negative outside.
-Allowed: TypeAlias = Callable[[Members], FloatArray]
+Allowed: TypeAlias = Callable[[StrokeLinkages], FloatArray]
 
 
 def lag_of(time_ratio: float) -> float:
@@ -75,7 +74,7 @@ def lag_of(time_ratio: float) -> float:
     return float(np.pi * (time_ratio - 1) / (time_ratio + 1))
 
 
-def crank_rockers(swing: float, lag: float, share: FloatArray) -> Members:
+def crank_rockers(swing: float, lag: float, share: FloatArray) -> StrokeLinkages:
     """The crank-rockers with a swing of link 4 (rad, below pi) and a time ratio, O2O4 = 1.
 
     `lag`, rad (see `lag_of`), is negative where link 4 swings the other way while driver and coupler go from
@@ -98,7 +97,7 @@ def crank_rockers(swing: float, lag: float, share: FloatArray) -> Members:
     sides = side * ((b2 - o4) * np.exp(-1j * lag)).imag / r4**2
     stretched = -np.angle(o4)
     turns = np.min([r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4), r1 - r2], axis=0)
-    return Members(
+    return StrokeLinkages(
         share=share,
         lengths=np.stack([r1, r2, r3, r4], axis=-1) / r1[:, None],
         transmission=_worst(r1, r2, r3, r4),
@@ -117,7 +116,7 @@ def _worst(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> Fl
     return angle
 
 
-def slider_cranks(lag: float, share: FloatArray) -> Members:
+def slider_cranks(lag: float, share: FloatArray) -> StrokeLinkages:
     """The slider-cranks with a time ratio, of stroke 1.
 
     `lag`, rad (see `lag_of`), is negative where the slide lies to the right of O2; `share` (n,) is r2 / r3,
@@ -135,7 +134,7 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
     beside = np.abs(offset)
     stretched = np.arcsin(np.clip(offset / (r3 + r2), -1.0, 1.0))
     turns = (r3 - r2 - beside) / (r3 + r2 + beside)
-    return Members(
+    return StrokeLinkages(
         share=share,
         lengths=np.stack([r2, r3, offset], axis=-1),
         transmission=np.arccos(np.clip((r2 + beside) / r3, 0.0, 1.0)),
@@ -146,7 +145,7 @@ def slider_cranks(lag: float, share: FloatArray) -> Members:
     )
 
 
-def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
+def crank_shapers(swing: float, side: float, share: FloatArray) -> StrokeLinkages:
     """The inverted slider-cranks whose block swings by so much, O2O4 = 1; their time ratio follows from it.
 
     The swing, rad, is below pi; `side` is the sign of the offset. `share` (n,), between 0 and 1, is what the
@@ -167,7 +166,7 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
     p = (np.pi - swing) / 2 * np.maximum(share - _LEAST_SHARE, 0.0)
     r2, offset = np.sin(swing / 2) * np.cos(p), side * np.cos(swing / 2) * np.sin(p)
     room = 1 - np.sin(swing / 2 + p)  # 1 - r2 - |offset|
-    return Members(
+    return StrokeLinkages(
         share=share,
         lengths=np.stack([np.ones_like(r2), r2, offset], axis=-1),
         transmission=np.arccos(np.clip(np.abs(offset) / (1 - r2), 0.0, 1.0)),
@@ -178,8 +177,8 @@ def crank_shapers(swing: float, side: float, share: FloatArray) -> Members:
     )
 
 
-def linkages_of(task: Task, members: Members) -> FourBar | SliderCrank:
-    """Members as a batch of linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
+def linkages_of(task: Task, members: StrokeLinkages) -> FourBar | SliderCrank:
+    """Members of a family as linkages, shape (n,): O2 the origin, O4 (1, 0) or the slide along x, P in A.
 
     >>> from grashof.problems import StrokeTask
     >>> task = StrokeTask(stroke=100.0, time_ratio=1.2)
@@ -215,7 +214,12 @@ def families_of(swing: float | None, time_ratio: float) -> list[Family]:
     return [partial(crank_rockers, swing, sign) for sign in ([lag, -lag] if lag else [0.0])]
 
 
-def everywhere(members: Members) -> FloatArray:
+def mirrored(family: Family, share: FloatArray) -> StrokeLinkages:
+    """Members of the family of the mirror images."""
+    return family(share).mirrored
+
+
+def everywhere(members: StrokeLinkages) -> FloatArray:
     """No limit: every member is far inside."""
     return np.ones(len(members.share))
 

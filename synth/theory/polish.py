@@ -16,8 +16,8 @@ MANY = 64  # targets: of more, each driver angle is eliminated by itself
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
-    """What has to be met exactly, at N targets."""
+class ExactTargets:
+    """N targets to be met exactly."""
 
     points: ComplexArray  # (N,), sizes
     has_point: BoolArray  # (N,)
@@ -39,7 +39,7 @@ class Polished:
 
 
 def polish_path(
-    points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, wish: Wish
+    points: ComplexArray, theta2: FloatArray, body_angle: float, assembly: FloatArray, targets: ExactTargets
 ) -> Polished:
     """Newton's method for the targets, each step of least norm, from a design as `Polished` has it.
 
@@ -48,31 +48,31 @@ def polish_path(
     _, _, a, b, p = points
     arm = (p - a) * abs(b - a) / (b - a)
     unknowns = np.concatenate([
-        wish.closure.dimensions(points), [arm.real, arm.imag, body_angle],
-        theta2[:1] if wish.timed else theta2,
+        targets.closure.dimensions(points), [arm.real, arm.imag, body_angle],
+        theta2[:1] if targets.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
     worst = np.inf
     for step in range(STEPS + MORE):
         before = worst
-        _, residual, jacobian = _linearised(unknowns, gaps, assembly, wish)
+        _, residual, jacobian = _linearised(unknowns, gaps, assembly, targets)
         if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
             break
         worst = np.abs(residual).max(initial=0.0)
         if step >= STEPS and before < DONE:  # and one step more, which leads to rounding
             break
-        if wish.timed or len(theta2) <= MANY:
-            jacobian = jacobian if wish.timed else _spread(jacobian, wish)
+        if targets.timed or len(theta2) <= MANY:
+            jacobian = jacobian if targets.timed else _spread(jacobian, targets)
             unknowns = unknowns - np.linalg.lstsq(jacobian, residual, rcond=1e-12)[0]
         else:
-            unknowns = unknowns - _eliminated(jacobian, residual, wish)
-    (moved, coupler), residual, _ = _linearised(unknowns, gaps, assembly, wish)
-    theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
+            unknowns = unknowns - _eliminated(jacobian, residual, targets)
+    (moved, coupler), residual, _ = _linearised(unknowns, gaps, assembly, targets)
+    theta2 = unknowns[10] + gaps if targets.timed else unknowns[10:]
     return Polished(moved, theta2, coupler, float(unknowns[9]), float(np.abs(residual).max(initial=0.0)))
 
 
 def _linearised(
-    unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, wish: Wish
+    unknowns: FloatArray, gaps: FloatArray, assembly: FloatArray, targets: ExactTargets
 ) -> tuple[tuple[ComplexArray, ComplexArray], FloatArray, FloatArray]:
     """Points at the first target, coupler at all; misses (M,), and their derivative (M, 11).
 
@@ -80,11 +80,11 @@ def _linearised(
     """
     o2, r2 = complex(*unknowns[:2]), unknowns[4]
     arm, body_angle = complex(*unknowns[7:9]), unknowns[9]
-    theta2 = unknowns[10] + gaps if wish.timed else unknowns[10:]
+    theta2 = unknowns[10] + gaps if targets.timed else unknowns[10:]
     e2 = np.exp(1j * theta2)
     a = o2 + r2 * e2
     with np.errstate(invalid="ignore", divide="ignore"):
-        loop = wish.closure.closed(unknowns[:7], e2, assembly)
+        loop = targets.closure.closed(unknowns[:7], e2, assembly)
         e3, e4 = loop.e3, loop.e4
         p = a + arm * e3
         # The loop, projected on e4, gives the turn of the coupler.
@@ -97,41 +97,41 @@ def _linearised(
         by_move = np.stack([np.broadcast_to(column, a.shape) for column in moves], axis=1)
         by_point = by_move + 1j * (arm * e3)[:, None] * by_turn
         by_turn[:, 9] = 1.0
-    off = (p - wish.points)[wish.has_point]
-    turned = np.angle(e3 * np.exp(1j * (body_angle - wish.turns)))[wish.has_turn]
-    slope = by_point[wish.has_point]
+    off = (p - targets.points)[targets.has_point]
+    turned = np.angle(e3 * np.exp(1j * (body_angle - targets.turns)))[targets.has_turn]
+    slope = by_point[targets.has_point]
     return (
         (np.array([o2, loop.o4, a[0], a[0] + loop.coupler[0], p[0]]), loop.coupler),
         np.concatenate([off.real, off.imag, turned]),
-        np.concatenate([slope.real, slope.imag, by_turn[wish.has_turn]]),
+        np.concatenate([slope.real, slope.imag, by_turn[targets.has_turn]]),
     )
 
 
-def _target_of_rows(wish: Wish) -> IntArray:
+def _target_of_rows(targets: ExactTargets) -> IntArray:
     """The target that each miss is of, shape (M,)."""
-    points, turns = np.flatnonzero(wish.has_point), np.flatnonzero(wish.has_turn)
+    points, turns = np.flatnonzero(targets.has_point), np.flatnonzero(targets.has_turn)
     return np.concatenate([points, points, turns])
 
 
-def _spread(jacobian: FloatArray, wish: Wish) -> FloatArray:
+def _spread(jacobian: FloatArray, targets: ExactTargets) -> FloatArray:
     """The derivative by each driver angle in a column of its own, shape (M, 10 + N)."""
-    by_angles = np.zeros((len(jacobian), len(wish.points)))
-    by_angles[np.arange(len(jacobian)), _target_of_rows(wish)] = jacobian[:, 10]
+    by_angles = np.zeros((len(jacobian), len(targets.points)))
+    by_angles[np.arange(len(jacobian)), _target_of_rows(targets)] = jacobian[:, 10]
     return np.concatenate([jacobian[:, :10], by_angles], axis=1)
 
 
-def _eliminated(jacobian: FloatArray, residual: FloatArray, wish: Wish) -> FloatArray:
+def _eliminated(jacobian: FloatArray, residual: FloatArray, targets: ExactTargets) -> FloatArray:
     """The step of least squares for many targets, shape (10 + N,): without driver angles, then these.
 
     What a driver angle can do is taken out of the rows of its target, in time and memory as the targets
     are many.
     """
-    target, common, own = _target_of_rows(wish), jacobian[:, :10], jacobian[:, 10]
-    square = np.bincount(target, own**2, len(wish.points))
+    target, common, own = _target_of_rows(targets), jacobian[:, :10], jacobian[:, 10]
+    square = np.bincount(target, own**2, len(targets.points))
     share = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)
 
     def along(rows: FloatArray) -> FloatArray:
-        """What of each column the driver angles can do, shape (N, columns)."""
+        """The part of each column that the driver angles can do, shape (N, columns)."""
         columns = [np.bincount(target, own * column, len(square)) * share for column in rows.T]
         return np.stack(columns, axis=1)
 

@@ -1,4 +1,4 @@
-"""Long computations that end when they are asked to."""
+"""Long computations that end on request."""
 
 from __future__ import annotations
 
@@ -8,73 +8,73 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from time import perf_counter
 
-GRACE = 1.0  # s: so long what is under way may still come to something
+GRACE = 1.0  # s that work under way has after a request to stop
 
 
-class StopRequested(Exception):  # noqa: N818  (no error: it was asked for)
-    """A computation was asked to end before it was done."""
+class StopRequested(Exception):  # noqa: N818  (a request, not an error)
+    """A computation ended on request before it was done."""
 
 
 @dataclass(slots=True)
-class _Question:
-    """What is asked, and since when it is answered by True (s)."""
+class _Request:
+    """A function that returns True to request a stop, and the time (s) when it first did."""
 
-    asked: Callable[[], bool]
+    requested: Callable[[], bool]
     since: float | None = None
 
-    def answered(self) -> bool:
+    def made(self) -> bool:
         """Whether to stop."""
-        if not self.asked():
+        if not self.requested():
             return False
         if self.since is None:
             self.since = perf_counter()
         return True
 
 
-_NOBODY = _Question(lambda: False)
-_ASKED: ContextVar[_Question] = ContextVar("asked to stop")
+_NEVER = _Request(lambda: False)
+_REQUEST: ContextVar[_Request] = ContextVar("request to stop")
 
 
 @contextmanager
-def stopping(asked: Callable[[], bool]) -> Iterator[None]:
-    """What is computed inside, in this thread, ends soon after `asked` gives True."""
-    token = _ASKED.set(_Question(asked))
+def stopping(requested: Callable[[], bool]) -> Iterator[None]:
+    """End computations inside, in this thread, soon after `requested` returns True."""
+    token = _REQUEST.set(_Request(requested))
     try:
         yield
     finally:
-        _ASKED.reset(token)
+        _REQUEST.reset(token)
 
 
-def stop_when(asked: Callable[[], bool]) -> None:
+def stop_when(requested: Callable[[], bool]) -> None:
     """As `stopping`, for all that this thread computes from now on."""
-    _ASKED.set(_Question(asked))
+    _REQUEST.set(_Request(requested))
 
 
 def stop_request() -> Callable[[], bool]:
-    """What is asked here and now; inside `stopping`, `stop_requested` asks something else."""
-    return _ASKED.get(_NOBODY).asked
+    """The function of the enclosing `stopping`, to be called from another context."""
+    return _REQUEST.get(_NEVER).requested
 
 
 def stop_requested() -> bool:
-    """Whether to be content with what there is."""
-    return _ASKED.get(_NOBODY).answered()
+    """Whether to accept the current results."""
+    return _REQUEST.get(_NEVER).made()
 
 
 def raise_if_stopped() -> None:
-    """Raise `StopRequested` where asked to stop; for what is of no use unless it is done."""
+    """Raise `StopRequested` after a request to stop; for computations that are useless unless completed."""
     if stop_requested():
         raise StopRequested
 
 
 def overdue() -> bool:
-    """Whether it was asked to stop more than `GRACE` ago, as far as anybody looked."""
-    question = _ASKED.get(_NOBODY)
-    if not question.answered() or question.since is None:
+    """Whether a stop was requested more than `GRACE` ago, as of the checks that were made."""
+    request = _REQUEST.get(_NEVER)
+    if not request.made() or request.since is None:
         return False
-    return perf_counter() - question.since > GRACE
+    return perf_counter() - request.since > GRACE
 
 
 def raise_if_overdue() -> None:
-    """Raise `StopRequested` where that is overdue; for what soon comes to something."""
+    """Raise `StopRequested` where `overdue`; for computations that will soon have results."""
     if overdue():
         raise StopRequested

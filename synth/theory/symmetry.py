@@ -1,4 +1,4 @@
-"""Rotations and reflections that map a task onto itself: what they make of a design does the task, too."""
+"""Rotations and reflections that map a task onto itself: the image of a design does the task, too."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Symmetry:
     mirrored: bool
 
     def of(self, signatures: FloatArray, signed: tuple[int, ...] = (8,)) -> FloatArray:
-        """What it makes of designs by their signatures (k, 9), pivots measured from the middle of the task.
+        """The image of designs by their signatures (k, 9), pivots measured from the middle of the task.
 
         See `grashof.synth.theory.distinct.signature`; the `signed` columns change their sign in a mirror.
         """
@@ -56,7 +56,7 @@ def symmetries(task: Task) -> tuple[Symmetry, ...]:
 def middle_of(task: Task) -> FloatArray:
     """Mean of the target positions, shape (2,), length: it stays in its place under all symmetries.
 
-    The origin where no position is asked for.
+    The origin where no target has a position.
     """
     if not task.has_position.any():
         return task.middle
@@ -75,7 +75,7 @@ def _orders(task: Task, places: ComplexArray) -> Iterator[tuple[IntArray, list[b
     """Orders in which the targets may be met, shape (count,), each with the ways it may be: mirrored or not.
 
     A closed path of N points has 2 N of them. Those are left out after which no turn lays the points on
-    the others, as their correlation tells (by Fourier transform, so that N log N steps tell all).
+    the others, by their correlation (Fourier transforms, N log N steps for all).
     """
     count = len(places)
     forth, first = np.arange(count), np.arange(count if task.closed else 1)
@@ -121,6 +121,6 @@ def _agrees(task: Task, order: IntArray, mirrored: bool) -> bool:
 
 
 def _constant(angles: FloatArray) -> bool:
-    """Whether angles are all the same but for whole turns; free ones are."""
+    """Whether all given angles are the same modulo full turns."""
     given = angles[~np.isnan(angles)]
     return not given.size or bool(np.abs(np.exp(1j * (given - given[0])) - 1).max() <= EVEN)

@@ -10,7 +10,7 @@ from grashof.analysis.judge.verdict import Enclosure
 from grashof.output.terminal import print_table
 from grashof.page.search import search_page
 from grashof.synth import Result
-from grashof.wording.enclosure import enclosure_line, enclosure_record
+from grashof.wording.proof import enclosure_line, enclosure_record
 
 
 def test_all_verified(proven: Result, capsys: pytest.CaptureFixture[str]) -> None:

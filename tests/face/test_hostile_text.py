@@ -22,7 +22,7 @@ import pytest
 
 from grashof.figures.animation import save_animation
 from grashof.figures.files import draw_design, draw_motion, save
-from grashof.figures.survey_plots import section_pictures
+from grashof.figures.section_plots import section_pictures
 from grashof.notebook import html
 from grashof.output.analysis_files import print_report, write_report
 from grashof.output.run_files import write_run
@@ -120,7 +120,7 @@ def test_an_analysis(
     plot = Plot("curve", text, text, {text: theta2}, theta2, text, {text: np.ones((1, 2))})
     table = pd.DataFrame({"theta2_deg": [0.0, 1.0], text: [text, text]})
     section = Section("mine", text, (Fact("mine", text, text, text),), {"mine": table}, (plot,), (text,))
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])  # they have a test of their own
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])  # they have a test of their own
     report = report_on(spec)
     report = replace(report, sections=(*report.sections, section))
     write_report(tmp_path / "out", report)
@@ -178,7 +178,7 @@ def test_pictures(few: Result, tmp_path: Path, text: str) -> None:
 def test_a_file_name_stays_in_the_folder(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])
     file = f"{name}.toml"
     (tmp_path / file).write_text("o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n", encoding="utf-8")
     done = grashof("analyse", f"./{file}")

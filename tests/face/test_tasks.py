@@ -27,7 +27,7 @@ from grashof.problems import (
     catalogue,
     load_linkage_spec,
 )
-from grashof.sections.function import function_section
+from grashof.sections.output import function_section
 from grashof.study.asked import Asked
 from grashof.study.study import LinkageStudy
 from grashof.synth import Result

@@ -1,1 +1,1 @@
-"""A linkage as every drawing has it, whatever the medium: links, joints, slides, tracks."""
+"""A linkage as drawings in any medium show it: links, joints, slides, tracks."""

@@ -1,4 +1,4 @@
-"""The scene of a linkage: which links, joints, slides and tracks a drawing shows, and where they are."""
+"""The scene of a linkage: the links, joints, slides and tracks of a drawing, and their places."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from grashof.problems.values.linkages.mechanism import Link, Mechanism
 
 # Of links 2, 3, ...; links of one role look alike in all drawings.
 ROLES = ("driver", "coupler", "output", "coupler-2", "output-2")
-# Of a block: half of its length in lengths of the driver, its width in that half.
+# Half the length of a block over the length of the driver, and its width over that half.
 _HALF, _WIDE = 0.22, 0.6
-_TICKS = 14  # of the hatching of a guide, at least
+_TICKS = 14  # least number in the hatching of a guide
 CORNERS = ("block1", "block2", "block3", "block4", "block1")  # all round
 _ROD, _ARM = ("rod1", "rod2"), ("foot", "p")  # ends of the rod; from the rod to P beside it
 
@@ -35,33 +35,33 @@ class Body:
 
     @property
     def role(self) -> str:
-        """Its name, but that a slider or block counts as an output."""
+        """Its role; a slider or block counts as an output."""
         return ROLES[self.link.number - 2]
 
     @property
     def words(self) -> str:
-        """Its name and its points, as legends have them."""
+        """Its name and points for legends."""
         return f"{self.link.name} {'-'.join(self.link.labels)}"
 
-    def lines(self, stand: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
-        """Through which points, each of shape (2,), it is drawn: its bar or plate, its block, or its rod."""
+    def lines(self, placement: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
+        """The points (2,) through which its bar or plate, block or rod is drawn."""
         if self.slides:
             return (CORNERS, self.link.points) if len(self.link.points) > 1 else (CORNERS,)
-        return (_ROD, _ARM) if self.guides else (self._sides(stand),)
+        return (_ROD, _ARM) if self.guides else (self._sides(placement),)
 
-    def areas(self, stand: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
-        """The corners of its plate or block, which covers what is below."""
-        plate = (self._sides(stand),) if len(self.link.points) > 2 else ()
+    def areas(self, placement: Mapping[str, FloatArray]) -> tuple[tuple[str, ...], ...]:
+        """The corners of its plate or block, which is filled."""
+        plate = (self._sides(placement),) if len(self.link.points) > 2 else ()
         return (*plate, CORNERS) if self.slides else plate
 
-    def _sides(self, stand: Mapping[str, FloatArray]) -> tuple[str, ...]:
-        """The ends of a bar; the corners of a plate all round, in an order that does not cross itself."""
+    def _sides(self, placement: Mapping[str, FloatArray]) -> tuple[str, ...]:
+        """The ends of a bar; the corners of a plate in an order without crossings of its outline."""
         corners = list(self.link.points)
         if len(corners) == 2:
             return self.link.points
         if len(corners) > 3:
-            middle = np.mean([stand[name] for name in corners], axis=0)
-            corners.sort(key=lambda name: float(np.arctan2(*(stand[name] - middle)[::-1])))
+            middle = np.mean([placement[name] for name in corners], axis=0)
+            corners.sort(key=lambda name: float(np.arctan2(*(placement[name] - middle)[::-1])))
         return (*corners, corners[0])
 
 
@@ -94,7 +94,7 @@ class Slide:
 
     @property
     def ending(self) -> str:
-        """What names of it end in: nothing, or the number of its loop from the second on."""
+        """The suffix of its names: none, or the number of its loop from the second on."""
         return f"-{self.loop + 1}" if self.loop else ""
 
     @property
@@ -108,7 +108,7 @@ class Slide:
         return np.broadcast_to(self.angle + carried, np.shape(state.theta2))
 
     def travel(self, state: Position) -> FloatArray:
-        """How far what slides is along the line from the guide's origin, shape of the driver angles."""
+        """Distance of the slider along the line from the origin of the guide, shape of the driver angles."""
         return state.loops[self.loop].travel
 
 
@@ -160,7 +160,7 @@ class Scene:
         if name in ("p", "c", "d"):
             arm: FloatArray = getattr(self.linkage, "coupler_point" if name == "p" else name)
             return arm
-        length = f"r{link.number}"  # of a block none: B is as far from O4 as the rod is
+        length = f"r{link.number}"  # a block has none: B is at the offset of the rod from O4
         length = length if hasattr(self.linkage, length) else "offset"
         return np.array([float(getattr(self.linkage, length)), 0.0])
 

@@ -1,4 +1,4 @@
-"""Animations: a linkage over all that its driver can do, as GIF or MP4."""
+"""Animations of a linkage over the entire motion of its driver, as GIF or MP4."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from grashof.figures.parts import (
     missing_glyphs_unwarned,
     name_points,
 )
-from grashof.figures.shapes import Drawn, Shape, Stand, shapes_of, stands
+from grashof.figures.shapes import Drawn, Placement, Shape, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -49,30 +49,30 @@ def animate(
     """Move a linkage through one turn of its driver, or from limit to limit and back.
 
     P draws its path. For a problem the motion begins at the first target, in the sense of the task;
-    scene and targets stand still and a body is carried.
+    scene and targets are at rest and a body is carried.
 
     Parameters
     ----------
     linkage : Linkage, LinkageSpec or Candidate
     problem : Problem, optional
     seconds : float
-        Length of the motion; it begins again where it ends.
+        Duration of the motion, which repeats.
     fps : float
         Frames a second.
     annotated : bool
-        With the names of the moving points, and the driver angle; of a driver that turns steadily also the
-        time that it takes at its own speed.
+        With the names of the moving points and the driver angle; for a driver that turns steadily also the
+        time at its own speed.
     ax : Axes, optional
 
     Returns
     -------
     FuncAnimation
-        Keep it as long as it is to move; `save_animation` writes it.
+        Keep a reference as long as it is to move; `save_animation` writes it.
 
     Raises
     ------
     ProblemError
-        No single linkage, one that closes nowhere, or fewer than two frames.
+        Not a single linkage, one that closes nowhere, or fewer than two frames.
     """
     subject = Subject.of(linkage, problem)
     frames = round(seconds * fps) if np.isfinite(seconds * fps) else 0
@@ -85,14 +85,14 @@ def animate(
     moving, figure = _Moving(axes, subject, state, *trace), figure_of(axes)
     if annotated:
         moving.annotate(axes, subject, state)
-    if ax is None:  # laid out once: a new layout for every frame would take most of the time
+    if ax is None:  # laid out once: a layout for every frame would take most of the time
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
     return FuncAnimation(figure, moving.show, frames, interval=1000 / fps)
 
 
 def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> None:
-    """Write an animation as GIF or MP4, whole or not at all.
+    """Write an animation as GIF or MP4, completely or not at all.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
 def check_animation(path: Path) -> None:
     """Refuse, before any work is done, a file that `save_animation` cannot write.
 
-    ProblemError for another ending than .gif or .mp4, .mp4 without ffmpeg, or a folder not to be written.
+    ProblemError for an ending other than .gif or .mp4, .mp4 without ffmpeg, or a folder that is not writable.
     """
     kind = path.suffix.lower()
     if kind not in _WRITERS:
@@ -143,7 +143,7 @@ def check_animation(path: Path) -> None:
 
 
 def _driver(subject: Subject, turns: FloatArray) -> FloatArray:
-    """Driver angles at shares of the motion, shape (N,), rad: evenly round, or swinging between limits."""
+    """Driver angles at shares of the motion, shape (N,), rad: an even turn, or a swing between limits."""
     phase, sweep = TURN * turns, subject.sweep
     start, sense = sweep.ranges[0][0], 1
     if subject.verdict is not None:
@@ -153,7 +153,7 @@ def _driver(subject: Subject, turns: FloatArray) -> FloatArray:
     low, high = np.transpose(sweep.ranges)
     middle, half = (low + high) / 2, (high - low) / 2
     beside = (start - middle + np.pi) % TURN - np.pi
-    chosen = np.argmin(np.abs(beside) - half)  # the range that holds the start
+    chosen = np.argmin(np.abs(beside) - half)  # the range with the start
     phase = phase + sense * np.arccos(np.clip(-beside / half, -1, 1))[chosen]
     angles: FloatArray = middle[chosen] - half[chosen] * np.cos(phase)
     return angles
@@ -162,24 +162,24 @@ def _driver(subject: Subject, turns: FloatArray) -> FloatArray:
 class _Moving:
     """The artists of an animation, and the motion that they show.
 
-    `state` holds every frame, `path` what P draws over the whole motion, at the shares `turns` of it.
+    `state` has every frame, `path` the path of P over the full motion at its shares `turns`.
     """
 
     def __init__(
         self, axes: Axes, subject: Subject, state: Position, turns: FloatArray, path: FloatArray
     ) -> None:
         scene, carried = subject.scene, _carried(subject, state)
-        self._stands, self._path = stands(subject, scene, state), path
-        shapes = list(shapes_of(subject, scene, self._stands[0], named=False))
+        self._placements, self._path = placements(subject, scene, state), path
+        shapes = list(shapes_of(subject, scene, self._placements[0], named=False))
         if carried:
-            self._stands = [stand | body for stand, body in zip(self._stands, carried, strict=True)]
+            self._placements = [each | body for each, body in zip(self._placements, carried, strict=True)]
             shapes.append(Shape(tuple(carried[0]), {"color": BODY, "alpha": 0.7, "zorder": 3.5}, filled=True))
         self._names: dict[str, Annotation] = {}
-        self._told: list[str] = []
+        self._captions: list[str] = []
         self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
-        self._shapes = Drawn(axes, shapes, self._stands[0])
+        self._shapes = Drawn(axes, shapes, self._placements[0])
         axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
         (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
         if subject.problem is not None:
@@ -187,33 +187,33 @@ class _Moving:
             draw_task(axes, subject)
         draw_ground(axes, scene)
         plane(axes, subject.spec.length_unit)
-        axes.update_datalim(np.concatenate([[*stand.values()] for stand in self._stands] + [path]))
+        axes.update_datalim(np.concatenate([[*each.values()] for each in self._placements] + [path]))
         name_points(axes, {name.upper(): place for name, place in scene.ground.items()})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
-        """Name the moving points, and tell driver angle and time."""
+        """Name the moving points, and show driver angle and time."""
         look: dict[str, Any] = {"textcoords": "offset points", "color": GROUND, "zorder": 8}
         self._names = {
-            name: axes.annotate(name.upper(), tuple(self._stands[0][name]), (6, 6), **look)
+            name: axes.annotate(name.upper(), tuple(self._placements[0][name]), (6, 6), **look)
             for name in subject.linkage.mechanism.moving
         }
-        self._told = list(_clock(subject, state.theta2))
-        self._clock = axes.text(0.01, 0.99, self._told[0], transform=axes.transAxes, va="top", zorder=8)
+        self._captions = list(_clock(subject, state.theta2))
+        self._clock = axes.text(0.01, 0.99, self._captions[0], transform=axes.transAxes, va="top", zorder=8)
 
     def show(self, frame: int) -> list[Artist]:
-        """Put everything where it is in a frame; what has moved."""
+        """Move everything to its place in a frame, and return the moved artists."""
         for name, text in self._names.items():
-            text.xy = tuple(self._stands[frame][name])
+            text.xy = tuple(self._placements[frame][name])
         if self._clock is not None:
-            self._clock.set_text(self._told[frame])
-        self._shapes.move(self._stands[frame])
+            self._clock.set_text(self._captions[frame])
+        self._shapes.move(self._placements[frame])
         self._trace.set_data(*self._path[: self._drawn[frame]].T)
-        told = [] if self._clock is None else [*self._names.values(), self._clock]
-        return [*self._shapes.artists, self._trace, *told]
+        texts = [] if self._clock is None else [*self._names.values(), self._clock]
+        return [*self._shapes.artists, self._trace, *texts]
 
 
 def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:
-    """What is told in each frame."""
+    """Driver angle and time of each frame."""
     sweep, frames = subject.sweep, len(theta2)
     dynamics = subject.spec.dynamics
     steady = dynamics is None or dynamics.motor is None or dynamics.motor.steady
@@ -223,8 +223,8 @@ def _clock(subject: Subject, theta2: FloatArray) -> Iterator[str]:
         yield f"{time}theta2 = {angle:.0f} deg"
 
 
-def _carried(subject: Subject, state: Position) -> list[Stand]:
-    """Corners of the body that the task has P carry, by name, in every frame; none where it has none."""
+def _carried(subject: Subject, state: Position) -> list[Placement]:
+    """Corners of the body that P carries, by name, in every frame; empty without a body."""
     if subject.problem is None:
         return []
     task = subject.problem.task

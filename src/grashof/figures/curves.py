@@ -1,27 +1,30 @@
-"""Plots of an analysis over the driver angle: angles, velocities, accelerations, torque and forces."""
+"""Plots over the driver angle: motion, forces, and the output of a function generator."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 from matplotlib.axes import Axes
 
+from grashof.analysis import function_curves
 from grashof.figures.parts import COUPLER, COUPLER_2, DRIVER, GROUND, OUTPUT, OUTPUT_2, PATH, TARGET
 from grashof.figures.subject import Linkage, Subject
-from grashof.problems import Problem, ProblemError
+from grashof.problems import Problem, ProblemError, Task
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.study.kinds import forces_of, turning
-from grashof.study.quantities import dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.quantities import by_range, dynamic_quantities, kinematic_quantities, table_of
+from grashof.study.section import FROM_FIRST_PAIR
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
+from grashof.synth import Candidate
 
 AxesArray = npt.NDArray[np.object_]
-# What each panel shows: the label of its axis, and the columns of the analysis with their names, those of
-# all kinds of linkages together.
+# Label of the axis of a panel, and the columns of the analysis with their names, for all kinds of linkages.
 Panel = tuple[str, Mapping[str, str]]
 _MOVING = tuple(dict.fromkeys(name for row in MECHANISMS for name in row.moving))
 _MU = {"mu_deg": "transmission angle mu", "mu_2_deg": "mu of loop 2"}
@@ -39,7 +42,7 @@ KINEMATICS: Mapping[str, Panel] = {
         {f"{name}_acceleration": name.upper() for name in _MOVING},
     ),
 }
-# Of linkages with a slide besides.
+# Further panels of linkages with a slide.
 SLIDE: Mapping[str, Panel] = {
     "slide travel": ("slide ({unit})", {"slide_travel": "travel"}),
     "slide velocity": ("slide velocity ({unit}/s)", {"slide_velocity": "velocity"}),
@@ -56,12 +59,12 @@ DYNAMICS: Mapping[str, Panel] = {
         {"shaking_force_x": "x", "shaking_force_y": "y", "shaking_force": "size"},
     ),
 }
-_DASHES = (0, (5, 2))  # of every second curve, so that equal ones both show
+_DASHES = (0, (5, 2))  # of every second curve, so that both of two equal curves are visible
 _PENS = (
     *((COUPLER, "-"), (OUTPUT, _DASHES), (PATH, "-"), (TARGET, _DASHES)),
     *((COUPLER_2, "-"), (OUTPUT_2, _DASHES), (DRIVER, "-"), (GROUND, _DASHES)),
 )
-_PEAK = 12.0  # a rate is drawn up to so many times its typical size, where it grows without bound
+_PEAK = 12.0  # times the typical size: limit of rates that grow without bound
 
 
 def plot_kinematics(
@@ -93,7 +96,7 @@ def plot_kinematics(
     Raises
     ------
     ProblemError
-        No single linkage, one that closes nowhere, an unknown quantity, or another number of axes.
+        Not a single linkage, one that closes nowhere, an unknown quantity, or a wrong number of axes.
 
     Examples
     --------
@@ -165,10 +168,10 @@ def draw_curves(
 ) -> AxesArray:
     """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
-    theta2 = _by_range(table, "theta2_deg")
+    theta2 = by_range(table, "theta2_deg")
     for axes, (label, every) in zip(rows, panels, strict=True):
         names = {name: _name(sweep, name, words) for name, words in every.items() if name in table}
-        drawn = {name: _by_range(table, name) for name in names}
+        drawn = {name: by_range(table, name) for name in names}
         for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
             axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
         if not sweep.turns and not label.startswith("angle"):
@@ -188,12 +191,12 @@ def draw_curves(
 
 
 def _name(sweep: Sweep, column: str, words: str) -> str:
-    """What a column is called; a joint force is one in a slide where the kind has one there."""
+    """Name of a column; for a joint force the joint, or the slide that the kind has in its place."""
     return forces_of(sweep.spec.linkage.mechanism).get(column, words)
 
 
 def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
-    """As many axes as there are panels: those given, or of a new figure."""
+    """An axes for each panel: those given, or of a new figure."""
     if ax is None:
         import matplotlib.pyplot as plt  # a user's own axes must not depend on it
 
@@ -205,18 +208,50 @@ def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
     return rows
 
 
-def _by_range(table: pd.DataFrame, name: str) -> FloatArray:
-    """A column of an analysis, with a gap between the ranges of the driver."""
-    values = table[name].to_numpy(dtype=np.float64)
-    if "range" not in table:
-        return values
-    return np.insert(values, np.flatnonzero(np.diff(table["range"])) + 1, np.nan)
-
-
 def _bound(ax: Axes, values: FloatArray) -> None:
-    """Cut off what grows without bound towards a dead position."""
+    """Cut off values that grow without bound towards a dead position."""
     known = values[np.isfinite(values)]
     limit = _PEAK * float(np.median(np.abs(known))) if known.size else 0.0
     if limit > 0 and np.abs(known).max() > limit:
         low = max(float(known.min()) * 1.05, -limit)
         ax.set_ylim(min(low, -0.02 * limit), min(float(known.max()) * 1.05, limit))
+
+
+def plot_function(task: Task, candidate: Candidate, *, ax: Sequence[Axes]) -> None:
+    """Wanted and generated output of a design on the first axes, its structural error on the second."""
+    output, error = ax
+    curves = function_curves(candidate.linkage, task, candidate.verdict)
+    if curves is not None:
+        places, shown = np.degrees(curves.turned), task.counted_in.shown
+        output.plot(places, shown * curves.wanted, color=OUTPUT, linewidth=3, alpha=0.4, label="wanted")
+        output.plot(places, shown * curves.generated, color=COUPLER, label="generated")
+        error.plot(places, shown * curves.error, color=COUPLER)
+        at = function_curves(candidate.linkage, task, candidate.verdict, at=task.driver_turns)
+        if at is not None and not task.fits_range:
+            pairs: dict[str, Any] = {"marker": "o", "markersize": 4, "color": TARGET}
+            pairs |= {"linestyle": "none", "markerfacecolor": "none"}
+            output.plot(np.degrees(task.driver_turns), shown * at.wanted, label="pairs", **pairs)
+            error.plot(np.degrees(task.driver_turns), shown * at.error, **pairs)
+    unit = candidate.problem.length_unit
+    _label(output, task.output_words, task, unit)
+    _label(error, "structural error", task, unit)
+    if output.lines:
+        output.legend(loc="best", fontsize="small")
+
+
+def plot_wanted(axes: Axes, task: Task, length_unit: str) -> None:
+    """The wanted function, with its pairs."""
+    turned, shown = np.linspace(*task.span, 361), task.counted_in.shown
+    axes.plot(np.degrees(turned), shown * task.output(turned), color=OUTPUT, label="wanted")
+    axes.plot(
+        np.degrees(task.driver_turns), shown * task.outputs, linestyle="none", marker="o", color=TARGET,
+        markerfacecolor="none", label="pairs",
+    )  # fmt: skip
+    _label(axes, task.output_words, task, length_unit)
+    axes.legend(loc="best", fontsize="small")
+
+
+def _label(axes: Axes, words: str, task: Task, length_unit: str) -> None:
+    """Label both axes, the vertical one by words with the unit of the output."""
+    axes.set_xlabel(FROM_FIRST_PAIR)
+    axes.set_ylabel(f"{words} ({task.counted_in.of(length_unit)})")

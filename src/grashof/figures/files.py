@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.figures.animation import animate
-from grashof.figures.function import plot_function
+from grashof.figures.curves import plot_function
 from grashof.figures.linkage import figure_of, plot_linkage
 from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
@@ -36,8 +36,8 @@ STYLE: Any = {
     "grid.alpha": 0.5,
 }
 
-_TITLE_WIDTHS = (120, 110, 100, 90, 80, 70, 60, 50, 40, 30, 20)  # characters a line that are tried
-_LONGEST = 300  # characters of a problem's title that a drawing shows
+_TITLE_WIDTHS = (120, 110, 100, 90, 80, 70, 60, 50, 40, 30, 20)  # characters per line that are tried
+_LONGEST = 300  # characters of a title that a drawing shows
 
 
 def draw_design(problem: Problem, candidate: Candidate, rank: int) -> Figure:
@@ -89,14 +89,14 @@ def draw_motion(
 
 
 def fit_title(axes: Axes, text: str) -> None:
-    """Give axes a title in lines that are no wider than the figure, and room for it."""
+    """Give axes a title in lines that fit in the figure, and room for it."""
     figure = figure_of(axes)
     place = axes.get_position()
     middle = (place.x0 + place.x1) / 2
     room = (2 * min(middle, 1 - middle) - 0.02) * figure.bbox.width
     with missing_glyphs_unwarned():
         lines = [_wrapped(axes, part, room) for part in text.split("\n")]
-        # With its place given matplotlib does not look for what it might strike, which takes long.
+        # With y given matplotlib skips its slow search for overlaps.
         taken = axes.set_title("\n".join(lines), y=1.0, parse_math=False).get_window_extent()
     if figure.get_layout_engine() is None:
         top = 1 - (taken.height + 0.17 * figure.dpi) / figure.bbox.height
@@ -104,7 +104,7 @@ def fit_title(axes: Axes, text: str) -> None:
 
 
 def _wrapped(axes: Axes, text: str, room: float) -> str:
-    """Text in lines no wider than so many pixels, as a title; its own wrap reads $ as math."""
+    """Text in lines of up to `room` pixels, as a title; matplotlib's own wrap reads $ as math."""
     for width in _TITLE_WIDTHS:
         lines = "\n".join(wrap(text, width, break_on_hyphens=False))
         if axes.set_title(lines, parse_math=False).get_window_extent().width <= room:

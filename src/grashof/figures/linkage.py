@@ -1,4 +1,4 @@
-"""Figures of a linkage, its coupler curve and the designs of a result."""
+"""Figures of a linkage, its coupler curve, and the designs of a result."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import Position, solve_position
-from grashof.figures.function import plot_wanted
+from grashof.figures.curves import plot_wanted
 from grashof.figures.parts import (
     COUPLER,
     GROUND,
@@ -26,7 +26,7 @@ from grashof.figures.parts import (
     name_points,
     targets_shown,
 )
-from grashof.figures.shapes import Drawn, shapes_of, stands
+from grashof.figures.shapes import Drawn, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -36,7 +36,7 @@ from grashof.synth import Result
 from grashof.synth.designs.ranking import pareto_optimal
 from grashof.wording.numbers import with_unit
 
-_NUMBERED = 10  # designs that carry their rank
+_NUMBERED = 10  # designs that are labelled with their rank
 
 
 def plot_linkage(
@@ -79,14 +79,14 @@ def plot_linkage(
     subject = Subject.of(linkage, problem)
     state = _state(subject, theta2)
     scene = subject.scene
-    positions = stands(subject, scene, state)
+    positions = placements(subject, scene, state)
     ax = new_axes(ax)
     if subject.problem is not None:
         draw_scene(ax, subject.problem)
     draw_path(ax, subject, scene)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
-    for stand, shade in zip(positions, shades, strict=True):
-        Drawn(ax, shapes_of(subject, scene, stand, named=stand is positions[-1]), stand, shade)
+    for placement, shade in zip(positions, shades, strict=True):
+        Drawn(ax, shapes_of(subject, scene, placement, named=placement is positions[-1]), placement, shade)
     draw_task(ax, subject)
     draw_ground(ax, scene)
     draw_sense(ax, subject)
@@ -94,7 +94,7 @@ def plot_linkage(
     names: dict[tuple[float, ...], str] = {}
     for name in subject.linkage.mechanism.points:
         place = positions[-1][name]
-        names.setdefault(tuple(place), name.upper())  # P may lie in a joint
+        names.setdefault(tuple(place), name.upper())  # P may coincide with a joint
     name_points(ax, {name: np.array(place) for place, name in names.items()})
     last = "target" if subject.problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
@@ -103,7 +103,7 @@ def plot_linkage(
 
 
 def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
-    """Draw what a problem asks for: its scene, and its points or the body in its poses.
+    """Draw the task of a problem: its scene, and its points or the body in its poses.
 
     Parameters
     ----------
@@ -113,8 +113,8 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Equal scales, in the problem's unit. A pose without a place is not drawn. Of a function
-        what is wanted, over the driver rotation.
+        Equal scales, in the problem's unit. A pose without a position is not drawn. For a function
+        its wanted output over the driver rotation.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def plot_design_space(
     ----------
     result : Result
     x, y : str
-        Keys of quantities: what a column of `Result.to_frame` holds, without its "_deg".
+        Keys of quantities: columns of `Result.to_frame`, without "_deg".
     ax : Axes, optional
         A scale of colours is added to its figure.
 
@@ -213,7 +213,7 @@ def plot_design_space(
     """
     _ = result.best
     problem, candidates = result.problem, result.candidates
-    (x_values, x_label), (y_values, y_label) = _along(result, x), _along(result, y)
+    (x_values, x_label), (y_values, y_label) = _values_of(result, x), _values_of(result, y)
     front = pareto_optimal(problem, candidates)
     ax = new_axes(ax)
     error = "structural_error_max" if problem.task.has_output.any() else "error"
@@ -221,7 +221,7 @@ def plot_design_space(
     if third == "error" and problem.requirements.is_exact(problem.task):
         ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
     else:
-        values, label = _along(result, third)
+        values, label = _values_of(result, third)
         known = np.where(np.isfinite(values), values, np.nan)
         scale = colormaps["viridis"].with_extremes(bad=KEPT_OUT)
         dots = ax.scatter(
@@ -246,8 +246,8 @@ def plot_design_space(
     return ax
 
 
-def _along(result: Result, key: str) -> tuple[FloatArray, str]:
-    """A quantity of all designs, as tables show it, and what it is called."""
+def _values_of(result: Result, key: str) -> tuple[FloatArray, str]:
+    """A quantity of all designs, as tables show it, and its label."""
     if key not in (known := result.best.values):
         meant = near_miss(key, list(known))
         raise ProblemError(
@@ -276,7 +276,7 @@ def figure_of(ax: Axes) -> Figure:
 
 
 def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
-    """The linkage wherever it is drawn."""
+    """The positions in which the linkage is drawn."""
     assembly: npt.ArrayLike = subject.linkage.assembly
     if theta2 is not None:
         angles = np.ravel(np.asarray(theta2, dtype=np.float64))

@@ -1,4 +1,4 @@
-"""What stands still in pictures of linkages: ground, the path of P, names, the task and its scene."""
+"""Fixed elements of drawings of linkages: ground, path of P, names, the task and its scene."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ from grashof.problems.values.arrays import FloatArray
 
 # Distinct to the colour-blind, too (after Okabe & Ito, *Color Universal Design*, 2008).
 DRIVER, COUPLER, OUTPUT, PATH = "#d55e00", "#0072b2", "#009e73", "#8c3f78"
-BODY = TARGET = "#e69f00"  # both are what is asked
+BODY = TARGET = "#e69f00"  # both belong to the task
 COUPLER_2, OUTPUT_2 = "#5b3fd6", "#6b3d00"
 COLOURS = dict(zip(ROLES, (DRIVER, COUPLER, OUTPUT, COUPLER_2, OUTPUT_2), strict=True))
 SCENE, GROUND, KEPT_OUT = "#5d6d7e", "#17202a", "#909497"
 # Targets up to which the linkage is drawn at each, and up to which each carries its number.
 _CROWD, _CROWD_OF_POINTS = 8, 6
 _NUMBERED = 24
-# pt: where a name may stand beside its point, the usual places first.
+# pt: offsets of a name from its point, in order of preference.
 _SIDES = ((7, -12), (7, 6), (-20, 6), (-20, -12), (10, -3), (-22, -3), (-5, 9), (-5, -17))
-_LETTER, _KEPT_OFF = (6.5, 7.0), 5.5  # pt: size of a letter, and how far its middle line keeps off bars
-_TEXT = (16.0, 11.0)  # pt: texts of two characters so far apart do not cover each other
+_LETTER, _KEPT_OFF = (6.5, 7.0), 5.5  # pt: size of a letter, and least distance of its middle line from bars
+_TEXT = (16.0, 11.0)  # pt: distances at which texts of two characters do not overlap
 
 
 @contextmanager
 def missing_glyphs_unwarned() -> Iterator[None]:
-    """No warning for signs that the font lacks: pixels show a box for them, SVG keeps the text."""
+    """Suppress warnings for signs that the font lacks: PNG shows a box for them, SVG keeps the text."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", r"Glyph .* missing from", UserWarning)
         yield
 
 
 def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
-    """Write names beside points of shape (2,), each where it covers no text and, if that can be, no line.
+    """Write names beside points of shape (2,), each where it covers no text and, if possible, no line.
 
-    The axes' limits stand by then, and all else is drawn.
+    The limits of the axes are final by then, and all else is drawn.
     """
     places = in_points(axes, np.array(list(points.values())))
     taken, ends = _written(axes), _segments(axes)
@@ -56,7 +56,7 @@ def name_points(axes: Axes, points: Mapping[str, FloatArray]) -> None:
 
 
 def _written(axes: Axes) -> list[FloatArray]:
-    """Where short texts are, pt."""
+    """Places of short texts, pt."""
     found = [text for text in axes.texts if isinstance(text, Annotation) and text.get_text()]
     if not found:
         return []
@@ -76,7 +76,7 @@ def _segments(axes: Axes) -> FloatArray:
 
 
 def _clear(place: FloatArray, name: str, ends: FloatArray) -> bool:
-    """Whether a name whose lower left corner is at a place, pt, keeps off all lines."""
+    """Whether a name with its lower left corner at a place, pt, is clear of all lines."""
     middle = place + np.array([_LETTER[0] * len(name), _LETTER[1]]) / 2
     reach = np.linspace(-0.3, 0.3, 3)[:, None] * [_LETTER[0] * len(name), 0] + middle
     start, way = ends[:, None, 0], ends[:, None, 1] - ends[:, None, 0]
@@ -87,7 +87,7 @@ def _clear(place: FloatArray, name: str, ends: FloatArray) -> bool:
 
 
 def in_points(axes: Axes, places: FloatArray) -> FloatArray:
-    """Where places of shape (N, 2) are on the page, pt; with the limits and the scale as they now are."""
+    """Points (N, 2) in pt on the page, with the present limits and scale."""
     axes.autoscale_view()
     axes.apply_aspect()
     inches: FloatArray = axes.figure.dpi_scale_trans.inverted().transform(axes.transData.transform(places))
@@ -95,7 +95,7 @@ def in_points(axes: Axes, places: FloatArray) -> FloatArray:
 
 
 def apart(place: FloatArray, others: Sequence[FloatArray]) -> bool:
-    """Whether a short text at a place, pt, covers none at others."""
+    """Whether a short text at a place, pt, overlaps none at others."""
     return not any((np.abs(place - other) < _TEXT).all() for other in others)
 
 
@@ -125,27 +125,27 @@ def draw_sense(axes: Axes, subject: Subject) -> None:
 
 
 def draw_path(axes: Axes, subject: Subject, scene: Scene) -> None:
-    """The path of P over all that the driver can do; of an open task dotted, and the part used drawn out."""
+    """The path of P over the entire motion; for an open task dotted, with the used part solid."""
     problem = subject.problem
     verdict = None if problem is None or problem.task.closed else subject.verdict
     style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
     signs = [int(scene.linkage.assembly)]
     if verdict is not None:
-        whole = "whole turn" if subject.sweep.turns else "all that it reaches"
-        style |= {"linewidth": 0.8, "linestyle": ":", "label": f"path of P, {whole}"}
+        extent = "whole turn" if subject.sweep.turns else "all that it reaches"
+        style |= {"linewidth": 0.8, "linestyle": ":", "label": f"path of P, {extent}"}
         signs = sorted(set(verdict.assembly.tolist()))
     for sign in signs:
         for track in scene.tracks(sign):
             axes.plot(*track.T, **style)
             style["label"] = None
-    if verdict is not None and verdict.branch_ok:  # else no motion joins the targets
+    if verdict is not None and verdict.branch_ok:  # otherwise no motion joins the targets
         angles = np.linspace(verdict.theta2.min(), verdict.theta2.max(), 181)
         way = scene.path(angles, int(verdict.assembly[0]))
         axes.plot(*way.T, color=PATH, linewidth=1.6, label="path of P, first to last target", zorder=2)
 
 
 def draw_scene(axes: Axes, problem: Problem) -> None:
-    """Outlines of the scene, and hatched what is kept out; the legend names for what."""
+    """Outlines of the scene, and hatched areas with the points that are kept out of them."""
     for index, outline in enumerate(problem.outlines):
         label = "scene" if index == 0 else None
         axes.plot(*outline.T, color=SCENE, linewidth=3, solid_joinstyle="miter", label=label, zorder=1)
@@ -168,7 +168,7 @@ def draw_task(axes: Axes, subject: Subject) -> None:
 
 
 def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray) -> None:
-    """The same, with places, shape (N, 2), and angles, shape (N,), for what a pose leaves free, or NaN."""
+    """The same, with positions (N, 2) and angles (N,) for parts that a pose leaves free, or NaN."""
     if task.only_points:
         _draw_points(axes, task)
         return
@@ -186,7 +186,7 @@ def targets_shown(task: Task) -> list[int]:
 
 
 def body_outline(task: Task, place: FloatArray, angle: float) -> FloatArray | None:
-    """The body's corners, shape (M, 2), where it stands at a place and an angle (rad); None without one."""
+    """The corners of the body (M, 2) at a position and an angle (rad); None without a body."""
     if task.body is None or not task.has_angle.any():  # without angles it has no orientation
         return None
     corners: FloatArray = task.body @ _turned(angle).T + place
@@ -194,11 +194,11 @@ def body_outline(task: Task, place: FloatArray, angle: float) -> FloatArray | No
 
 
 def _draw_pose(axes: Axes, task: Task, pose: int, place: FloatArray, angle: float) -> None:
-    """The body in a pose; what the pose leaves free is as it is given here, and the body then dashed."""
+    """The body in a pose, dashed where position or angle is free and the given one is drawn."""
     placed, oriented = bool(task.has_position[pose]), bool(task.has_angle[pose])
     place = task.positions[pose] if placed else place
     angle = float(task.angles[pose]) if oriented else angle
-    if np.isnan(place).any():  # free, and nothing stands there
+    if np.isnan(place).any():  # free, and no position is given
         return
     corners = body_outline(task, place, angle)
     if corners is not None and np.isfinite(angle):

@@ -1,4 +1,4 @@
-"""What moves in pictures, shape by shape: links, a cylinder, and the body that P carries."""
+"""Moving elements of drawings as shapes: links, a cylinder, the body that P carries."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from grashof.figures.parts import COLOURS, COUPLER, GROUND, PATH, SCENE
 from grashof.figures.subject import Subject
 from grashof.problems.values.arrays import FloatArray
 
-Stand = dict[str, FloatArray]  # places (2,) of the points in one position, by name
+Placement = dict[str, FloatArray]  # places (2,) of the points in one position, by name
 _BASE, _END, _PIVOT = _CYLINDER = ("base", "end", "pivot")
 _ROD = "#aab2b9"  # of a cylinder
-_SHARE = 0.9  # of the closed length is the body of a cylinder
+_SHARE = 0.9  # length of the body of a cylinder over its closed length
 
 
-def stands(subject: Subject, scene: Scene, state: Position) -> list[Stand]:
-    """Where everything is in each of N positions."""
+def placements(subject: Subject, scene: Scene, state: Position) -> list[Placement]:
+    """Places of all points in each of N positions."""
     found = scene.places(state) | _cylinder_places(subject, state)
     return [{name: place[k] for name, place in found.items()} for k in range(len(state.theta2))]
 
 
 def _cylinder_places(subject: Subject, state: Position) -> dict[str, FloatArray]:
-    """Base, end of the body and pivot of a cylinder in N positions, each of shape (N, 2), if it has one."""
+    """Base, end of the body and pivot of the cylinder in N positions, (N, 2) each; empty without one."""
     verdict, problem = subject.verdict, subject.problem
     if verdict is None or problem is None or verdict.cylinder is None:
         return {}
@@ -45,19 +45,19 @@ def _cylinder_places(subject: Subject, state: Position) -> dict[str, FloatArray]
 
 
 class Shape(NamedTuple):
-    """A line through points, or the area that they surround, and how matplotlib draws it."""
+    """A line through points, or the area within them, with its style in matplotlib."""
 
     points: tuple[str, ...]
     look: dict[str, Any]
     filled: bool = False
 
 
-def shapes_of(subject: Subject, scene: Scene, stand: Stand, *, named: bool = True) -> Iterator[Shape]:
-    """All that moves, in the position it is drawn in first; `named` if the legend is to name it."""
+def shapes_of(subject: Subject, scene: Scene, placement: Placement, *, named: bool = True) -> Iterator[Shape]:
+    """The moving shapes in the position in which they are drawn first; `named` if they are in the legend."""
     for body in sorted(scene.bodies, key=lambda body: len(body.link.points)):
         label = body.words if named else None
         width = 2.4 if len(body.link.points) == 2 else 1.6
-        for points in body.lines(stand):
+        for points in body.lines(placement):
             look = {"color": COLOURS[body.role], "linewidth": width, "label": label, "zorder": 4}
             yield Shape(points, look)
             label = None
@@ -66,7 +66,7 @@ def shapes_of(subject: Subject, scene: Scene, stand: Stand, *, named: bool = Tru
     yield Shape(joints, _dots("white", COUPLER, 5, 5))
     yield Shape(("p",), _dots(PATH, PATH, 4, 6))
     for body in scene.bodies:
-        for points in body.areas(stand):
+        for points in body.areas(placement):
             alpha = 0.25 if points is CORNERS else 0.1
             look = {"color": COLOURS[body.role], "linewidth": 0, "alpha": alpha, "zorder": 3}
             yield Shape(points, look, filled=True)
@@ -87,29 +87,29 @@ def _dots(colour: str, edge: str, size: float, zorder: float) -> dict[str, Any]:
 
 
 class Drawn:
-    """Shapes as drawn in one position, to be moved to others; `shade` is from 0, invisible, to 1."""
+    """Shapes drawn in one position, to be moved to others; `shade` is from 0, invisible, to 1."""
 
-    def __init__(self, axes: Axes, shapes: Iterable[Shape], stand: Stand, shade: float = 1.0) -> None:
+    def __init__(self, axes: Axes, shapes: Iterable[Shape], placement: Placement, shade: float = 1.0) -> None:
         self._drawn: list[tuple[tuple[str, ...], Line2D | Polygon]] = []
         for points, look, filled in shapes:
             draw = axes.fill if filled else axes.plot
-            artists = draw(*_at(stand, points).T, **look | {"alpha": look.get("alpha", 1.0) * shade})
+            artists = draw(*_at(placement, points).T, **look | {"alpha": look.get("alpha", 1.0) * shade})
             self._drawn += [(points, artist) for artist in artists]
 
     @property
     def artists(self) -> list[Artist]:
-        """All that moves."""
+        """The moving artists."""
         return [artist for _, artist in self._drawn]
 
-    def move(self, stand: Stand) -> None:
-        """Put the shapes where their points now are."""
+    def move(self, placement: Placement) -> None:
+        """Move the shapes to new places of their points."""
         for points, artist in self._drawn:
-            corners = _at(stand, points)
+            corners = _at(placement, points)
             if isinstance(artist, Polygon):
                 artist.set_xy(corners)
             else:
                 artist.set_data(*corners.T)
 
 
-def _at(stand: Stand, points: Sequence[str]) -> FloatArray:
-    return np.array([stand[name] for name in points])
+def _at(placement: Placement, points: Sequence[str]) -> FloatArray:
+    return np.array([placement[name] for name in points])

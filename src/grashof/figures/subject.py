@@ -1,4 +1,4 @@
-"""What a picture is about: a linkage alone, one with its file, or a design with its problem."""
+"""The subject of a drawing: a linkage alone, one with its file, or a design with its problem."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Linkage = AnyKind | LinkageSpec | Candidate
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Subject:
-    """A linkage with its unit and masses and, where there is a problem, how it does the task.
+    """A linkage with its unit and masses and, where there is a problem, the verdict on it.
 
     With a problem `spec` is on the assembly that meets the first target, with the problem's unit and masses.
     """
@@ -28,7 +28,7 @@ class Subject:
 
     @classmethod
     def of(cls, linkage: Linkage, problem: Problem | None = None) -> Subject:
-        """A single linkage (or ProblemError), judged by a problem that is given or its list states."""
+        """A single linkage (or ProblemError), judged for the given problem or that of its file."""
         if isinstance(linkage, LinkageSpec):
             spec, problem = linkage, linkage.problem if problem is None else problem
         elif isinstance(linkage, AnyKind):
@@ -57,17 +57,17 @@ class Subject:
 
     @property
     def scene(self) -> Scene:
-        """What is drawn of it, over all that its driver can do."""
+        """Its drawn elements over the entire motion of the driver."""
         return Scene(self.linkage, tuple(self.sweep.angles()))
 
     @property
     def cylinder(self) -> Cylinder | None:
-        """The cylinder that drives it; None where the task is without one."""
+        """The cylinder that drives it, if any."""
         return None if self.verdict is None else self.verdict.cylinder
 
     @property
     def sweep(self) -> Sweep:
-        """All that its driver can do; `ProblemError` where it closes at no driver angle."""
+        """The entire motion of its driver; `ProblemError` where it closes at no driver angle."""
         return Sweep.of(self.spec)
 
 

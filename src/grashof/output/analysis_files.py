@@ -16,8 +16,7 @@ from grashof.output.process import say
 from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
 from grashof.output.terminal import fitting, folded, plain_table
 from grashof.survey import Fact, LinkageReport
-from grashof.wording.linkage import dimensions_text
-from grashof.wording.numbers import number_text, value_text
+from grashof.wording.numbers import dimensions_text, number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
@@ -28,7 +27,7 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
     OSError where the disk is full or the folder is lost; it then holds its former files.
     """
     from grashof.figures.files import save
-    from grashof.figures.survey_plots import plots, section_pictures  # matplotlib takes a while to import
+    from grashof.figures.section_plots import plots, section_pictures  # matplotlib takes a while to import
     from grashof.page.analysis import analysis_page
 
     about = {

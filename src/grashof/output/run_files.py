@@ -27,7 +27,7 @@ from grashof.problems.values.checks import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
 from grashof.synth.search.history import StopReason, now
-from grashof.wording.enclosure import enclosure_record
+from grashof.wording.proof import enclosure_record
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -26,9 +26,8 @@ from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
-from grashof.wording.enclosure import enclosure_line, enclosures
 from grashof.wording.problem import error_meaning, goals
-from grashof.wording.proof import proof_line
+from grashof.wording.proof import enclosure_line, enclosures, proof_line
 
 _ROWS = 12
 _ROUNDING = 1e-6  # sizes: solvers keep limits no closer

@@ -1,4 +1,4 @@
-"""Pages to decide by: what a search found and how a linkage moves, each one self-contained HTML file."""
+"""Pages of searches and of analysed linkages, each a single self-contained HTML file."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any

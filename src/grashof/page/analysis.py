@@ -1,4 +1,4 @@
-"""The page of an analysis: the moving linkage, all plots and sections in groups that fold, the summary."""
+"""The page of an analysis: the moving linkage, the summary, all sections in groups that fold."""
 
 from __future__ import annotations
 
@@ -9,21 +9,19 @@ import numpy as np
 import pandas as pd
 
 from grashof.analysis import verify
-from grashof.page.designs import cylinder_data, legend, linkage_data
+from grashof.page.designs import cylinder_data, legend, linkage_data, scene_of
 from grashof.page.panels import motion_sections
 from grashof.page.plot_data import Columns, is_thinned, plot_data
 from grashof.page.render import DRAWING, render
-from grashof.page.scene import scene_of
 from grashof.problems import LinkageSpec
 from grashof.problems.values.checks import counted
 from grashof.study.section import DRIVER_ANGLE, Fact, Section
 from grashof.survey.report import LinkageReport
-from grashof.wording.linkage import dimensions_text
-from grashof.wording.numbers import number_text, value_text
+from grashof.wording.numbers import dimensions_text, number_text, value_text
 
 _SCRIPTS = (*DRAWING, "picture.js", "curves.js", "tracks.js", "saving.js", "analysis.js")
 _EXTREMES = (("min", "least"), ("theta2_min_deg", "at θ2"), ("max", "largest"), ("theta2_max_deg", "at θ2"))
-_SMALL = 30  # rows up to which a table stands in the page; a larger one is a file beside it
+_SMALL = 30  # rows up to which a table is in the page; a larger one is a file next to it
 _DIGITS = 6
 _THINNED = "long histories have only some of their samples on this page, and all of them in the tables"
 
@@ -40,7 +38,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
     Returns
     -------
     str
-        One file: it needs no other and no network.
+        A single file that needs neither other files nor a network.
     """
     sweep, spec = report.sweep, report.sweep.spec
     columns, targets = Columns(), _targets(spec)
@@ -95,7 +93,7 @@ def analysis_page(report: LinkageReport, record: Mapping[str, Any]) -> str:
 
 
 def _targets(spec: LinkageSpec) -> dict[str, Any]:
-    """Where the linkage meets the targets of its task; empty without one, or where it is open at a target."""
+    """Driver angles and assemblies at the targets; empty without a task, or where it is open at a target."""
     if spec.problem is None:
         return {}
     task, wanted = spec.problem.task, spec.problem.requirements

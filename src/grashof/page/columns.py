@@ -1,4 +1,4 @@
-"""Which quantities of a design the page lists, by which name, in which unit and with which digits."""
+"""Quantities of designs on a page: their names, units and digits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from grashof.problems.values.units import Unit
 from grashof.synth.designs.table import LISTED, NAMES, OWN, Row, known
 from grashof.wording.problem import error_meaning
 
-ROUNDING = "≈ 0"  # in place of an error that is rounding
+ROUNDING = "≈ 0"  # shown for an error that is rounding
 _LENGTH_DIGITS, _ANGLE_DECIMALS = 5, 2
 
 
@@ -25,8 +25,8 @@ _LENGTH_DIGITS, _ANGLE_DECIMALS = 5, 2
 class Column:
     """A quantity of the designs on a page, by its name in candidates.csv.
 
-    Its numbers have so many decimals, -1 for powers of ten; an error up to `noise` is rounding; more is
-    `better` for +1, less for -1, neither for 0. `about` adds to the label; an unlisted one is an axis alone.
+    `decimals` is -1 for powers of ten; an error up to `noise` is rounding; more is `better` for +1, less for
+    -1, neither for 0. `about` extends the label; a column that is not `listed` is only an axis.
     """
 
     key: str
@@ -51,19 +51,19 @@ class Column:
 
 
 def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
-    """Every quantity that is known of some of these designs, those of the table first.
+    """The quantities that are known of some of these designs, those of the table first.
 
-    Without the transmission angle over the task where that is a whole turn, or else the one over the turn
-    where no driver turns fully.
+    The transmission angle over the task is left out where the task is a full turn; otherwise that over the
+    turn where no driver turns fully.
     """
-    whole, turns = problem.task.closed, any(row["full_rotation"] for row in rows)
-    left_out = "transmission_min_task" if whole else "" if turns else "transmission_min_cycle"
+    closed, turns = problem.task.closed, any(row["full_rotation"] for row in rows)
+    left_out = "transmission_min_task" if closed else "" if turns else "transmission_min_cycle"
     shown = [
         each
         for each in (*LISTED, OWN)
         if each.key != left_out and any(known(row.get(each.column)) for row in rows)
     ]
-    # In the table first what any design has, then what takes masses or tolerances, then the lengths.
+    # The table begins with quantities of any design, then those of masses or tolerances, then lengths.
     stated = Needs.DYNAMICS, Needs.MANUFACTURING
     shown.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
     lengths, longest = length_decimals(rows), _longest(rows)
@@ -90,10 +90,9 @@ def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A column of candidates.csv in words, as a list of all values has it.
+    """A column of candidates.csv in words, for the list of all values.
 
-    Its numbers have so many decimals, or without any so many significant digits, or are words; an error up to
-    `noise` is rounding.
+    Without `decimals` numbers are shown with significant digits; an error up to `noise` is rounding.
     """
 
     key: str
@@ -105,7 +104,7 @@ class Figure:
 
 
 def figures_of(rows: Sequence[Row], length_unit: str) -> list[Figure]:
-    """Every column of candidates.csv that is filled, in its order."""
+    """Every column of candidates.csv with values, in its order."""
     lengths = length_decimals(rows)
     figures = [Figure("family", NAMES["family"], about="the best of the designs that are alike")]
     for key, each in ((each.column, each) for each in (*LISTED, OWN)):
@@ -121,7 +120,7 @@ def figures_of(rows: Sequence[Row], length_unit: str) -> list[Figure]:
 
 
 def length_decimals(rows: Sequence[Row]) -> int | None:
-    """Decimals of all lengths of some designs; None where they are very long or short."""
+    """Decimals of all lengths of some designs; None where these are very large or small."""
     values = np.concatenate([_known_of(rows, each.column) for each in LISTED if _is_length(each)])
     if not np.any(values[np.isfinite(values)]):
         return None
@@ -130,7 +129,7 @@ def length_decimals(rows: Sequence[Row]) -> int | None:
 
 
 def noise_of(quantity: Quantity, rows: Sequence[Row]) -> float:
-    """Size up to which an error of some designs is rounding, as files have it; 0 of what is no error."""
+    """Size up to which an error of some designs is rounding, in the unit of files; 0 for other quantities."""
     if not quantity.deviates:
         return 0.0
     if quantity.unit is Unit.ANGLE:
@@ -139,7 +138,7 @@ def noise_of(quantity: Quantity, rows: Sequence[Row]) -> float:
 
 
 def _is_length(quantity: Quantity) -> bool:
-    """Whether it is a length or a place, not an error."""
+    """Whether it is a length or a coordinate, not an error."""
     return quantity.unit is Unit.LENGTH and not quantity.deviates
 
 
@@ -153,7 +152,7 @@ def _longest(rows: Sequence[Row]) -> float:
 
 
 def _decimals(values: FloatArray, digits: int, noise: float) -> int:
-    """How many decimals show so many digits of the largest of some values; -1 where that is no help."""
+    """Decimals with which the largest of some values has `digits`; -1 where powers of ten are better."""
     finite = np.abs(values[np.isfinite(values)])
     if not (finite > noise).any():
         return 0

@@ -1,4 +1,4 @@
-"""Designs as the page's scripts move them: the linkage, its driver's travel, torque over it."""
+"""Data that the scripts of a page draw: the scene of a problem, moving designs, torque over their travel."""
 
 from __future__ import annotations
 
@@ -20,43 +20,106 @@ from grashof.analysis import (
 )
 from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
-from grashof.drawing.scene import bodies_of
+from grashof.drawing.scene import Scene, bodies_of
 from grashof.page.render import compact, plain
-from grashof.problems import Cylinder, DynamicsSpec, Linkage, Problem
+from grashof.problems import Cylinder, DynamicsSpec, FourBar, Linkage, Problem, Task, catalogue, load
+from grashof.problems.files.published import published
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.study.sweep import INSET, dead_positions_unwarned, driver_angles
-from grashof.synth import Candidate
+from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row
 
+_SAMPLES = 181
 STEPS = 180
 _ROUNDING = 1e-12  # of a turn
 
 
-class Travel(NamedTuple):
-    """How far a driver goes: a whole turn, or a range between dead positions, rad.
+def scene_of(problem: Problem) -> dict[str, Any]:
+    """A problem as the scripts draw it: lengths in its unit, angles in rad, null where free."""
+    wanted = problem.requirements
+    boxes = {name: box for name in FourBar.mechanism.pivots if (box := getattr(wanted, name)) is not None}
+    return {
+        **_targets_of(problem.task),
+        "unit": problem.length_unit,
+        "outlines": [corners.tolist() for corners in problem.outlines],
+        "keepOut": [corners.tolist() for corners in wanted.keep_out],
+        "keptOut": list(wanted.keep_out_for),
+        "regions": [
+            {
+                "name": ", ".join(name.upper() for name, other in boxes.items() if other == box),
+                "x": list(map(plain, np.array(box.x, dtype=float))),
+                "y": list(map(plain, np.array(box.y, dtype=float))),
+            }
+            for box in dict.fromkeys(boxes.values())
+        ],
+        "published": _published(problem),
+    }
 
-    The ends are NaN where nothing can be assembled.
-    """
+
+def loci_of(result: Result) -> dict[str, Any] | None:
+    """Possible places of the joints, those of the best linkages last; None where they are unknown."""
+    loci = result.loci
+    if loci is None or not len(loci.transmission) or not result.candidates:
+        return None
+    order = np.argsort(loci.transmission, kind="stable")
+    degrees = np.degrees(loci.transmission[order])
+    return {
+        "moving": [compact(ends) for ends in loci.moving[order].reshape(-1, 4)],
+        "ground": [compact(ends) for ends in loci.ground[order].reshape(-1, 4)],
+        "share": [round(float(each), 3) for each in degrees / degrees[-1]],
+        "best": round(float(degrees[-1]), 1),
+    }
+
+
+def _targets_of(task: Task) -> dict[str, Any]:
+    if not task.has_position.any() and not task.has_angle.any():  # limit positions
+        return {"points": [], "closed": task.closed}
+    if task.only_points:
+        return {"points": task.positions.tolist(), "closed": task.closed}
+    poses = np.column_stack([task.positions, task.angles])
+    body = None if task.body is None or not task.has_angle.any() else task.body.tolist()
+    targets = {"poses": [list(map(plain, pose)) for pose in poses], "body": body, "closed": task.closed}
+    return targets | {"bare": True} if task.has_output.any() else targets
+
+
+def _published(problem: Problem) -> dict[str, Any] | None:
+    """Path of the best published design, for a path of the catalogue."""
+    task, known = problem.task, published(problem.name)
+    if not known or problem.name not in catalogue():
+        return None
+    if not np.array_equal(task.positions, load(problem.name).task.positions):
+        return None  # another problem with the same name
+    best = known[0]
+    low, high = driver_ranges(best.linkage)[0]
+    path = Scene(best.linkage).path(np.linspace(low, high, _SAMPLES))
+    return {
+        "label": f"{best.method} {best.year}",
+        "path": [compact(point) for point in path if np.isfinite(point).all()],
+    }
+
+
+class Travel(NamedTuple):
+    """Travel of a driver, rad: a full turn or a range between dead positions; NaN if it closes nowhere."""
 
     low: float
     high: float
     turns: bool
 
     def angles(self, inset: float = 0.0) -> FloatArray:
-        """Driver angles of `driver_angles`, as the page's scripts have them, `inset` from dead positions."""
+        """The driver angles of the scripts, `inset` from dead positions."""
         inset = 0.0 if self.turns else inset
         return driver_angles(self.low + inset, self.high - inset, STEPS, even=self.turns)
 
     def ahead(self, first: float) -> float:
-        """The whole turns by which the angles of a motion, which begins at `first`, are ahead, rad."""
+        """The full turns by which the angles of a motion that begins at `first` are ahead, rad."""
         return TURN * float(np.round((first - (self.low + self.high) / 2) / TURN))
 
 
 def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
-    """Turn from 0, or range between dead positions, of a single linkage, that the first target lies in.
+    """The turn from 0, or the range between dead positions with the first target, of a single linkage.
 
     The driver angles at the targets (N,), rad, are unwrapped along the motion.
     """
@@ -68,13 +131,13 @@ def driver_travel(linkage: Linkage, theta2: FloatArray) -> Travel:
 
 
 def moves(design: Candidate) -> bool:
-    """Whether there is any position of it that could be drawn."""
+    """Whether it can be drawn in any position."""
     theta2 = design.verdict.theta2
     return bool(np.isfinite(theta2).all()) and not np.isnan(driver_travel(design.linkage, theta2).low)
 
 
 def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()) -> list[tuple[str, str]]:
-    """Style and words of each link in drawings of linkages of some kinds, and of their cylinders.
+    """Style and words of the links in drawings of some kinds of linkages, and of their cylinders.
 
     >>> from grashof.problems import SliderCrank
     >>> legend([SliderCrank.mechanism])
@@ -88,12 +151,12 @@ def legend(kinds: Iterable[Mechanism], cylinders: Iterable[Cylinder | None] = ()
 
 
 def linkage_data(linkage: Linkage) -> dict[str, Any]:
-    """A linkage as the scripts have it: its kind, and what it is stated by in full precision."""
+    """A linkage for the scripts: its kind, and its parameters in full precision."""
     return {"mechanism": linkage.mechanism.word, **linkage.stated}
 
 
 class _Drawn(NamedTuple):
-    """A design, its linkage on the assembly that meets the first target, and how far its driver goes."""
+    """A design, its linkage on the assembly of the first target, and the travel of its driver."""
 
     design: Candidate
     linkage: Linkage
@@ -101,13 +164,13 @@ class _Drawn(NamedTuple):
 
     @classmethod
     def of(cls, design: Candidate) -> _Drawn:
-        """A design as it is drawn."""
+        """The design as it is drawn."""
         linkage = design.linkage.changed(assembly=design.verdict.assembly[0])
         return cls(design, linkage, driver_travel(linkage, design.verdict.theta2))
 
 
 def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """Designs that can be assembled as JSON in full precision; the rows are those of `rows_of`."""
+    """Designs that can be assembled, as JSON in full precision; the rows are those of `rows_of`."""
     drawn = list(map(_Drawn.of, designs))
     return [
         {
@@ -133,14 +196,14 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
 
 
 def cylinder_data(driven: Cylinder | None, closed: float) -> dict[str, Any]:
-    """A cylinder of some closed length, which may be unknown, as the scripts draw it; nothing without one."""
+    """A cylinder for the scripts, whose closed length may be unknown; empty without one."""
     if driven is None:
         return {}
     return {"cylinder": {**driven.stated, "closed": closed if np.isfinite(closed) else 0.0}}
 
 
 def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str, Any]:
-    """Wanted and generated output of a function over the range, as files have it; nothing for other tasks."""
+    """Wanted and generated output of a function in the units of files; empty for other tasks."""
     if not problem.task.has_output.any():
         return {}
     curves = function_curves(linkage, problem.task, design.verdict, count=181)
@@ -157,19 +220,21 @@ def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str
 def _torques(problem: Problem, drawn: Sequence[_Drawn]) -> list[list[float | None] | None]:
     """Drive torque over the travel of each linkage, N m; None for each without dynamics.
 
-    Of a driver that starts and stops, over the task alone.
+    For a driver that starts and stops it is over the task only.
     """
     found: list[list[float | None] | None] = [None] * len(drawn)
     if problem.dynamics is None:
         return found
     for rows in by_kind([each.linkage for each in drawn]):
-        torques = _of_one_kind(problem, problem.dynamics, [drawn[row] for row in rows])
+        torques = _torques_of_kind(problem, problem.dynamics, [drawn[row] for row in rows])
         for row, torque in zip(rows, torques, strict=True):
             found[row] = torque
     return found
 
 
-def _of_one_kind(problem: Problem, spec: DynamicsSpec, drawn: Sequence[_Drawn]) -> list[list[float | None]]:
+def _torques_of_kind(
+    problem: Problem, spec: DynamicsSpec, drawn: Sequence[_Drawn]
+) -> list[list[float | None]]:
     metre = metres(problem.length_unit)
     batch = drawn[0].linkage.stacked([each.linkage for each in drawn])[:, None]
     laws = [driver_law(problem, *motion_ends(problem.task, each.design.verdict)) for each in drawn]
@@ -187,7 +252,7 @@ def _of_one_kind(problem: Problem, spec: DynamicsSpec, drawn: Sequence[_Drawn]) 
 
 
 def _angles_of_motion(travel: Travel, verdict: Verdict) -> FloatArray:
-    """Driver angles over the travel, counted as those of the motion are."""
+    """Driver angles over the travel, from the first turn of the motion on."""
     angles = travel.angles(INSET) + travel.ahead(verdict.theta2[0])
     least = float(verdict.theta2.min())
     return angles + TURN * np.ceil((least - angles) / TURN - _ROUNDING) if travel.turns else angles

@@ -1,25 +1,25 @@
-"""The tables of motion and forces as sections: what the page of an analysis shows before all others."""
+"""The tables of motion and forces as sections, the first on the page of an analysis."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
 
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.study.kinds import forces_of, turning
+from grashof.study.quantities import by_range
 from grashof.study.section import Plot, Section
 from grashof.survey.report import LinkageReport
 
 _RATES = ("velocity", "s"), ("acceleration", "s²")
 _MU = {"mu_deg": "μ", "mu_2_deg": "μ of loop 2"}
-# Of a plot: key, title, unit, and the columns with their labels.
+# Key, title and unit of a plot, and its columns with their labels.
 Panel = tuple[str, str, str, Mapping[str, str]]
 
 
 def motion_sections(report: LinkageReport) -> list[Section]:
-    """Sections of plots alone, of every column of motion and forces over the driver angle that there is.
+    """Sections with plots only, of all columns of motion and forces over the driver angle.
 
     >>> from grashof.problems import load_linkage_spec
     >>> from grashof.survey import report_on
@@ -30,12 +30,12 @@ def motion_sections(report: LinkageReport) -> list[Section]:
     Points A, B and P: place-of-p, velocity-of-p, acceleration-of-p
     """
     table = pd.concat(list(report.drawn.values()), axis=1)
-    table = _parted(table.loc[:, ~table.columns.duplicated()])
-    theta2 = table["theta2_deg"].to_numpy()
+    table = table.loc[:, ~table.columns.duplicated()]
+    theta2 = by_range(table, "theta2_deg")
     sections = []
     for key, title, panels in _groups(report.sweep.spec.unit, report.sweep.spec.linkage.mechanism):
         plots = tuple(
-            Plot(name, heading, unit, {columns[each]: table[each].to_numpy() for each in known}, theta2)
+            Plot(name, heading, unit, {columns[each]: by_range(table, each) for each in known}, theta2)
             for name, heading, unit, columns in panels
             if (known := [each for each in columns if each in table])
         )
@@ -98,12 +98,3 @@ def _groups(unit: str, kind: Mechanism) -> list[tuple[str, str, list[Panel]]]:
 
 def _xy(name: str) -> dict[str, str]:
     return {f"{name}_{axis}": axis for axis in "xy"}
-
-
-def _parted(table: pd.DataFrame) -> pd.DataFrame:
-    """The table with a row of NaN between the ranges of the driver, so that lines break."""
-    if "range" not in table:
-        return table
-    parts = [part.astype(np.float64) for _, part in table.groupby("range")]
-    gap = pd.DataFrame(np.nan, index=[0], columns=table.columns)
-    return pd.concat([piece for part in parts for piece in (part, gap)][:-1], ignore_index=True)

@@ -1,4 +1,4 @@
-"""Plots as JSON for the page: columns once, however many plots share them, and no longer than one can see."""
+"""Plots as JSON for the page: shared columns once, and no more rows than are visible."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from grashof.study.limits import greatest_drawn, middle
 from grashof.study.section import DRIVER_ANGLE, Plot
 
 Rows = slice | npt.NDArray[np.intp]
-_MOST = 1500  # rows of a plot that are shown whole
-_DIGITS = 5  # of what varies as much as it is large
+_MOST = 1500  # rows up to which a plot is shown completely
+_DIGITS = 5  # of columns that vary as much as their size
 _STEADY = 1e-9  # share of its size within which a column is constant
 _NOISE = 1e-13  # share of its size below which a value is 0
-_PLACES = 7  # digits: steps of a long history have to stay even
+_PLACES = 7  # digits of abscissae, so that steps of a long history stay even
 
 
 class Columns:
@@ -28,7 +28,7 @@ class Columns:
         self._known: dict[tuple[float | None, ...], int] = {}
 
     def add(self, values: FloatArray, digits: int = _DIGITS) -> int:
-        """The number of a column that has these values, to so many digits or more where they hardly vary."""
+        """The number of a column with these values, to `digits`, or more where they hardly vary."""
         plain, digits = _plain(values, digits)
         column = compact(plain.tolist(), digits)
         number = self._known.setdefault(tuple(column), len(self.found))
@@ -38,7 +38,7 @@ class Columns:
 
 
 def _plain(values: FloatArray, digits: int) -> tuple[FloatArray, int]:
-    """Values of which those are 0 that rounding alone keeps from it, and digits that tell them apart."""
+    """The values with rounding replaced by 0, and the digits that distinguish them."""
     known = values[np.isfinite(values)]
     if not known.any():
         return values, digits
@@ -50,7 +50,7 @@ def _plain(values: FloatArray, digits: int) -> tuple[FloatArray, int]:
 
 
 def plot_data(plot: Plot, columns: Columns) -> dict[str, Any]:
-    """A plot as the scripts draw and save it, with the numbers of its values, which go to `columns`."""
+    """A plot for the scripts, with the numbers of its columns, which are added to `columns`."""
     shown: dict[str, Any] = {"key": plot.key, "title": plot.title, "unit": plot.unit, **_bounds(plot)}
     rows = _rows(plot)
     if plot.places is None:
@@ -86,7 +86,7 @@ def is_thinned(plot: Plot) -> bool:
 
 
 def _bounds(plot: Plot) -> dict[str, Any]:
-    """Up to which size it is drawn, and about which point if it is a track; nothing where all is drawn."""
+    """Size up to which it is drawn, and for tracks the middle; empty where all is drawn."""
     most = greatest_drawn(plot)
     if np.isinf(most):
         return {}
@@ -98,24 +98,24 @@ def _xy(points: FloatArray, rows: Rows, columns: Columns) -> list[int]:
 
 
 def _rows(plot: Plot) -> dict[str, Rows]:
-    """Rows of each line without which it would look different; the same for all that share a column."""
+    """The rows of each line that determine its look; the same for all that share a column."""
     every = {label: line.reshape(len(line), -1) for label, line in plot.series.items()}
     if plot.places is None and plot.angles is None:
-        return {label: _telling(line) for label, line in every.items()}
-    shared = _telling(np.concatenate(list(every.values()), axis=1)) if every else slice(None)
+        return {label: _kept_rows(line) for label, line in every.items()}
+    shared = _kept_rows(np.concatenate(list(every.values()), axis=1)) if every else slice(None)
     return dict.fromkeys(every, shared)
 
 
-def _telling(lines: FloatArray) -> Rows:
-    """Of each stretch of a long table the ends, the extremes of every column, and the gaps."""
+def _kept_rows(lines: FloatArray) -> Rows:
+    """Rows of the ends, the extremes of every column and the gaps in each stretch of a long table."""
     if len(lines) <= _MOST:
         return slice(None)
     stretches = np.array_split(np.arange(len(lines)), max(1, _MOST // (2 + 2 * lines.shape[1])))
-    kept = [rows[0] + each for rows in stretches for each in _telling_of(lines[rows])]
+    kept = [rows[0] + each for rows in stretches for each in _kept_of(lines[rows])]
     return np.unique(np.concatenate(kept))
 
 
-def _telling_of(lines: FloatArray) -> list[npt.NDArray[np.intp]]:
+def _kept_of(lines: FloatArray) -> list[npt.NDArray[np.intp]]:
     gaps = np.isnan(lines)
     least = np.argmin(np.where(gaps, np.inf, lines), axis=0)
     largest = np.argmax(np.where(gaps, -np.inf, lines), axis=0)

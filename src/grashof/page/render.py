@@ -1,4 +1,4 @@
-"""One self-contained file out of a template, the style, scripts and data."""
+"""A self-contained page from a template, the style sheet, scripts and data."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-# Scripts of every page that has a moving drawing, in order.
+# Scripts of every page with a moving drawing, in order.
 DRAWING = (
     "kinds.js", "linkage.js", "svg.js", "scene.js", "labels.js", "stage.js", "grabbing.js", "player.js",
     "axes.js",
@@ -19,9 +19,9 @@ DRAWING = (
 
 
 def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **shown: Any) -> str:
-    """A page that needs no other file and no network; its template escapes `shown`.
+    """A page that needs neither other files nor a network; its template escapes `shown`.
 
-    The scripts, by name and in order, have the data as JSON: no NaN.
+    The scripts, by name and in order, read the data as JSON without NaN.
     """
     return (
         _environment()
@@ -36,22 +36,22 @@ def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **sho
 
 
 def script_of(scripts: Iterable[str]) -> str:
-    """Some scripts of this package, in order, as one."""
+    """Scripts of this package joined in order."""
     return "\n".join(map(text_of, scripts))
 
 
 def page_of(template: str, **shown: Any) -> str:
-    """A page whose style and scripts are files beside it."""
+    """A page whose style sheet and scripts are separate files."""
     return _environment().get_template(template).render(**shown)
 
 
 def compact(values: Iterable[float], digits: int = 5) -> list[float | None]:
-    """Samples of a curve as short JSON: so many significant digits, null where there is no finite value."""
+    """Samples of a curve as short JSON: significant digits, null where a value is not finite."""
     return [float(f"{value:.{digits}g}") if math.isfinite(value) else None for value in values]
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it; null where it is not finite."""
+    """A value as JSON has it; null where it is not finite."""
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

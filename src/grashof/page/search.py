@@ -1,4 +1,4 @@
-"""The page of a search: the task, the designs to choose from, and how they were found."""
+"""The page of a search: the task, the designs, and how they were found."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import asdict
 from typing import Any
 
 from grashof.page.columns import Column, columns_of, figures_of
-from grashof.page.designs import designs_of, legend, moves
+from grashof.page.designs import designs_of, legend, loci_of, moves, scene_of
 from grashof.page.render import DRAWING, render
-from grashof.page.scene import loci_of, scene_of
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
@@ -18,9 +17,8 @@ from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
 from grashof.synth.search.ledger import LISTED, Tally
-from grashof.wording.enclosure import enclosure_line
 from grashof.wording.problem import goals, summary
-from grashof.wording.proof import proof_line, work_line
+from grashof.wording.proof import enclosure_line, proof_line, work_line
 
 _SCRIPTS = (
     *DRAWING, "picture.js", "curves.js", "scatter.js", "table.js", "compare.js", "saving.js", "loci.js",
@@ -31,7 +29,7 @@ _SCRIPTS = (
 def search_page(
     result: Result, record: Mapping[str, Any], text: str = "", *, rows: Sequence[Row] | None = None
 ) -> str:
-    """The page of a search as HTML; of its closest misses, called so, where it found no design.
+    """The page of a search as HTML; with its closest misses where it found no design.
 
     Parameters
     ----------
@@ -41,12 +39,12 @@ def search_page(
     text : str
         The problem file.
     rows : sequence of dict, optional
-        Of its candidates or, where it has none, of its nearest, where they are known.
+        Rows of its candidates or, without any, of its nearest, if they are known.
 
     Returns
     -------
     str
-        One file: it needs no other and no network.
+        A single file that needs neither other files nor a network.
     """
     problem = result.problem
     listing = result.candidates or result.nearest
@@ -77,11 +75,9 @@ def search_page(
         ways=ways,
         goals=goals(problem).replace("mu", "μ"),
         columns=columns,
-        rows=(told := _rows(rows, columns)),
-        alike=any(row["alike"] for row in told),
-        best_at=any(row["best_at"] for row in told),
-        caution=any(row["caution"] for row in told),
-        regions=len({row["region"] for row in told} - {""}) > 1,
+        rows=(listed := _rows(rows, columns)),
+        **{name: any(row[name] for row in listed) for name in ("alike", "best_at", "caution")},
+        regions=len({row["region"] for row in listed} - {""}) > 1,
         classes=sorted({row["grashof_class"] for row in rows}),
         mechanisms=kinds,
         links=legend(map(ONE_LOOP.__getitem__, kinds or problem.mechanism), cylinders),
@@ -96,7 +92,7 @@ def search_page(
 def search_data(
     problem: Problem, designs: Sequence[Candidate], rows: Sequence[Row], *, found: bool
 ) -> dict[str, Any]:
-    """What the scripts have of a search: the scene, designs that can be assembled, and what is told of them.
+    """Data of a search for the scripts: the scene, designs that can be assembled, and their quantities.
 
     The rows are those of `rows_of`; designs that are not `found` are closest misses.
     """
@@ -114,7 +110,7 @@ def search_data(
 
 
 def headline(result: Result) -> str:
-    """How many designs a search found, and of how many the list is."""
+    """The numbers of designs that a search found and lists."""
     listed = len(result.candidates)
     if not listed:
         return "No design found." if result.complete else "Interrupted before any design was found."
@@ -128,7 +124,7 @@ def headline(result: Result) -> str:
 
 
 def _rows(rows: Sequence[Row], columns: list[Column]) -> list[dict[str, Any]]:
-    """The table as text, a row for each design; `alike` are the others of its family."""
+    """The table as text, a row for each design; `alike` counts the others of its family."""
     families = Counter(row["family"] for row in rows)
     return [
         {

@@ -1,4 +1,4 @@
-"""The cylinder that drives a design: its length, lever angle and force over the task motion."""
+"""The cylinder that drives a design: length, lever angle and force over the task motion."""
 
 from __future__ import annotations
 

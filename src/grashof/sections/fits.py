@@ -1,4 +1,4 @@
-"""Polynomials through the paths of P and the centres of mass: what y over x is worth, and what is right."""
+"""Polynomials through the paths of P and the centres of mass, as y over x and over the driver angle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grashof.analysis import PolynomialFit, verify
 from grashof.analysis.curves.path_fits import OF_THETA2, Y_OF_X, FittedPath, PathFit
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
-from grashof.sections.mass_centres import centre_labels, centres_of
+from grashof.sections.places import centre_labels, centres_of
 from grashof.study.samples import components
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
@@ -19,11 +19,11 @@ from grashof.study.sweep import INSET
 
 KEY = "fits"
 _BY = ("least squares", "Newton interpolation")
-_ROOM = 1.0  # times the size of a path: so far beyond it a curve is drawn
+_ROOM = 1.0  # times the size of a path: distance from it up to which a fit is drawn
 
 
 def fits(study: LinkageStudy) -> Section | None:
-    """Regressions and interpolations over part of the motion, if they are asked for."""
+    """Regressions and interpolations over part of the motion; None unless they are requested."""
     if not study.asked.wants(KEY):
         return None
     start, end, words = fit_motion(study)
@@ -40,10 +40,10 @@ def fits(study: LinkageStudy) -> Section | None:
 
 
 def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
-    """First and last driver angle of what is fitted, rad, and what that is; ProblemError if out of reach."""
+    """First and last driver angle of the fitted part, rad, and its name; ProblemError if out of reach."""
     asked, problem = study.asked, study.spec.problem
     if asked.fit_from_deg is not None and asked.fit_to_deg is not None:
-        start, end = _asked_for(study, asked.fit_from_deg, asked.fit_to_deg)
+        start, end = _requested(study, asked.fit_from_deg, asked.fit_to_deg)
         return start, end, "over the part asked for"
     if problem is not None and not problem.task.closed:
         done = problem.task, problem.requirements
@@ -55,11 +55,11 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
     low, high = study.sweep.ranges[0]
     if study.sweep.turns:
         return low, high, "over the whole turn"
-    whole = "all that the driver does" if len(study.sweep.ranges) == 1 else "its first range"
-    return low + INSET, high - INSET, f"over {whole}"
+    part = "all that the driver does" if len(study.sweep.ranges) == 1 else "its first range"
+    return low + INSET, high - INSET, f"over {part}"
 
 
-def _asked_for(study: LinkageStudy, from_deg: float, to_deg: float) -> tuple[float, float]:
+def _requested(study: LinkageStudy, from_deg: float, to_deg: float) -> tuple[float, float]:
     if study.sweep.turns:
         start, end = np.radians([from_deg, to_deg])
         return float(start), float(end)
@@ -95,7 +95,7 @@ def _points(paths: list[FittedPath]) -> pd.DataFrame:
 
 
 def quality_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
-    """How well each fit stands for its path: a row for each."""
+    """Quality of each fit, a row each."""
     return pd.DataFrame(
         [
             {
@@ -114,9 +114,9 @@ def quality_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.Dat
 
 
 def coefficient_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
-    """Coefficients: of powers of x or theta2 (rad) from least squares, divided differences from Newton.
+    """Coefficients of powers of x or theta2 (rad) by least squares, divided differences by Newton.
 
-    Those of Newton belong to 1, (t - t0), (t - t0)(t - t1), ..., t0 being the place of `first_point`.
+    The latter belong to 1, (t - t0), (t - t0)(t - t1), ..., where t0 is the place of `first_point`.
     """
     rows = [
         {"path": path.label, **row}
@@ -157,7 +157,7 @@ def _plots(study: LinkageStudy, path: FittedPath, found: list[PathFit]) -> Itera
 
 
 def _near(path: FittedPath, line: FloatArray) -> FloatArray:
-    """A line as far as it stays near the path."""
+    """A line where it stays near the path, NaN elsewhere."""
     low, high = path.path.min(axis=0), path.path.max(axis=0)
     room = _ROOM * float((high - low).max())
     inside = ((line >= low - room) & (line <= high + room)).all(axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""How far P and the output move where the dimensions of the linkage are inexact."""
+"""Displacements of P and the output due to inexact dimensions."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import degrees, turn_peaks
 
-_SAME = 1e-12  # share by which rounding may tell equal moves apart
+_SAME = 1e-12  # share by which equal displacements may differ due to rounding
 _ALL = {"worst": "worst senses", "rms": "root of the sum of squares"}
 
 
 def tolerance(study: LinkageStudy) -> Section | None:
-    """Moves of P and of the output link over the driver angle; None unless a tolerance is asked for."""
+    """Displacements of P and the output link over the driver angle; None unless a tolerance is requested."""
     if study.asked.tolerance is None:
         return None
     off = number_within(positive_number(study.asked.tolerance, "tolerance"), 0.0, GREATEST, "tolerance")
@@ -30,11 +30,11 @@ def tolerance(study: LinkageStudy) -> Section | None:
     each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
     output = study.output
     turns = {dimension: f"theta{output}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
-    whole = {"worst": "p_worst", "root of squares": "p_rms"}
+    together = {"worst": "p_worst", "root of squares": "p_rms"}
     turned = {"worst": f"theta{output}_worst_deg", "root of squares": f"theta{output}_rms_deg"}
     plots: tuple[Plot, ...] = (
         curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
-        curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, whole),
+        curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, together),
     )
     if output_turns(study.linkage.mechanism):
         key, what = f"tolerance-of-theta{output}", f"turn of link {output}"
@@ -67,12 +67,12 @@ def _columns(state: Kinematics, off: float) -> Columns:
 
 
 def _of_loops(linkage: Linkage) -> tuple[str, ...]:
-    """The dimensions that turn the links: all but the place of P; they come first."""
+    """The dimensions that affect the rotation of links: all but the position of P; they are the first."""
     return tuple(name for name in linkage.mechanism.dimensions if name not in ("u", "v"))
 
 
 def _facts(study: LinkageStudy, off: float) -> Iterator[Fact]:
-    if not study.sweep.turns:  # without limit in the dead positions
+    if not study.sweep.turns:  # infinite in dead positions
         return
 
     def rows(state: Kinematics) -> FloatArray:

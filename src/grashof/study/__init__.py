@@ -1,1 +1,1 @@
-"""What an analysis is made of: a linkage with its motion, what varies over it, and what is said of it."""
+"""The elements of an analysis: a linkage with its motion, quantities that vary over it, sections as data."""

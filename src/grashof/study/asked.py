@@ -1,4 +1,4 @@
-"""What an analysis is asked for, from the command line or Python."""
+"""The options of an analysis, from the command line or Python."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import number_within, positive_number, whole_number
 from grashof.problems.values.errors import wrong_value
 
-# Sections that are long: they are made when they are asked for by name.
+# Long sections, which are made when they are requested by name.
 ON_REQUEST = ("newton-raphson", "differences", "fits", "equations")
 STEP = 0.05  # s, of a history
 FIT_POINTS = 13
@@ -21,7 +21,7 @@ _MOST_DEGREES = 1e6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """What an analysis is asked for besides what it always reports.
+    """The options of an analysis: what it reports beyond the usual.
 
     Parameters
     ----------
@@ -34,30 +34,30 @@ class Asked:
         Driver angle at its beginning. By default 0; of a driver that does not turn fully the end of its
         first range, so that the history goes all through it.
     at_deg : tuple of float, deg
-        Driver angles at which the linkage is looked at closely.
+        Driver angles at which the linkage is examined closely.
     dwell_deg : float, deg, optional
-        The band in which link 4 counts as dwelling.
+        The band within which link 4 counts as dwelling.
     release_deg, release_rpm : float, deg and rpm, optional
-        Driver angle at which the linkage is let go, and the driver's speed there: none by default.
+        Driver angle at which the linkage is released, and the driver's speed there: 0 by default.
     balance : bool
         Whether counterweights are sought.
     flywheel : float, optional
-        Fluctuation of the driver's speed that a flywheel is sought for: largest less least as a share of
-        the mean.
+        Fluctuation of the driver's speed that the flywheel has to keep: largest less least speed, as a share
+        of the mean.
     tolerance : float, length, optional
-        By which each dimension is off.
+        Deviation of each dimension.
     sections : tuple of str
         Of `ON_REQUEST`.
     fit_from_deg, fit_to_deg : float, deg, optional
-        Driver angles between which the paths are fitted, besides asking for that; by default the task motion
-        of a design out of a list, or else all that the driver does.
+        Driver angles between which the paths are fitted; they also request that section. By default the task
+        motion of a design from a list, or else the entire motion of the driver.
     fit_points : int
-        How many points are fitted, evenly spaced in the driver angle.
+        Number of points that are fitted, evenly spaced in the driver angle.
 
     Raises
     ------
     ProblemError
-        A number that is not finite or out of range, more than 20 000 rows, or a name that is unknown.
+        A number is not finite or out of range, there are more than 20 000 rows, or a name is unknown.
     """
 
     speed_rpm: float | None = None
@@ -125,12 +125,12 @@ class Asked:
             raise ProblemError(f"fit_points is {self.fit_points}; it must be from 6 to {_MOST_POINTS}")
 
     def wants(self, section: str) -> bool:
-        """Whether a section of `ON_REQUEST` is to be made."""
+        """Whether a section of `ON_REQUEST` is requested."""
         return section in self.sections or (section == "fits" and self.fit_from_deg is not None)
 
     @property
     def times(self) -> FloatArray | None:
-        """Times of the history, shape (N,), s; None where none is asked for."""
+        """Times of the history, shape (N,), s; None if none is requested."""
         if self.seconds is None or self.release_deg is not None:
             return None
         step = STEP if self.step is None else self.step

@@ -1,4 +1,4 @@
-"""What of an analysis differs between kinds of linkages: joints with forces, links that turn, their words."""
+"""Differences between kinds of linkages in an analysis: joints with forces, links that turn, their words."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import DyadKind, Mechanism
 
-# Of the first dyad the two shares of `rotatability`, in words; empty where one of them says nothing.
+# Words for the two shares of `rotatability` of the first dyad; empty where a share has no meaning.
 SHARES = {
     DyadKind.RRR: ("(r3 + r4 - r1 - r2) / sum", "(|r1 - r2| - |r3 - r4|) / sum"),
     DyadKind.RRP: ("(r3 - r2 - offset) / sum", "(r3 - r2 + offset) / sum"),
     DyadKind.RPR: ("", "(|r1 - r2| - |offset|) / sum"),
 }
 _IN_LINE = {"stretched": "2 and 3 stretched", "folded": "2 and 3 folded"}
-# In which two positions link 4 turns back, by keys.
+# The two positions in which link 4 turns back, by key.
 LIMIT_POSITIONS = {
     DyadKind.RRR: _IN_LINE,
     DyadKind.RRP: _IN_LINE,
@@ -24,7 +24,7 @@ LIMIT_POSITIONS = {
 
 
 def forces_of(kind: Mechanism) -> dict[str, str]:
-    """Keys of the joint forces (f32: on link 2 by link 3), and the joints that they act in, slides last.
+    """Keys of the joint forces (f32: on link 2 by link 3) and the joints in which they act, slides last.
 
     >>> from grashof.problems import FourBar, SliderCrank
     >>> forces_of(FourBar.mechanism)
@@ -37,13 +37,13 @@ def forces_of(kind: Mechanism) -> dict[str, str]:
 
 
 def force_key(links: tuple[int, int]) -> str:
-    """Key of the force in the joint of two links: on the first by the second, on this by the ground."""
+    """Key of a joint force: on the first link by the second, or on the second by the ground."""
     one, other = links
     return f"f1{other}" if one == 1 else f"f{other}{one}"
 
 
 def plain(kind: Mechanism) -> bool:
-    """Whether it is a four-bar: one loop, of pins alone."""
+    """Whether it is a four-bar: one loop with pins only."""
     return len(kind.dyads) == 1 and not kind.slides
 
 
@@ -53,13 +53,13 @@ def output_turns(kind: Mechanism) -> bool:
 
 
 def turning(kind: Mechanism) -> dict[int, str]:
-    """The links after the driver that turn, by their numbers, with their names."""
+    """Names of the links after the driver that turn, by link number."""
     still = {number for pair in kind.slides if 1 in pair for number in pair}
     return {link.number: link.name for link in kind.links[2:] if link.number not in still}
 
 
 def halfway(linkage: Linkage, link: int) -> FloatArray:
-    """The point (u, v) halfway between the joints of a link, of a rod halfway to P; of a block its joint."""
+    """The point (u, v) halfway between the joints of a link; of a rod halfway to P, of a block its joint."""
     length = getattr(linkage, f"r{link}", None)
     if length is None:
         length = linkage.coupler_point[0] if link == 3 else 0.0

@@ -1,4 +1,4 @@
-"""How far plots are drawn of what grows without bound."""
+"""Limits of plots whose values grow without bound."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.section import Plot
 
-_PEAK = 12.0  # times the typical size: so far is drawn what grows without bound
-_TRACK = 4.0  # the same of tracks, whose typical part would else be small
-_SPIKE = 3.0  # times the values two steps beside it: no smooth peak is so sharp
-_NOISE = 1e-6  # times what only one value in twenty exceeds: rounding
+_PEAK = 12.0  # times the typical size: limit of values that grow without bound
+_TRACK = 4.0  # the same for tracks, whose typical part would otherwise be small
+_SPIKE = 3.0  # times the values two steps away: no smooth peak is this sharp
+_NOISE = 1e-6  # times the 95 % quantile: smaller values are rounding
 
 
 def greatest_drawn(plot: Plot) -> float:
-    """Size up to which a plot draws values, of tracks the distance from `middle`; inf where all are drawn.
+    """Size up to which values are drawn, for tracks the distance from `middle`; inf if all are drawn.
 
-    Towards a dead position a rate grows without bound, at a toggle position of the output the mechanical
-    advantage, towards parallel links the instant centre goes to infinity. What just has a peak, however high,
-    is drawn whole: it is smooth, and the values beside it are nearly as large.
+    Rates grow without bound towards a dead position, the mechanical advantage towards a toggle position of
+    the output, the distance of the instant centre towards parallel links. A mere peak, however high, is drawn
+    completely: it is smooth, and the values next to it are nearly as large.
     """
     if plot.bounded or plot.unit == "deg":
         return np.inf  # angles stay finite
@@ -37,14 +37,14 @@ def greatest_drawn(plot: Plot) -> float:
 
 
 def middle(plot: Plot) -> FloatArray:
-    """The point that tracks lie about, shape (2,): the median of theirs."""
+    """The median of all points of the tracks, shape (2,)."""
     every = np.concatenate([np.reshape(each, (-1, 2)) for each in plot.series.values()] or [np.zeros((0, 2))])
     known = every[np.isfinite(every).all(axis=1)]
     return np.median(known, axis=0) if len(known) else np.zeros(2)
 
 
 def broken_beyond(values: FloatArray, most: float) -> FloatArray:
-    """Values (N,), every second NaN where they jump through infinity beyond `most`: no line joins the two."""
+    """Values (N,) with NaN before each jump through infinity beyond `most`, so that no line joins the two."""
     over = np.where(values > most, 1, np.where(values < -most, -1, 0))
     jumps = np.flatnonzero(over[:-1] * over[1:] < 0)
     broken = values.copy()
@@ -58,15 +58,14 @@ def _distance(track: FloatArray, centre: FloatArray) -> FloatArray:
 
 
 def _spiked(sizes: FloatArray, most: float) -> bool:
-    """Whether values beyond a size stand alone, much larger than those two steps before and after."""
+    """Whether a value beyond a size is isolated: much larger than those two steps before and after."""
     if len(sizes) < 3:
         return False
-    closed = np.isclose(
-        sizes[0], sizes[-1], rtol=1e-6, equal_nan=True
-    )  # a turn, which goes on where it began
+    # A full turn continues where it began.
+    closed = np.isclose(sizes[0], sizes[-1], rtol=1e-6, equal_nan=True)
     ends = np.full((2, 2), np.inf) if not closed else np.array([sizes[-3:-1], sizes[1:3]])
     padded = np.nan_to_num(np.concatenate([ends[0], sizes, ends[1]]), nan=0.0, posinf=np.inf)
     beside = np.maximum(padded[1:-3], padded[3:-1])
-    whole = np.where(np.isnan(sizes), 2 * _SPIKE * beside, sizes)  # unknown in the very pole
+    filled = np.where(np.isnan(sizes), 2 * _SPIKE * beside, sizes)  # unknown in the pole itself
     far = np.maximum(padded[:-4], padded[4:])
-    return bool(((whole > most) & (whole > _SPIKE * far)).any())
+    return bool(((filled > most) & (filled > _SPIKE * far)).any())

@@ -1,4 +1,4 @@
-"""What varies over a linkage's motion, and tables of it."""
+"""Quantities that vary over the motion of a linkage, and tables of them."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from grashof.study.kinds import force_key, forces_of, turning
 from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
-_DEAD = 1e-7  # rad: what rounding of the driver angle leaves of a dead position
+_DEAD = 1e-7  # rad: transmission angle that rounding of the driver angle leaves in a dead position
 _RATES = (("velocity", "/s"), ("acceleration", "/s2"))
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """Something that varies over the motion.
+    """A quantity that varies over the motion.
 
     Parameters
     ----------
@@ -37,11 +37,11 @@ class Quantity:
     of : callable
         From a `Kinematics` to its values, in `unit`.
     period : float, optional
-        By which it may jump.
+        Period of an angle, by which it may jump.
     position : bool
-        It follows from the position alone, and stays finite towards a dead position.
+        It depends on the position alone, and stays finite towards a dead position.
     never_negative : bool
-        It is the size of something.
+        It is a magnitude.
     mu_of : int, optional
         It is the transmission angle of this loop.
     """
@@ -71,7 +71,7 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         for n in driven
     ]
     if kind.slides:
-        found += _of_slide(unit)
+        found += _slide_quantities(unit)
     for name in kind.moving:
         point, moves = name.upper(), lru_cache(maxsize=2)(attrgetter(name))
         place = _part_of(moves, "position")
@@ -92,8 +92,8 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     return found
 
 
-def _of_slide(unit: str) -> list[Quantity]:
-    """How far a slide has gone, and its rates."""
+def _slide_quantities(unit: str) -> list[Quantity]:
+    """Travel of a slide, and its rates."""
 
     def part(name: str) -> Curve:
         return lambda s: np.asarray(getattr(s.slide, name))
@@ -108,7 +108,7 @@ def _of_slide(unit: str) -> list[Quantity]:
 
 
 def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
-    """Torque, power and forces in N, N m and W, whatever the length unit; none where nothing acts."""
+    """Torque, power and forces in N m, W and N, whatever the length unit; empty without masses or loads."""
     masses = study.masses
     if masses is None:
         return []
@@ -143,7 +143,7 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
 def _vector(
     keys: tuple[str, str], labels: tuple[str, str], unit: str, of: Curve, factor: float = 1.0
 ) -> list[Quantity]:
-    """Components and size of a vector; keys and labels of both."""
+    """Components and size of a vector, with the keys and labels of both."""
     components = [
         Quantity(f"{keys[0]}_{axis}", f"{labels[0]}, {axis}", unit, _component(of, axis, factor))
         for axis in "xy"
@@ -181,7 +181,7 @@ def _transmission(loop: int) -> Quantity:
 
 
 def _ratio(state: Kinematics) -> FloatArray:
-    """D theta4 / d theta2."""
+    """Derivative of theta4 by theta2."""
     return solve_kinematics(state.linkage, state.theta2, 1.0).omega4
 
 
@@ -204,6 +204,14 @@ def table_of(quantities: list[Quantity], states: list[Kinematics]) -> pd.DataFra
     return pd.concat(parts, ignore_index=True)
 
 
+def by_range(table: pd.DataFrame, name: str) -> FloatArray:
+    """A column of a table over the driver angle, with NaN between two ranges, so that lines break."""
+    values = table[name].to_numpy(dtype=np.float64)
+    if "range" not in table:
+        return values
+    return np.insert(values, np.flatnonzero(np.diff(table["range"])) + 1, np.nan)
+
+
 def counted_on(values: FloatArray, period: float) -> FloatArray:
     """Angles along a motion without jumps, the least of them within half a period of zero."""
     known = np.isfinite(values)
@@ -214,7 +222,7 @@ def counted_on(values: FloatArray, period: float) -> FloatArray:
 
 
 def counted_with(angle: float, swings: Iterable[tuple[float, float]], period: float) -> float:
-    """An angle with the whole periods that bring it into the swing, from least to largest, that it is of."""
+    """An angle shifted by full periods into the nearest of some swings, each from least to largest."""
     middles = [(low + high) / 2 for low, high in swings]
     near = [angle + period * round((middle - angle) / period) for middle in middles]
     return min(near, key=lambda each: min(abs(each - middle) for middle in middles), default=angle)

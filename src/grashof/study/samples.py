@@ -1,4 +1,4 @@
-"""The samples of a section's curves, over the driver angle or over time, and tables and plots of them."""
+"""Samples of the motion over the driver angle or over time, with tables and plots of them."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ _LATE = 1e-12  # share of the motion
 
 @dataclass(frozen=True, slots=True, eq=False)
 class History:
-    """The motion over time (N,), s, in equal steps; `total` is the driver angle counted on, rad.
+    """The motion over time (N,), s, in equal steps; `total` is the driver angle over all turns, rad.
 
-    In `state` (N,) that angle is in its first turn, as loads are stated. It is not `whole` where a driver
-    that does not turn fully stops at a dead position.
+    In `state` (N,) that angle is reduced to the first turn, for which loads are stated. It is `complete`
+    unless a driver that does not turn fully stops at a dead position.
     """
 
     time: FloatArray
     total: FloatArray
     state: Kinematics
-    whole: bool
+    complete: bool
 
     @classmethod
     def of(cls, study: LinkageStudy) -> History | None:
-        """The history that is asked for, if any; ProblemError where it would begin with the linkage open."""
+        """The requested history, if any; ProblemError where the linkage is open at its start."""
         wanted = time = study.asked.times
         if wanted is None or time is None:
             return None
         if not study.sweep.turns:
-            law, gone = study.way
+            law, gone = study.law_at_start
             time = time[gone + time <= law.duration * (1 + _LATE)]
         motion = study.driver(time)
         angle = motion.theta2 % TURN if study.sweep.turns else motion.theta2
@@ -54,10 +54,10 @@ class History:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Samples:
-    """Samples of a motion (a state for each range, or a history's), with tables and plots over it.
+    """Samples of a motion (a state for each range, or that of a history), with tables and plots over it.
 
-    A row of NaN divides two ranges in `columns`, which begin each table; with `turns` no rate grows without
-    bound; `mark` is added to the keys of plots and tables, `words` to the titles of plots.
+    `columns` begin each table, a row of NaN between two ranges; with `turns` no rate grows without bound;
+    `mark` is appended to the keys of plots and tables, `words` to the titles of plots.
     """
 
     states: tuple[Kinematics, ...]
@@ -88,14 +88,14 @@ class Samples:
         return cls((history.state,), columns, TIME, study.sweep.turns, "-over-time", " over time")
 
     @classmethod
-    def asked(cls, study: LinkageStudy) -> Samples:
-        """Over time where a history is asked for, or else over the driver angle."""
+    def requested(cls, study: LinkageStudy) -> Samples:
+        """Over time where a history is requested, or else over the driver angle."""
         history = History.of(study)
         return cls.over_driver(study) if history is None else cls.over_time(study, history)
 
     @property
     def places(self) -> FloatArray:
-        """Where curves are drawn, shape (N,)."""
+        """Abscissae of the curves, shape (N,)."""
         return self.columns["theta2_deg" if self.over == DRIVER_ANGLE else "time_s"]
 
     def plot(self, key: str, title: str, unit: str, series: Mapping[str, FloatArray]) -> Plot:
@@ -116,7 +116,7 @@ class Samples:
 def over_driver(study: LinkageStudy, of: Callable[[Kinematics], Columns]) -> dict[str, FloatArray]:
     """Columns (N,), and `key_x`, `key_y` of vectors (N, 2), over the driver angles of the tables.
 
-    After "theta2_deg", and "range" where there are two, which a row of NaN divides.
+    They follow "theta2_deg" and, with several ranges, "range"; a row of NaN separates two ranges.
     """
     samples = Samples.over_driver(study)
     joined, parts = dict(samples.columns), [of(state) for state in samples.states]
@@ -139,7 +139,7 @@ def table(columns: Columns) -> pd.DataFrame:
 
 
 def curves(columns: Columns, key: str, title: str, unit: str, labels: Mapping[str, str]) -> Plot:
-    """Plot of some columns over the driver angle; `labels` gives the column of each line."""
+    """Plot of some columns over the driver angle; `labels` has the column of each line."""
     lines = {label: line(columns[column]) for label, column in labels.items()}
     return Plot(key, title, unit, lines, columns["theta2_deg"], DRIVER_ANGLE)
 
@@ -147,7 +147,7 @@ def curves(columns: Columns, key: str, title: str, unit: str, labels: Mapping[st
 def tracks(
     columns: Columns, key: str, title: str, unit: str, labels: Mapping[str, str], axes: str = "xy"
 ) -> Plot:
-    """Plot of some vectors as tracks in a plane; `labels` gives the key of each."""
+    """Plot of some vectors as tracks in a plane; `labels` has the key of each."""
     series = {label: track(columns, name, axes) for label, name in labels.items()}
     return Plot(key, title, unit, series, angles=columns["theta2_deg"])
 
@@ -159,13 +159,13 @@ def track(columns: Columns, key: str, axes: str = "xy") -> FloatArray:
 
 
 def line(values: FloatArray) -> FloatArray:
-    """Values of a curve, NaN where it is not finite and where it comes back from the other infinity.
+    """Values of a curve, NaN where it is not finite and where it returns from the other infinity.
 
     >>> line(np.array([1.0, np.inf, 2.0, 3.0, -3.0, -1.0, 1.0])).tolist()
     [1.0, nan, 2.0, nan, -3.0, -1.0, 1.0]
     """
     found = np.where(np.isfinite(values), values, np.nan)
-    # Towards zero sizes fall on both sides of a change of sign, towards infinity they grow.
+    # On both sides of a change of sign sizes fall if it is a zero, and grow if it is a pole.
     sizes = np.abs(found)
     before, after = np.append(0.0, sizes[:-2]), np.append(sizes[2:], 0.0)
     with np.errstate(invalid="ignore"):

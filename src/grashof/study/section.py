@@ -11,6 +11,7 @@ import pandas as pd
 from grashof.problems.values.arrays import FloatArray
 
 DRIVER_ANGLE = "driver angle theta2 (deg)"
+FROM_FIRST_PAIR = "driver rotation from the first pair (deg)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +27,7 @@ class Fact:
     value : float, int, str or bool
     unit : str
     aside : bool
-        A page folds it away.
+        It is folded on a page.
     """
 
     key: str
@@ -43,23 +44,22 @@ class Plot:
     Parameters
     ----------
     key : str
-        Its name in files, lower case with hyphens; no other plot of the analysis has it.
+        Its name in files, lower case with hyphens, unique in the analysis.
     title : str
     unit : str
         Of the values, and of both axes of tracks.
     series : mapping of str to ndarray
         By their labels: curves of shape (N,), or tracks of shape (N, 2); NaN where a line is broken.
     places : ndarray, shape (N,), optional
-        Where the values of curves are. Without them the series are tracks, drawn with equal axes.
+        Abscissae of curves. Without them the series are tracks, drawn with equal axes.
     over : str
-        What the places are, with their unit: `DRIVER_ANGLE` (deg), or such as "time (s)".
+        Label of the abscissa with its unit: `DRIVER_ANGLE` (deg), or such as "time (s)".
     points : mapping of str to ndarray, shape (K, 2)
-        Single points drawn besides: of data that a curve is fitted to, of a track at chosen angles.
+        Single points: data to which a curve is fitted, or a track at chosen angles.
     angles : ndarray, shape (N,), optional
-        Driver angles (deg) of the points of tracks, or of places that are none: a mark then follows the
-        linkage.
+        Driver angles (deg) of the points of tracks, or of other abscissae: a mark then follows the linkage.
     bounded : bool
-        Nothing in it grows without bound, however sharp its peaks are between samples that lie apart.
+        No value grows without bound, however sharp the peaks between distant samples.
     """
 
     key: str
@@ -74,7 +74,7 @@ class Plot:
 
     @property
     def swings(self) -> bool:
-        """Whether the driver angles of its places lie between dead positions, and are no whole turn."""
+        """Whether its abscissae are driver angles between dead positions, not a full turn."""
         if self.places is None or self.over != DRIVER_ANGLE or not len(self.places):
             return False
         known = np.isfinite(self.places)
@@ -83,7 +83,7 @@ class Plot:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
-    """What an analysis says about one subject.
+    """The results of an analysis on one subject.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Section:
         By their names: "mass-centres" is written as table-mass-centres.csv.
     plots : tuple of Plot
     notes : tuple of str
-        What a reader has to know, a sentence each without its full stop.
+        Remarks for the reader, a sentence each without its full stop.
     """
 
     key: str

@@ -1,4 +1,4 @@
-"""What an analysis is made of: a linkage with its motion, what it weighs, what acts on it, what was asked."""
+"""The subject of an analysis: a linkage with its motion, masses, loads and the requested options."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.study.asked import Asked as Asked
 from grashof.study.sweep import INSET, Sweep
 
-_TOUCHING = 1e-9  # rad: a driver angle so far beyond a dead position is in it
+_TOUCHING = 1e-9  # rad: a driver angle this little beyond a dead position counts as in it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkageStudy:
-    """A linkage that is analysed; a section of the report is a function of it."""
+    """An analysed linkage; a section of the report is a function of it."""
 
     sweep: Sweep
     asked: Asked = field(default_factory=Asked)
 
     @classmethod
     def of(cls, spec: LinkageSpec, asked: Asked) -> LinkageStudy:
-        """The study of a linkage; `ProblemError` where it has no motion, or a load does not last for it."""
+        """The study of a linkage; `ProblemError` where it has no motion, or a load ends before the motion."""
         sweep = Sweep.of(spec, asked.speed_rpm)
         if spec.dynamics is not None:
             lasts = max(law.duration for law in sweep.laws)
@@ -47,7 +47,7 @@ class LinkageStudy:
 
     @property
     def four_bar(self) -> FourBar:
-        """The linkage as a four-bar; `ProblemError` where it is none."""
+        """The linkage as a four-bar; `ProblemError` for other kinds."""
         return self.spec.four_bar
 
     @property
@@ -57,7 +57,7 @@ class LinkageStudy:
 
     @property
     def masses(self) -> Masses | None:
-        """Of the links, kg and the length unit; None where the file states nothing that takes a torque."""
+        """Masses in kg and the length unit; None where the file states nothing that requires a torque."""
         given = self.spec.dynamics
         if given is None or not given.acts:
             return None
@@ -65,7 +65,7 @@ class LinkageStudy:
 
     @property
     def loads(self) -> Loads:
-        """What acts on the links, in kg, s and the length unit: newtons over `metre`."""
+        """Loads on the links in kg, s and the length unit: newtons over `metre`."""
         given = self.spec.dynamics
         if given is None or not given.acts:
             return Loads()
@@ -73,7 +73,7 @@ class LinkageStudy:
 
     @property
     def metre(self) -> float:
-        """The length unit in metres; `ProblemError` where it is none of those known."""
+        """The length unit in metres; `ProblemError` where it is unknown."""
         return metres(self.spec.length_unit)
 
     @property
@@ -89,24 +89,24 @@ class LinkageStudy:
         return 0.0 if self.sweep.turns else self.sweep.laws[0].start
 
     @property
-    def way(self) -> tuple[DriverLaw, float]:
-        """How the driver goes on from `start`, and the time that its motion has taken up to there, s.
+    def law_at_start(self) -> tuple[DriverLaw, float]:
+        """The law of the driver's motion from `start` on, and the time elapsed on it up to there, s.
 
-        At a change point, where two ranges meet, it is the one ahead.
+        At a change point, where two ranges meet, it is that of the range ahead.
         """
         start, laws = self.start, self.sweep.laws
         ahead = start + 1e-6 * np.sign(laws[0].rotation)
         law = next((law for law in laws if law.holds(ahead)), None)
         law = law or next((law for law in laws if law.holds(start)), laws[0])
         gone = float(law.time_at(start))
-        return law, gone if np.isfinite(gone) else 0.0  # at no speed there is no time
+        return law, gone if np.isfinite(gone) else 0.0  # not finite at zero speed
 
     def driver(self, time: npt.ArrayLike) -> DriverMotion:
-        """How the driver moves at times (N,), s, from `start` on, its angle counted on turn after turn.
+        """Motion of the driver at times (N,), s, from `start` on, its angle increasing turn after turn.
 
         A driver that does not turn fully stops at a dead position.
         """
-        law, gone = self.way
+        law, gone = self.law_at_start
         now = gone + np.asarray(time, dtype=np.float64)
         if np.isinf(law.duration):  # at rest
             still = np.zeros(now.shape)
@@ -118,14 +118,14 @@ class LinkageStudy:
         return motion._replace(theta2=motion.theta2 + turns * law.rotation)
 
     def limit_positions(self) -> list[LinkStroke]:
-        """Where the last link turns back, in each range of the driver, of a linkage of several loops."""
+        """Limit positions of the last link in each range of the driver, for linkages of several loops."""
         if self.sweep.turns:
             return [link_stroke(self.linkage)]
         ends = ((low + INSET, high - INSET) for low, high in self.sweep.ranges)
         return [link_stroke(self.linkage, start=low, end=high) for low, high in ends]
 
     def in_range(self, angles_deg: npt.ArrayLike, name: str) -> FloatArray:
-        """Driver angles (N,), deg, as those of its ranges, rad.
+        """Driver angles (N,), deg, brought into the ranges, rad.
 
         ProblemError, which calls them `name`, where the linkage is open at one of them.
         """
@@ -144,7 +144,7 @@ class LinkageStudy:
 
     @property
     def chosen(self) -> FloatArray:
-        """The driver angles asked for, rad, shape (N,); by default one."""
+        """The requested driver angles, rad, shape (N,); by default one."""
         if self.asked.at_deg:
             return self.in_range(self.asked.at_deg, "at_deg")
         low, high = self.sweep.ranges[0]
@@ -158,7 +158,7 @@ class LinkageStudy:
 
     @staticmethod
     def joined(parts: list[FloatArray]) -> FloatArray:
-        """Values of each range one after the other, a row of NaN between them, so that lines break."""
+        """Values of all ranges in sequence with a row of NaN between two, so that lines break."""
         gaps = [np.full((1, *part.shape[1:]), np.nan) for part in parts]
         rows = [piece for pair in zip(parts, gaps, strict=True) for piece in pair]
         return np.concatenate(rows[:-1])

@@ -1,4 +1,4 @@
-"""The driver of one linkage swept over all that it can do on one assembly."""
+"""The entire motion of the driver of one linkage on one assembly."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from grashof.problems.values.checks import GREATEST, number_within
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.mechanisms import NOISE
 
-INSET = 1e-6  # rad: extremes of rates are sought so far from a dead position
+INSET = 1e-6  # rad: distance from a dead position within which rates are not evaluated
 _DEAD = 1e-7  # sin(theta4 - theta3), as `solve_kinematics` counts it
 _STEPS = 360
 _FAR = 1 / 90  # of its motion
@@ -39,7 +39,7 @@ _FAR = 1 / 90  # of its motion
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """The driver's motion that is analysed: one whole turn, or the ranges between dead positions, rad.
+    """The analysed motion of the driver: one full turn, or the ranges between dead positions, rad.
 
     It `turns` where the driver turns fully without a dead position.
     """
@@ -51,10 +51,10 @@ class Sweep:
 
     @classmethod
     def of(cls, spec: LinkageSpec, speed_rpm: float | None = None) -> Sweep:
-        """All that the driver can do, by default at the speed of the file, or else 1 rad/s.
+        """The entire motion of the driver, by default at the speed of the file, or else 1 rad/s.
 
-        ProblemError where the linkage closes at no driver angle, its C and D are one point, or a speed is not
-        finite or beyond 1e20.
+        ProblemError where the linkage closes at no driver angle, C and D coincide, or the speed is not finite
+        or beyond 1e20.
         """
         given = spec.dynamics
         if speed_rpm is None:
@@ -73,11 +73,11 @@ class Sweep:
 
     @property
     def over(self) -> str:
-        """In words, what its values are taken over: not a task, as those of a design."""
+        """The motion in words, as labels of extremes end."""
         return "over the turn" if self.turns else "over the travel"
 
     def state(self, theta2: FloatArray) -> Kinematics:
-        """Kinematics at driver angles, rad, of one range or another."""
+        """Kinematics at driver angles, rad, of any range."""
         first, *others = self.laws
         motion = first.at_angle(theta2)
         for law, ends in zip(others, self.ranges[1:], strict=True):
@@ -95,7 +95,7 @@ class Sweep:
 
     @property
     def laws(self) -> list[DriverLaw]:
-        """How the driver goes through each range: up it, or down it where it turns clockwise."""
+        """The motion of the driver through each range: upwards, or downwards where it turns clockwise."""
         dynamics, omega2 = self.spec.dynamics, self.speed_rpm * TURN / 60
         motor = (dynamics.motor if dynamics is not None else None) or MotorSpec()
         return [
@@ -106,7 +106,7 @@ class Sweep:
         ]
 
     def states(self) -> list[Kinematics]:
-        """Kinematics of each range at every degree, or as many angles between dead positions."""
+        """Kinematics of each range at every degree, or at as many angles between dead positions."""
         return [self.state(angles) for angles in self.angles()]
 
     def angles(self) -> Iterator[FloatArray]:
@@ -115,10 +115,10 @@ class Sweep:
             yield driver_angles(low, high, _STEPS, even=self.turns)
 
     def states_drawn(self) -> list[Kinematics]:
-        """Kinematics of each range at the angles that a curve is drawn through.
+        """Kinematics of each range at the driver angles through which curves are drawn.
 
-        Those of the tables; where the linkage moves far between two of them, near a change point, also
-        others, which it moves evenly between.
+        These are the angles of the tables and, where the linkage moves far between two of them, near a change
+        point, others between which it moves evenly.
         """
         return [self.state(angles) for angles in self._angles_drawn()]
 
@@ -136,9 +136,9 @@ def _within(theta2: FloatArray, ends: tuple[float, float]) -> BoolArray:
 
 
 def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatArray:
-    """Driver angles to sample a curve at, shape (steps + 1,), rad.
+    """Driver angles at which a curve is sampled, shape (steps + 1,), rad.
 
-    Closer towards dead positions where not even: there the linkage runs away from its driver.
+    Unless `even` they are denser towards dead positions, where the linkage moves fast.
     """
     share = np.linspace(0, 1, steps + 1)
     angles = low + (high - low) * (share if even else (1 - np.cos(np.pi * share)) / 2)
@@ -147,7 +147,7 @@ def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatAr
 
 
 def _free(linkage: Linkage) -> bool:
-    """Whether C and D lie on one another whatever the driver does, so that two equal bars turn about them."""
+    """Whether C and D coincide at every driver angle, so that two equal bars turn freely about them."""
     if "d" not in linkage.mechanism.points:
         return False
     state = solve_position(linkage, np.linspace(0.0, TURN, 7))
@@ -160,7 +160,7 @@ def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:
         if np.isnan(low):
             continue
         low, high = dead_ends(linkage, low, high)
-        # At a change point dead positions lie inside a range too, of the first loop on the ground line.
+        # At a change point dead positions also lie inside a range: of the first loop, on the ground line.
         inside = float(linkage.theta1) + np.pi * np.arange(-1, 4)
         inside = inside[~(np.abs(np.sin(transmission_angle(linkage, inside))) > _DEAD)]
         inside = np.unique([*inside, *inner_dead_positions(linkage, low, high)])
@@ -169,7 +169,7 @@ def _between_dead_positions(linkage: Linkage) -> Iterator[tuple[float, float]]:
 
 
 def inner_dead_positions(linkage: Linkage, low: float, high: float) -> FloatArray:
-    """Driver angles between two at which a second loop is dead and closes again, shape (K,), rad."""
+    """Driver angles in a range at which a second loop is dead and closes again, shape (K,), rad."""
     return recurring(cut(linkage).touched, low, high) if len(linkage.mechanism.dyads) > 1 else np.zeros(0)
 
 
@@ -182,7 +182,7 @@ def least_quality(linkage: Linkage, theta2: npt.ArrayLike) -> FloatArray:
 
 @contextmanager
 def dead_positions_unwarned() -> Iterator[None]:
-    """Dead positions are reported in a note, not as warnings."""
+    """Suppress warnings of dead positions, which a note reports."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", DeadPositionWarning)
         yield

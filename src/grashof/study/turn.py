@@ -1,4 +1,4 @@
-"""Extremes, peaks and means over the turn of a driver that turns fully."""
+"""Extremes, peaks and means over the full turn of a driver."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from grashof.analysis.numerics.peaks import peaks
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.study import LinkageStudy
 
-_CONSTANT = 1e-12  # least and largest value apart, as a share
+_CONSTANT = 1e-12  # difference of least and largest value, as a share
 Rows = Callable[[Kinematics], FloatArray]  # of states, shape (N,), shape (R, N)
 
 
 def turn_extremes(study: LinkageStudy, of: Callable[[Kinematics], FloatArray]) -> Extremes:
-    """Least and largest value of a quantity, and their driver angles, rad."""
+    """Least and largest value of a quantity, and the driver angles of both, rad."""
     if study.sweep.laws[0].motor.steady:
         motion = even_motion(study.linkage, 0.0, TURN)
         found = extremes_of(lambda share: of(study.sweep.state(motion.theta2(share))), 0.0, 1.0, closed=True)
@@ -33,7 +33,7 @@ def turn_extremes(study: LinkageStudy, of: Callable[[Kinematics], FloatArray]) -
 
 
 def turn_peaks(study: LinkageStudy, rows: Rows) -> tuple[FloatArray, FloatArray]:
-    """Greatest value of each row, and the driver angles of them, rad; shape (R,) each."""
+    """Greatest value of each row and its driver angle, rad; shape (R,) each."""
     law = study.sweep.laws[0]
 
     def over_places(place: FloatArray) -> FloatArray:
@@ -53,7 +53,7 @@ def turn_means(study: LinkageStudy, rows: Rows) -> FloatArray:
 
 
 def varies(found: Extremes) -> bool:
-    """Whether a quantity varies by more than rounding, so that its extremes have a place."""
+    """Whether a quantity varies by more than rounding, so that its extremes have driver angles."""
     return found.stroke > _CONSTANT * max(abs(found.low), abs(found.high))
 
 

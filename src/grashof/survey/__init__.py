@@ -1,4 +1,4 @@
-"""All that a linkage does and takes: what `grashof analyse` reports, as tables, facts, pages and plots."""
+"""The analysis of a linkage that `grashof analyse` reports: tables, facts, sections with plots."""
 
 from grashof.study.asked import Asked
 from grashof.study.quantities import Quantity

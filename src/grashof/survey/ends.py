@@ -1,4 +1,4 @@
-"""What rates and forces tend to where a range of the driver ends, where rounding hides them."""
+"""Limits of rates and forces at the ends of a driver range, where rounding hides them."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from grashof.study.sweep import INSET, inner_dead_positions, least_quality
 
 _ALONG = 1e-6  # half turns
 _DEAD = 1e-6  # rad
-_FAR = 0.2, 0.4  # rad: over so much of the motion rates are continued to a change point, by polynomials of
-_DEGREE = 16
+_FAR = 0.2, 0.4  # rad: parts of the motion from which rates are continued to a change point,
+_DEGREE = 16  # by polynomials of this degree
 _BESIDE = np.linspace(-1, 1, 17)
-_CLOSE = 1e-4  # of the way to a dead position: over so much a curve is a polynomial but for rounding
-_DOUBT = 8.0  # times how far it is from one: a value may be wrong by so much
+_CLOSE = 1e-4  # share of the distance to a dead position over which a curve is a polynomial but for rounding
+_DOUBT = 8.0  # times its deviation from that polynomial: possible error of a value
 
 
 class End(Enum):
-    """What a range of the driver ends with; how near to it rates have digits, rad."""
+    """Kind of the end of a driver range; its value is the distance up to which rates have digits, rad."""
 
-    DEAD = INSET  # they grow without bound
-    CHANGE = 2e-3  # the motion goes on as it came
+    DEAD = INSET  # a dead position: rates grow without bound
+    CHANGE = 2e-3  # a change point: the motion continues smoothly
     OPEN = 0.0  # the other half turn begins
 
 
 def end_of(linkage: Linkage, limit: float) -> End:
-    """What a range ends with at a driver angle."""
+    """Kind of the end of a range at a driver angle."""
     half_turns = (limit - float(linkage.theta1)) / np.pi
     near, folded = abs(half_turns - round(half_turns)) < _ALONG, round(half_turns) % 2 == 0
     if near and abs(rotatability(linkage)[1 if folded else 0]) <= CHANGE:
@@ -43,16 +43,16 @@ def end_of(linkage: Linkage, limit: float) -> End:
 
 
 def towards_dead(curve: Curve, limit: float, near: float, value: float) -> float:
-    """The value near a dead position, infinite where it grows on towards it."""
+    """The value near a dead position, infinite where it keeps growing towards it."""
     closer = float(curve(np.array([limit + (near - limit) / 16]))[0])
     return float(np.copysign(np.inf, value)) if abs(closer) > 1.5 * abs(value) else value
 
 
 def towards_change(curve: Curve, limit: float, near: float, room: float) -> tuple[FloatArray, FloatArray]:
-    """Driver angles from a change point to where rates have digits, and values with those that hold.
+    """Driver angles from a change point to where rates have digits, and the values with the valid digits.
 
-    Infinite where the value grows without bound, as the force of bars in one line; else by polynomials
-    through the curve beyond, no further than `room`.
+    Infinite where the value grows without bound, as forces of bars in one line do; otherwise extrapolated by
+    polynomials through the curve beyond, up to the distance `room`.
     """
     way = near - limit
     closer = limit + way * np.array([1.0, 1 / 4, 1 / 16])
@@ -66,14 +66,14 @@ def towards_change(curve: Curve, limit: float, near: float, room: float) -> tupl
 
 
 def rounding_of(curve: Curve, theta2: float, way: float) -> float:
-    """What rounding may do to a value of a curve at a driver angle, about so far from a dead position."""
+    """Possible rounding error of a curve at a driver angle that is `way` from a dead position."""
     values = curve(theta2 + _CLOSE * way * _BESIDE)
     smooth = chebyshev.chebval(_BESIDE, chebyshev.chebfit(_BESIDE, values, 6))
     return _DOUBT * float(np.abs(values - smooth).max())
 
 
 def _continued(curve: Curve, limit: float, near: float, reach: float, theta2: FloatArray) -> FloatArray:
-    """A curve between the end of a range and where it has digits, by a polynomial through it beyond."""
+    """A curve between the end of a range and `near`, by a polynomial through its values beyond."""
     start = limit + max(near - limit, reach / 16, key=abs)
     scaled = (theta2 - start) * 2 / reach - 1
     nodes = chebyshev.chebpts1(_DEGREE + 1)

@@ -25,7 +25,7 @@ from grashof.study.sweep import INSET, Sweep, least_quality
 from grashof.survey.ends import End, end_of, rounding_of, towards_change, towards_dead
 
 _CONSTANT = 1e-12  # least and largest values apart, as a share: the quantity is constant
-_ROUNDING = 2e-15  # of a driver angle
+_ROUNDING = 2e-15  # relative, of a driver angle
 _NEARLY_DEAD = 1e-2  # rad
 _FINE = 1e-8  # relative error, as it is estimated, up to which all digits count
 _PARABOLAS = 1e-5, 1e-7, 1e-9  # shares of the motion
@@ -33,9 +33,9 @@ _CELLS = ("min", "theta2_min_deg", "max", "theta2_max_deg")
 
 
 def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
-    """Least and largest value of each quantity, and the driver angles of both: NaN where it is constant.
+    """Least and largest value of each quantity with the driver angles of both, NaN where it is constant.
 
-    All four are NaN of an angle that turns fully.
+    All four are NaN for an angle that turns fully.
     """
     rows, listed = [], [quantity for quantity in quantities if _listed(quantity)]
     for number, ((low, high), law) in enumerate(zip(sweep.ranges, sweep.laws, strict=True), start=1):
@@ -51,7 +51,7 @@ def extremes_table(sweep: Sweep, quantities: list[Quantity]) -> pd.DataFrame:
 
 
 def _listed(quantity: Quantity) -> bool:
-    """Extremes are listed of every quantity but the components of vectors that have a size."""
+    """Whether extremes are listed: of all quantities but the components of vectors that have a size."""
     return quantity.position or not quantity.key.endswith(("_x", "_y"))
 
 
@@ -76,7 +76,7 @@ class _Samples:
         return np.asarray(quantity.of(self.state), dtype=np.float64)
 
     def extremes(self, quantity: Quantity, values: FloatArray) -> Extremes | None:
-        """Of a quantity with these samples, at driver angles; None of an angle that turns fully.
+        """Extremes of a quantity with these samples, at driver angles; None for an angle that turns fully.
 
         AssemblyError where it has no value.
         """
@@ -87,7 +87,7 @@ class _Samples:
         if not quantity.never_negative:
             found = refined(lambda at: self.curve(quantity, at), self.at, values, turns, period)
             low, high = found.low, found.high
-        else:  # a size is sharp where it is about 0, its square is not
+        else:  # a magnitude has a kink near 0, its square has not
             found = refined(lambda at: self.curve(quantity, at) ** 2, self.at, values**2, turns)
             found = replace(found, at_low=self._polished(quantity, found.at_low))
             low, high = self.curve(quantity, np.array([found.at_low, found.at_high])).tolist()
@@ -95,7 +95,7 @@ class _Samples:
         return Extremes(low, high, *self.motion.theta2([found.at_low, found.at_high]).tolist())
 
     def _polished(self, quantity: Quantity, place: float) -> float:
-        """Where a size is least, by ever smaller parabolas through its square."""
+        """The place of the least magnitude, by smaller and smaller parabolas through its square."""
         for step in _PARABOLAS if 0 < place < 1 else ():
             before, middle, after = (self.curve(quantity, place + step * np.arange(-1.0, 2.0)) ** 2).tolist()
             bend = before - 2 * middle + after
@@ -106,7 +106,7 @@ class _Samples:
         return place
 
     def _is_zero(self, quantity: Quantity, place: float, size: float) -> bool:
-        """Whether a size is 0 but for rounding, be it of the driver angle."""
+        """Whether a magnitude is 0 but for rounding, including that of the driver angle."""
         theta2 = float(self.motion.theta2(place))
         beside = theta2 + _ROUNDING * max(abs(theta2), 1.0) * np.array([-1, 1])
         return size <= float(np.max(quantity.of(self.sweep.state(beside)))) / 2
@@ -114,39 +114,39 @@ class _Samples:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Range:
-    """A range of the driver, sampled all the way and as near to its ends as rates have digits."""
+    """A range of the driver, sampled fully, and only as near to its ends as rates have digits."""
 
     low: float
     high: float
     ends: tuple[End, End]
-    whole: _Samples
+    full: _Samples
     inner: _Samples
     law: DriverLaw
 
     @classmethod
     def of(cls, sweep: Sweep, low: float, high: float, law: DriverLaw) -> _Range:
-        whole = _Samples.between(sweep, low, high)
+        full = _Samples.between(sweep, low, high)
         if sweep.turns:
-            return cls(low, high, (End.OPEN, End.OPEN), whole, whole, law)
+            return cls(low, high, (End.OPEN, End.OPEN), full, full, law)
         ends = end_of(sweep.spec.linkage, low), end_of(sweep.spec.linkage, high)
         inner = _Samples.between(sweep, low + ends[0].value, high - ends[1].value)
-        return cls(low, high, ends, whole, inner, law)
+        return cls(low, high, ends, full, inner, law)
 
     def curve(self, quantity: Quantity, theta2: FloatArray) -> FloatArray:
         """Values of a quantity at driver angles."""
-        return np.asarray(quantity.of(self.whole.sweep.state(theta2)), dtype=np.float64)
+        return np.asarray(quantity.of(self.full.sweep.state(theta2)), dtype=np.float64)
 
     def samples(self, quantity: Quantity) -> _Samples:
-        """Those in which the extremes of a quantity are sought."""
-        return self.whole if quantity.position else self.inner
+        """The samples among which the extremes of a quantity are sought."""
+        return self.full if quantity.position else self.inner
 
 
 def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, float] | None:
-    """Least and largest value, infinite where it grows without bound; None of an angle that turns fully."""
-    turns = part.whole.sweep.turns
+    """Least and largest value, infinite where it grows without bound; None for an angle that turns fully."""
+    turns = part.full.sweep.turns
     try:
         found = _found(part, quantity, values)
-    except AssemblyError:  # at the very end of a range
+    except AssemblyError:  # rounding at the end of a range
         found = Extremes(np.nan, np.nan, np.nan, np.nan)
     if found is None:
         return None
@@ -155,7 +155,7 @@ def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, 
         turned = quantity.period * np.floor((least + quantity.period / 2) / quantity.period)
         least, largest = least - turned, largest - turned
     at = [_counted(angle) if turns else angle for angle in (found.at_low, found.at_high)]
-    if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would choose the angles
+    if np.isclose(least, largest, rtol=_CONSTANT, atol=0.0):  # rounding alone would determine the angles
         at = [np.nan, np.nan]
     places = np.round(np.degrees(at), 9) + 0.0
     return dict(zip(_CELLS, (float(least), float(places[0]), float(largest), float(places[1])), strict=True))
@@ -163,24 +163,24 @@ def _extreme(part: _Range, quantity: Quantity, values: FloatArray) -> dict[str, 
 
 def _found(part: _Range, quantity: Quantity, values: FloatArray) -> Extremes | None:
     if quantity.mu_of is not None:
-        linkage = part.whole.sweep.spec.linkage
+        linkage = part.full.sweep.spec.linkage
         mu = transmission_extremes(linkage, part.low, part.high, quantity.mu_of)
         return Extremes(float(np.degrees(mu.low)), float(np.degrees(mu.high)), mu.at_low, mu.at_high)
     if not (quantity.position or part.law.motor.steady):
         return _of_uneven_drive(part, quantity)
     samples = part.samples(quantity)
-    if quantity.position and np.isnan(values).any():  # at the change point of a kite A comes to lie on O4
+    if quantity.position and np.isnan(values).any():  # at the change point of a kite A reaches O4
         samples, values = part.inner, part.inner.values(quantity)
     found = samples.extremes(quantity, values)
-    if found is None or (quantity.position and samples is part.whole):
+    if found is None or (quantity.position and samples is part.full):
         return found
     found = _with_digits_that_hold(part, quantity, found)
-    return found if samples is part.whole else _with_its_ends(part, quantity, found)
+    return found if samples is part.full else _with_its_ends(part, quantity, found)
 
 
 def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
-    """The extremes of a rate; near a dead position rounding of the driver angle takes digits away."""
-    linkage, places = part.whole.sweep.spec.linkage, [found.at_low, found.at_high]
+    """The extremes of a rate with their valid digits, which are few near a dead position."""
+    linkage, places = part.full.sweep.spec.linkage, [found.at_low, found.at_high]
     ways = least_quality(linkage, np.array(places)).tolist()
     if min(ways) >= _NEARLY_DEAD:
         return found
@@ -198,7 +198,7 @@ def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) ->
 
 
 def _error(part: _Range, quantity: Quantity, value: float, place: float, way: float) -> float:
-    """What rounding may do to an extreme value; of a size, which may be sharp, by way of its square."""
+    """Possible rounding error of an extreme value; for a magnitude, which may have a kink, by its square."""
     if not quantity.never_negative:
         return rounding_of(lambda at: part.curve(quantity, at), place, way)
     square = rounding_of(lambda at: part.curve(quantity, at) ** 2, place, way)
@@ -206,15 +206,15 @@ def _error(part: _Range, quantity: Quantity, value: float, place: float, way: fl
 
 
 def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
-    """The extremes of a rate where the driver starts and stops: over its time, jump by jump."""
-    sweep, law = part.whole.sweep, part.law
+    """The extremes of a rate where the driver starts and stops: over each stretch between jumps."""
+    sweep, law = part.full.sweep, part.law
 
     def curve(place: FloatArray) -> FloatArray:
         state = solve_kinematics(sweep.spec.linkage, *law.at_place(place))
         return np.asarray(quantity.of(state), dtype=np.float64)
 
     inset = 0.0 if sweep.turns else INSET
-    theta2 = np.sort(part.whole.motion.theta2(part.whole.at))
+    theta2 = np.sort(part.full.motion.theta2(part.full.at))
     found = []
     for stretch in law.stretches(theta2):
         along = law.at_place(stretch).theta2
@@ -227,12 +227,12 @@ def _of_uneven_drive(part: _Range, quantity: Quantity) -> Extremes:
 
 
 def _counted(angle: float) -> float:
-    """An angle counted from 0, where rounding does not make it a whole turn."""
+    """An angle from 0 to 360 deg, in rad, where rounding does not turn 0 into a full turn."""
     return angle % TURN if TURN - angle % TURN > 1e-9 else 0.0
 
 
 def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
-    """The extremes of what may have no digits near the ends of a range, with what it tends to there."""
+    """The extremes of a quantity without digits near the ends of a range, with its limits there."""
     values, places = [found.low, found.high], [found.at_low, found.at_high]
 
     def curve(theta2: FloatArray) -> FloatArray:

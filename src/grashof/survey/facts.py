@@ -1,4 +1,4 @@
-"""The summary of a linkage's analysis: class, limits, strokes, the path of P, masses."""
+"""The summary of the analysis of a linkage: class, limits, strokes, path of P, masses."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from grashof.study.sweep import Sweep
 from grashof.study.turn import degrees
 
 _HARMONICS = 5
-_DOUBTED = 2.0  # times its error: a mean below it is 0
+_DOUBTED = 2.0  # times its error: a mean below this is 0
 
 
 def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterator[Fact]:
-    """The lines of the summary, in their order."""
+    """The lines of the summary in order."""
     sweep, masses = study.sweep, study.masses
     spec, ranges, turns = sweep.spec, sweep.ranges, sweep.turns
     linkage, unit = spec.linkage, spec.unit
@@ -101,7 +101,7 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
 
 
 def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
-    """How the last link of several loops goes to and fro; limit positions have no closed form there."""
+    """Motion of the last link of several loops, whose limit positions have no closed form."""
     kind, unit = study.linkage.mechanism, study.spec.unit
     yield from _ranges_facts(study.spec, extremes)
     found, moved = study.limit_positions(), kind.links[-1]
@@ -121,7 +121,7 @@ def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
 
 
 def _ranges_facts(spec: LinkageSpec, extremes: pd.DataFrame) -> Iterator[Fact]:
-    """How far the output moves in each range of the driver; nothing of one that turns fully."""
+    """Stroke or swing of the output in each range of the driver; none of an output that turns fully."""
     kind = spec.linkage.mechanism
     output = f"theta{kind.links[-1].number}_deg" if output_turns(kind) else "slide_travel"
     rows = extremes[extremes["quantity"] == output]
@@ -174,7 +174,7 @@ def _double_points(linkage: FourBar, unit: str) -> Iterator[Fact]:
 
 
 def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:
-    """The half turn of least width over length; of a driver that swings the whole of its first range."""
+    """The half turn of least width over length; for a driver that swings, its entire first range."""
     unit = spec.unit
     what = "straightest half turn of P" if turns else "path of P, range 1"
     try:
@@ -207,7 +207,7 @@ def _mass_facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
 
 
 def _torque_over_turn(study: LinkageStudy) -> tuple[float, float]:
-    """Mean and root mean square of the drive torque over time, with as many digits as are certain."""
+    """Mean and root mean square of the drive torque over time, with their valid digits."""
     torque = next(quantity for quantity in dynamic_quantities(study) if quantity.key == "torque")
     law = study.sweep.laws[0]
 

@@ -1,4 +1,4 @@
-"""What `grashof analyse` finds out about one linkage: tables over the motion, extremes, a summary."""
+"""The analysis of one linkage: tables over the motion, extremes, a summary, sections."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ from grashof.survey.facts import facts_of
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkageReport:
-    """All that is reported of a linkage.
+    """The report on a linkage.
 
     Parameters
     ----------
     sweep : Sweep
-        The motion that is analysed.
+        The analysed motion.
     masses : Masses, optional
     facts : tuple of Fact
     tables : mapping of str to DataFrame
         "kinematics" and, with masses, "dynamics": a row for each driver angle; "extremes".
     notes : tuple of str
-        What a reader has to know about limits.
+        Remarks on limits of the motion.
     sections : tuple of Section
-        What it says besides, by subject.
+        Further results by subject.
     drawn : mapping of str to DataFrame
-        The tables over the driver angle with as many rows as it takes to draw them.
+        The tables over the driver angle with the rows that curves need.
     """
 
     sweep: Sweep
@@ -53,13 +53,13 @@ class LinkageReport:
 
 
 def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
-    """Analyse a linkage over all that its driver can do on its own assembly.
+    """Analyse a linkage over the entire motion of its driver on its own assembly.
 
     Parameters
     ----------
     spec : LinkageSpec
     asked : Asked, optional
-        What is reported besides.
+        Options, such as further sections.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def report_on(spec: LinkageSpec, asked: Asked | None = None) -> LinkageReport:
     Raises
     ------
     ProblemError
-        The linkage closes at no driver angle, or a speed that is not finite or beyond 1e20.
+        The linkage closes at no driver angle, or a speed is not finite or beyond 1e20.
     """
     study = LinkageStudy.of(spec, Asked() if asked is None else asked)
     sweep, masses = study.sweep, study.masses
@@ -107,7 +107,7 @@ def _notes(sweep: Sweep) -> tuple[str, ...]:
 
 
 def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
-    """Tracks (N, 2) of the centres of mass of links 2, 3, 4 and all; without masses, of points half way."""
+    """Tracks (N, 2) of the centres of mass of each link and of all; without masses, of points halfway."""
     linkage, masses = report.sweep.spec.linkage, report.masses
     tracks: dict[str, FloatArray] = {}
     with dead_positions_unwarned():

@@ -10,9 +10,8 @@ from typing import Any
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
-from grashof.page.designs import legend
+from grashof.page.designs import legend, scene_of
 from grashof.page.render import DRAWING, plain, render
-from grashof.page.scene import scene_of
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.sweep.plot import decisions, measures, number_axes

@@ -1,10 +1,13 @@
-"""Numbers as people read them in tables."""
+"""Numbers as people read them in tables, and the lengths of a linkage."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+
+from grashof.problems import LinkageSpec
+from grashof.problems.values.linkages.mechanisms import kinds_text, lengths_text
 
 
 def value_text(value: float | int | str | bool) -> str:
@@ -19,12 +22,12 @@ def value_text(value: float | int | str | bool) -> str:
 
 
 def with_unit(label: str, unit: str) -> str:
-    """A label with its unit, if there is one."""
+    """A label with its unit, if any."""
     return f"{label} ({unit})" if unit else label
 
 
 def number_text(value: Any, digits: int) -> str:
-    """A number that may have no limit, or not be known.
+    """A number that may be infinite or unknown.
 
     >>> number_text(1.23456, 3), number_text(-np.inf, 3), number_text(np.nan, 3)
     ('1.23', '-no limit', '-')
@@ -33,3 +36,16 @@ def number_text(value: Any, digits: int) -> str:
     if np.isinf(number):
         return "no limit" if number > 0 else "-no limit"
     return "-" if np.isnan(number) else f"{number + 0.0:.{digits}g}"
+
+
+def dimensions_text(spec: LinkageSpec) -> str:
+    """The lengths of a linkage with their unit, preceded by its kind unless that is a four-bar.
+
+    >>> from grashof.problems import load_linkage_spec
+    >>> dimensions_text(load_linkage_spec("engine"))
+    'slider-crank, r2 40, r3 120, offset -20 mm'
+    >>> dimensions_text(load_linkage_spec("pumpjack"))
+    'r1 to r4 5, 1.1938, 3.7719, 3.04876 m'
+    """
+    said = [kinds_text([spec.linkage.mechanism.word]), lengths_text(spec.linkage, 6)]
+    return f"{', '.join(filter(None, said))} {spec.length_unit}".rstrip()

@@ -1,4 +1,4 @@
-"""A problem in words: what is asked, what decides, how long is searched."""
+"""A problem in words: task, objective, extent of the search; and the verdict on a user's linkage."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from grashof.problems import (
     CylinderSpec,
     DynamicsSpec,
     FunctionTask,
+    LinkageSpec,
     MotionTask,
     Problem,
+    ProblemError,
     Requirements,
     StrokeTask,
     Task,
@@ -20,22 +22,34 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import kinds_text
+from grashof.problems.values.requirements.quantities import Scope
+from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
-from grashof.synth.designs.candidate import same_error
+from grashof.synth.designs.candidate import Candidate, same_error
+from grashof.synth.designs.families import caution
+from grashof.synth.designs.judging import driven_verdict
 from grashof.synth.designs.ranking import pareto_goals
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
 
+# Quantities that a verdict reports besides missed requirements, where they have a value.
+_KEYS = (
+    "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
+    "transmission_min_cycle", "driver_rotation", "output_swing", "stroke", "time_ratio", "size",
+    "torque_peak",
+)  # fmt: skip
+
 
 def ends_with_enough(problem: Problem) -> bool:
-    """Whether the search ends once it has enough designs: where it begins with exact ones."""
+    """Whether the search ends once it has enough designs, as it does where it begins with exact ones."""
     first = asked_first(problem)
     return first.requirements.is_exact(first.task)
 
 
 def error_meaning(problem: Problem) -> str:
-    """What the error of least squares counts besides distances; empty where there is nothing else."""
+    """Explanation of a least-squares error that includes angles; empty for others."""
     task = problem.task
     if problem.requirements.is_exact(task) or not task.has_angle.any():
         return ""
@@ -44,7 +58,7 @@ def error_meaning(problem: Problem) -> str:
 
 
 def goals(problem: Problem) -> str:
-    """What the Pareto mark is about, in words."""
+    """The goals of the Pareto mark, in words."""
     names = [] if problem.requirements.is_exact(problem.task) else ["error"]
     names += [goal.short.removesuffix(" task").removesuffix(" turn") for goal in pareto_goals(problem)]
     return f"{', '.join(names[:-1])} and {names[-1]}"
@@ -85,7 +99,7 @@ def summary(problem: Problem) -> list[str]:
 
 
 def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
-    """What a field of the requirements limits, and how."""
+    """The quantity that a field of the requirements limits, with its limits."""
     limited = wanted.limited[name]
     quantity = wanted.as_required(limited.quantity)
     sides = {part: limited.range_text(limits) for part, limits in wanted.ranges(name).items()}
@@ -95,7 +109,7 @@ def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
 
 
 def _best(problem: Problem) -> str:
-    """What designs are ranked by, as `ranking_key` does it."""
+    """The criterion of the ranking, as `ranking_key` applies it."""
     degree = {1: "greatest", -1: "smallest"}
     weights = {f"{degree[goal.better]} {goal.words}": weight for goal, weight in problem.goals}
     best = next(iter(weights))
@@ -116,7 +130,7 @@ def _best(problem: Problem) -> str:
 
 
 def _missed(problem: Problem) -> str:
-    """By how much targets may be missed while the objective decides; empty where they are met."""
+    """Permitted deviations from targets while the objective decides; empty where these are met."""
     factor, zones = problem.requirements.error_factor, problem.zones
     if factor is not None:
         return f"as long as the error (rms) is at most {factor:g} times the least"
@@ -137,7 +151,7 @@ def _span(sizes: FloatArray, unit: str) -> str:
 
 
 def _search(problem: Problem) -> str:
-    """How long is searched."""
+    """The extent of the search."""
     search = problem.search
     enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
     effort = f", effort {search.effort:g}" if search.effort != 1 else ""
@@ -152,7 +166,7 @@ def _driven(spec: DynamicsSpec) -> str:
 
 
 def _cylinder(spec: CylinderSpec, unit: str) -> str:
-    """The limits of the cylinder that drives."""
+    """The limits of the driving cylinder."""
     words = [f"driven by a cylinder on {' or '.join(spec.on)}"]
     if spec.closed is not None:
         words.append(f"closed {spec.closed[0]:g} to {spec.closed[1]:g}{unit}")
@@ -175,7 +189,7 @@ def _links(spec: DynamicsSpec) -> str:
 
 
 def _acting(spec: DynamicsSpec) -> Iterator[str]:
-    """What acts besides weight, counted."""
+    """Numbers of loads besides weight."""
     names = {"loads": "load", "springs": "spring", "dampers": "damper", "counterweights": "counterweight"}
     names |= {"torsion_springs": "torsion spring"}
     for key, noun in names.items():
@@ -228,7 +242,7 @@ def _function(task: Task, unit: str) -> str:
     return f"{said}; output {sense}"
 
 
-# How each kind of task is told, with the unit of lengths.
+# The words for each kind of task, given the unit of lengths.
 _TASKS: Mapping[type, Callable[[Any, str], str]] = {
     Task: _targets,
     MotionTask: _motion,
@@ -256,3 +270,41 @@ def _exactness(problem: Problem) -> str:
 
 def _yes(value: bool) -> str:
     return "yes" if value else "no"
+
+
+def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
+    """A user's own linkage with the verdict of the judge that every listed design has passed.
+
+    Its kind need not be one of the problem's. It is driven by its own cylinder or, where the problem requires
+    one and it has none, by the best. ProblemError for different length units or a linkage of two loops.
+    """
+    if len(spec.linkage.mechanism.dyads) > 1:
+        word = spec.linkage.mechanism.word
+        raise ProblemError(f"{spec.name} is a {word}; only linkages of one loop can be judged")
+    if problem.length_unit and spec.length_unit and problem.length_unit != spec.length_unit:
+        raise ProblemError(
+            f"{spec.name}: lengths are in {spec.length_unit}, those of {problem.name} in "
+            f"{problem.length_unit}; they must be in the same unit"
+        )
+    of = problem.for_kind(spec.linkage.mechanism.word)
+    verdict = driven_verdict(ScaledProblem.of(of), spec.linkage, known=spec.cylinder)
+    return Candidate(spec.linkage, verdict, of, 0, 0)
+
+
+def verdict_lines(candidate: Candidate, name: str) -> list[str]:
+    """The verdict on a linkage: whether it meets all requirements, those that it misses, its quantities."""
+    problem, verdict = candidate.problem, candidate.verdict
+    missed = [str(defect) for defect in verdict.defects]
+    lines = [f"{name} {'does not meet' if missed else 'meets'} the requirements of {problem.name}"]
+    lines += [f"  missed: {line}" for line in missed]
+    if not missed and (doubt := caution(problem, candidate)):
+        lines.append(f"  but {doubt}")
+    lines.append(f"  {verdict.grashof_class}; driver {'turns fully' if verdict.full_rotation else 'swings'}")
+    for key in _KEYS:
+        quantity = QUANTITIES[key]
+        if quantity.over is Scope.CYCLE and not verdict.full_rotation:
+            continue
+        if candidate.linkage.mechanism.word in quantity.kinds and np.isfinite(value := candidate.values[key]):
+            unit = quantity.unit.of(problem.length_unit)
+            lines.append(f"  {quantity.full}: {value * quantity.unit.shown:.6g} {unit}".rstrip())
+    return lines

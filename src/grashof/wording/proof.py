@@ -1,9 +1,12 @@
-"""What is proven of a list, in one line."""
+"""Statements on a list: what is proven of it, and what intervals of the driver angle verify."""
 
 from __future__ import annotations
 
 import math
+from typing import Any
 
+from grashof.analysis.judge.enclosed import find_enclosures
+from grashof.analysis.judge.verdict import Enclosure
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import is_of
 from grashof.synth import Result
@@ -11,11 +14,12 @@ from grashof.synth.proof.claims.proof import Claim, Proof, quantity_of
 
 _DECIMALS = 2
 _SAME = 1e-9  # deg: rounding
-_NOTHING = 90.0  # deg: a bound that says nothing
+_NOTHING = 90.0  # deg: a trivial bound
+_NAMED = 2  # designs of each reason, by their ids
 
 
 def proof_line(result: Result) -> str:
-    """What is proven of a list, rounded to the safe side; empty where the question does not arise."""
+    """Statement of the proof of a list, rounded to the safe side; empty without a proof."""
     proof = result.proof
     if proof is None:
         return ""
@@ -25,14 +29,14 @@ def proof_line(result: Result) -> str:
 
 
 def bound_line(proof: Proof, at_least: float | None = None) -> str:
-    """What is proven of a problem without a list; or whether a design has `at_least` so much, deg."""
+    """Statement of the proof of a problem without a list; or whether a design reaches `at_least`, deg."""
     if _reached(proof, at_least):
         return f"Proven: a design that the judge accepts has {_down(proof.lower)} deg."
     return _line(proof, "a design has" if proof.lower is not None else "")
 
 
 def is_decided(proof: Proof, at_least: float | None = None) -> bool:
-    """Whether the best is known, or that there is none; or whether a design has `at_least` so much."""
+    """Whether the best is known, or that none exists; or whether a design reaches `at_least`, deg."""
     if at_least is not None:
         return proof.claim is Claim.NONE or _reached(proof, at_least)
     return proof.claim in (Claim.BEST, Claim.NONE)
@@ -62,7 +66,7 @@ def _line(proof: Proof, known: str) -> str:
 
 
 def _all_line(proof: Proof, known: str) -> str:
-    """Of five poses or pairs: that all linkages are known."""
+    """Statement for five poses or pairs, of which all linkages are known."""
     dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
     if proof.claim is Claim.NONE:
         return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."
@@ -73,19 +77,19 @@ def _all_line(proof: Proof, known: str) -> str:
 
 
 def _regions(proof: Proof) -> str:
-    """How many kinds of solution there are, where there are several."""
+    """The number of regions of good designs, if there are several."""
     return f" Designs above half of that form {proof.regions} regions." if proof.regions > 1 else ""
 
 
 def _because(proof: Proof) -> str:
-    """Why a bound is no closer."""
+    """The reasons why a bound is not tighter."""
     reasons = [f"without {' and '.join(proof.left_out)}"] * bool(proof.left_out)
     reasons += [proof.why] * bool(proof.why)
     return f" ({'; '.join(reasons)})" if reasons else ""
 
 
 def _rank(result: Result, proof: Proof) -> int:
-    """Which linkage of a list has the value that is proven of it; 0 where a short list leaves it out."""
+    """Rank of the listed linkage with the proven value; 0 where a short list lacks it."""
     key = quantity_of(result.problem).key
     least = math.inf if proof.lower is None else proof.lower - _SAME
     for rank, one in enumerate(result.candidates, start=1):
@@ -105,7 +109,7 @@ def _down(value: float | None) -> str:
 
 
 def work_line(proof: Proof) -> str:
-    """What a proof took.
+    """The effort of a proof.
 
     >>> work_line(Proof(claim=Claim.BEST, quantity="", pieces=(42, 40), pairs=3049, levels=5, seconds=0.1))
     '42 by 40 pieces of all dyads, 3049 pairs, halved 5 times, 0.10 s'
@@ -121,3 +125,53 @@ def work_line(proof: Proof) -> str:
     if not second:
         return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
     return f"{first} by {second} pieces of all dyads, {counted(proof.pairs, 'pair')}, {halved}"
+
+
+def enclosure_line(result: Result) -> str:
+    """The number of designs verified by intervals, and the reasons for the others; empty without designs."""
+    named = list(zip((each.id for each in result.candidates), enclosures(result), strict=True))
+    if any(each.contradicts for _, each in named):
+        wrong = _by_reason({name: each.why for name, each in named if each.contradicts})
+        return f"Intervals contradict the judge, an error of this program to report: {wrong}."
+    if not named:
+        return ""
+    undecided = {name: each.why for name, each in named if not each.holds}
+    shown = len(named) - len(undecided)
+    many = counted(shown, "design") if not undecided else f"{shown} of {counted(len(named), 'design')}"
+    rest = f"; undecided: {_by_reason(undecided)}" if undecided else ""
+    shown_of = f"Closure and transmission angle of {many} verified by intervals of the driver angle"
+    return f"{shown_of}, over their whole motion{rest}."
+
+
+def _by_reason(missing: dict[str, str]) -> str:
+    """The reasons, each once, after the first designs that have it.
+
+    >>> _by_reason({"1f": "order", "2e": "closure", "3d": "order", "4c": "order"})
+    '1f, 3d and another (order), 2e (closure)'
+    """
+    said = []
+    for why in dict.fromkeys(missing.values()):
+        mine = [name for name, its in missing.items() if its == why]
+        others = len(mine) - _NAMED
+        more = f" and {'another' if others == 1 else f'{others} others'}" if others > 0 else ""
+        said.append(f"{', '.join(mine[:_NAMED])}{more} ({why})")
+    return ", ".join(said)
+
+
+def enclosures(result: Result) -> tuple[Enclosure, ...]:
+    """The enclosure of each design of a list."""
+    return find_enclosures([each.values for each in result.candidates])
+
+
+def enclosure_record(result: Result) -> dict[str, Any] | None:
+    """The enclosures for `run.json`; None without designs."""
+    found = enclosures(result)
+    if not found:
+        return None
+    named = list(zip((each.id for each in result.candidates), found, strict=True))
+    return {
+        "designs": sum(each.holds for each in found),
+        "intervals": sum(each.intervals for each in found),
+        "undecided": {name: each.why for name, each in named if not (each.holds or each.contradicts)},
+        "contradicted": {name: each.why for name, each in named if each.contradicts},
+    }

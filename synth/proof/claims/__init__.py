@@ -1,1 +1,1 @@
-"""What proofs come to: bounds, and what is claimed of a list."""
+"""Results of proofs: bounds, and claims about a list."""

@@ -35,12 +35,12 @@ class Proving:
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """What is known of the greatest transmission angle of all linkages that meet what has forms."""
+    """Bounds of the greatest transmission angle of all linkages that meet the requirements with forms."""
 
     # In rad, of a design that the judge accepts for that, or of a stroke's member; 0 where none is known
     lower: float = 0.0
     upper: float = np.pi / 2  # rad; no design has more
-    closed: bool = False  # whether the bounds have met, or no design is left
+    closed: bool = False  # whether the bounds have met, or no design remains
     found: Candidate | None = field(default=None, compare=False)  # the design with `lower`
     # Pieces of the curve to begin with, that may be drivers, and driven; of a stroke pieces of families
     pieces: tuple[int, int] = (0, 0)
@@ -49,17 +49,17 @@ class Bounds:
     seconds: float = 0.0  # s
     left_out: tuple[str, ...] = ()  # requirements without a form, by their fields
     why: str = ""  # why there are no bounds, or why they have not met; else empty
-    refused: bool = False  # whether there is no proof for such a problem at all
+    refused: bool = False  # whether proofs do not cover such a problem
 
     @property
     def none(self) -> bool:
-        """Whether it is proven that there is no design."""
+        """Whether the absence of designs is proven."""
         return self.closed and not self.lower
 
 
 def logged(bounds: Bounds) -> Bounds:
     """The same, after a line in the log."""
     why = f"; {bounds.why}" if bounds.why else ""
-    told = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
-    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *told)
+    numbers = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
+    _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *numbers)
     return bounds

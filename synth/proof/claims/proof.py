@@ -1,4 +1,4 @@
-"""What is proven of a list: that its best is the best there is, an upper bound, or that there is none."""
+"""Proofs about a list: that its best is the best there is, an upper bound, or that there is none."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NOISE = 1e-6  # deg: targets are met up to rounding, and so are bounds
 
 
 class Claim(StrEnum):
-    """What is claimed of a list."""
+    """A claim about a list."""
 
     BEST = "best"
     BOUND = "bound"
@@ -32,7 +32,7 @@ class Claim(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
-    """What is proven of the designs of a problem, as ``run.json`` has it.
+    """A proof about the designs of a problem, as in ``run.json``.
 
     Parameters
     ----------
@@ -45,22 +45,22 @@ class Proof:
     mechanism : str
         Of which kind of linkage.
     quantity : str
-        What is bounded, by its column.
+        The bounded quantity, by its column.
     lower, upper : float or None, deg
         Of the best design that is listed, as judged; and what no design exceeds.
     pieces : tuple of int
         Pieces of the curve, or plane, of dyads, to begin with: that may be drivers, and driven; of five poses
         dyads; of a stroke pieces of families of one number, and 0; of points listed linkages, and 0.
     pairs, levels : int
-        Pairs of pieces, or pieces, that were bounded, and how often what was left was halved; of three poses,
-        a part.
+        Pairs of pieces, or pieces, that were bounded, and how often the remaining ones were halved; of three
+        poses, a part.
     seconds : float, s
     left_out : tuple of str
         Requirements that the proof does without, by their keys: designs that meet them have `upper` at most.
     regions : int
         Connected sets of designs above half the best, or the angle demanded; 0 where they are not known.
     region_size : float, sizes
-        Half the length of the pieces that they were told apart by; 0 where they are not known.
+        Half the length of the pieces that distinguish them; 0 where they are not known.
     rounding, why : str
         How rounding is accounted for; why there is no proof, no closer bound, or no design on one side; what
         was followed.
@@ -97,7 +97,7 @@ def best_listed(problem: Problem, designs: Sequence[Candidate]) -> float | None:
 
 
 def proof_of(problem: Problem, bounds: Bounds, lower: float | None, gap: float) -> Proof:
-    """What bounds prove, where the best design that is known has a transmission angle `lower`, deg."""
+    """The proof from bounds, where the best known design has a transmission angle `lower`, deg."""
     upper = float(np.degrees(bounds.upper))
     claim, why = Claim.BOUND, bounds.why
     if bounds.refused:

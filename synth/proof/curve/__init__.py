@@ -1,1 +1,1 @@
-"""Burmester's curve in pieces, and what is asked of one dyad."""
+"""Burmester's curve in pieces, and the requirements on one dyad."""

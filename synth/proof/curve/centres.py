@@ -42,7 +42,7 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
     """Where the centre points of tubes lie, of dyads not longer than `longest`.
 
     The centre solves F_j = k_j - Re(conj(c) a_j) = 0, with a_j = (rho_j - 1) z + d_j and k_j linear in z: F
-    is bilinear in z and c, so its expansion ends after the second order, and what is left of it over the norm
+    is bilinear in z and c, so its expansion ends after the second order, and its remainder over the norm
     of the inverse matrix bounds the disc. Of the three equations two are enough; the pair with the smallest
     disc is taken, as at a pole one equation is empty.
     """

@@ -1,4 +1,4 @@
-"""The circle-point curve of four poses as a polynomial, with its exact Taylor series.
+"""The circle-point curve of four poses as a polynomial, with its exact Taylor series, and the poles.
 
 The origin is the guided point at the first pose, lengths are in sizes, points are complex. A point z of
 the body at the first pose is at ``rotation[j] * z + shift[j]`` at pose j.
@@ -7,14 +7,16 @@ the body at the first pose is at ``rotation[j] * z + shift[j]`` at pose j.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.theory.burmester import Displacements
 
 PLANE = 1e-9  # of its terms: below it a polynomial vanishes, and every point is a circle point
 _POSES = 4
+_PARALLEL = 1e-4  # between unit rotations: poles of such poses are far away
 _ROUNDING = 64 * np.finfo(float).eps  # of the magnitude of a sum of some thirty terms
 
 
@@ -140,3 +142,20 @@ class Curve:
                 step = taylor.value * slope.conj() / (2 * np.abs(slope) ** 2)
             points = np.where(np.isfinite(step), points - step, points)
         return points
+
+
+def poles(motion: Displacements) -> tuple[IntArray, ComplexArray]:
+    """Pairs of poses, shape (n, 2), and the points in one place at both, where they are at the first.
+
+    >>> motion = Displacements.from_poses(np.array([1, 1j, -1]), np.radians([0, 90, 90]))
+    >>> pairs, places = poles(motion)
+    >>> pairs.tolist(), bool(np.allclose(places, [0, -1j]))
+    ([[0, 1], [0, 2]], True)
+    """
+    pairs, places = [], []
+    for i, j in combinations(range(len(motion.rotation)), 2):
+        turn, move = motion.rotation[j] - motion.rotation[i], motion.shift[j] - motion.shift[i]
+        if abs(turn) > _PARALLEL:
+            pairs.append((i, j))
+            places.append(-move / turn)
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2), np.array(places, dtype=np.complex128)

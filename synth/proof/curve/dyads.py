@@ -9,9 +9,9 @@ import numpy as np
 
 from grashof.problems import Box
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits
-from grashof.synth.proof.curve.asked import SLACK, Asked, Dyad
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.pieces import WIDER
+from grashof.synth.proof.curve.required import SLACK, Dyad, Required
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements
 
@@ -31,23 +31,23 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """What pieces may be, shape (n,)."""
+    """Roles that pieces may have, shape (n,)."""
 
     driver: BoolArray
     driven: BoolArray
     sense: IntArray  # in which a driver meets the poses in order; 0 where that is open
 
 
-def possible_arms(asked: Asked, z: Span) -> BoolArray:
+def possible_arms(required: Required, z: Span) -> BoolArray:
     """Which pieces may hold moving pivots at an allowed distance from P, and within circles not too large.
 
     This needs no centres: it disposes of the places where these run off to infinity.
     """
     distance = np.abs(z.middle)
     arms = Range(distance - z.reach, distance + z.reach)
-    shortest = min(asked.driver.length[0], asked.driven.length[0])
-    round_ = possible_radii(asked.curve, z, (shortest, asked.longest))
-    return arms.within(asked.driver.arm) & np.isfinite(distance) & round_
+    shortest = min(required.driver.length[0], required.driven.length[0])
+    round_ = possible_radii(required.curve, z, (shortest, required.longest))
+    return arms.within(required.driver.arm) & np.isfinite(distance) & round_
 
 
 def possible_radii(motion: Curve | Displacements, points: Span, radii: Limits) -> BoolArray:
@@ -84,33 +84,33 @@ def same_lengths(motion: Curve | Displacements, z: Span, c: Span) -> BoolArray:
     return some
 
 
-def roles_of(asked: Asked, z: Span, c: Span) -> Roles:
-    """What pieces with these moving and ground pivots may be."""
-    sense, ordered = _senses(asked.curve, z)
-    driver = allowed(asked, asked.driver, z, c)
-    driven = allowed(asked, asked.driven, z, c)
-    if asked.ordered:
+def roles_of(required: Required, z: Span, c: Span) -> Roles:
+    """Roles that pieces with these moving and ground pivots may have."""
+    sense, ordered = _senses(required.curve, z)
+    driver = allowed(required, required.driver, z, c)
+    driven = allowed(required, required.driven, z, c)
+    if required.ordered:
         driver &= ordered
-        driver &= (sense == 0) | (asked.sense == 0) | (sense == asked.sense)
-        driver &= _rotations(asked, z, c, sense)
-    if asked.theta2_start is not None:
-        crank = (z - c).placed(complex(np.exp(-1j * asked.theta2_start)))
+        driver &= (sense == 0) | (required.sense == 0) | (sense == required.sense)
+        driver &= _rotations(required, z, c, sense)
+    if required.theta2_start is not None:
+        crank = (z - c).placed(complex(np.exp(-1j * required.theta2_start)))
         off = crank.rest + SLACK * (1.0 + np.abs(crank.middle))
         driver &= np.abs(crank.middle.imag) <= np.abs(crank.steps.imag).sum(axis=0) + off
         driver &= crank.middle.real + np.abs(crank.steps.real).sum(axis=0) + off >= 0
     return Roles(driver, driven, sense)
 
 
-def allowed(asked: Asked, dyad: Dyad, z: Span, c: Span) -> BoolArray:
+def allowed(required: Required, dyad: Dyad, z: Span, c: Span) -> BoolArray:
     """Which pieces may meet the limits of a dyad."""
-    curve = asked.curve
+    curve = required.curve
     keep = lengths_of(z, c).within(dyad.length)
     keep &= _inside(c, dyad.ground)
     if dyad.keep_out:
         keep &= ~_within_areas(c, dyad.keep_out)
     for rotation, shift in zip(curve.rotation, curve.shift, strict=True):
         keep &= _inside(z.placed(complex(rotation), complex(shift)), dyad.moving)
-    keep &= _inside(z.placed(complex(np.exp(-1j * asked.first_turn))), dyad.on_body)
+    keep &= _inside(z.placed(complex(np.exp(-1j * required.first_turn))), dyad.on_body)
     return keep
 
 
@@ -164,11 +164,11 @@ def _senses(curve: Curve, z: Span) -> tuple[IntArray, BoolArray]:
     return sense, first * last >= 0
 
 
-def _rotations(asked: Asked, z: Span, c: Span, sense: IntArray) -> BoolArray:
+def _rotations(required: Required, z: Span, c: Span, sense: IntArray) -> BoolArray:
     """Which pieces may turn from the first pose to the last by an allowed angle."""
-    if asked.rotation[0] <= 0 and asked.rotation[1] >= TURN:
+    if required.rotation[0] <= 0 and required.rotation[1] >= TURN:
         return np.ones(len(z), dtype=bool)
-    curve = asked.curve
+    curve = required.curve
     first = z.middle - c.middle
     last = curve.rotation[-1] * z.middle + curve.shift[-1] - c.middle
     reach = z.reach + c.reach
@@ -177,6 +177,6 @@ def _rotations(asked: Asked, z: Span, c: Span, sense: IntArray) -> BoolArray:
         turned = (sense * np.angle(last * first.conj())) % TURN
     keep = np.zeros(len(z), dtype=bool)
     for turns in (-TURN, 0.0, TURN):
-        keep |= Range(turned + turns - off, turned + turns + off).within(asked.rotation)
+        keep |= Range(turned + turns - off, turned + turns + off).within(required.rotation)
     keep |= (sense == 0) | ~(reach < np.minimum(np.abs(first), np.abs(last)))
     return keep

@@ -56,7 +56,7 @@ class At:
         return along
 
     def bent(self, z: ComplexArray, c: ComplexArray) -> FloatArray:
-        """What the product of the steps of z and c adds."""
+        """The contribution of the product of the steps of z and c."""
         bent: FloatArray = -(c.conj() * self.alpha * z).real
         return bent
 
@@ -108,7 +108,7 @@ def enclosed(
     is how far these can be from `start`: it counts where they are of both pivots. Of the `newton` steps to
     the dyad in the middle one is enough where they are those of one pivot.
 
-    As of pieces of a curve (see `centres_of`): both equations are bilinear in z and c, so that what is left
+    As of pieces of a curve (see `centres_of`): both equations are bilinear in z and c, so that the remainder
     after the linear terms is a quadratic form of both parameters; over the norm of the inverse matrix it
     bounds the disc.
     """

@@ -46,7 +46,7 @@ class Tubes:
 
     @property
     def bend(self) -> ComplexArray:
-        """What s^2 - 1/2 multiplies."""
+        """The factor of s^2 - 1/2."""
         bend: ComplexArray = 1j * self.direction * self.bow
         return bend
 
@@ -87,7 +87,7 @@ class Tubes:
 
     @property
     def halves(self) -> Tubes:
-        """Rectangles about the tubes for s <= 0, then those for s >= 0; of what is wide, both sides."""
+        """Rectangles about the tubes for s <= 0, then those for s >= 0; of wide ones, both sides."""
         long = self.half >= self.side
         hair = WIDER * (np.abs(self.middle) + self.half + self.side) + np.minimum(16 * self.rest, _SPARE)
         step = np.where(long, self.along, 1j * self.direction * self.side) / 2
@@ -159,7 +159,7 @@ def _contracted(curve: Curve, tubes: Tubes) -> tuple[Tubes, BoolArray]:
 
 
 def _off_curve(taylor: Taylor, x: FloatArray) -> FloatArray:
-    """What is left at a point that should be on the curve, with its tangent as the first axis."""
+    """The residual at a point that should be on the curve, with its tangent as the first axis."""
     off: FloatArray = np.abs(taylor.value) + taylor.error + 2 * np.abs(taylor.linear.real) * x
     return off
 

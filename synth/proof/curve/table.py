@@ -8,24 +8,45 @@ from typing import TypeVar
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.proof.curve.asked import Asked
 from grashof.synth.proof.curve.centres import Centres, centres_of
 from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, roles_of
 from grashof.synth.proof.curve.pieces import SLENDER, WIDER, Tubes, contracted
-from grashof.synth.proof.curve.trail import ROOT, Trail
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 32  # along each side of the disc that is covered
-COARSE = 0.5  # length of first pieces, as a share of what is near
+COARSE = 0.5  # length of first pieces, as a share of the local scale
 TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
 MOST_RECTANGLES = 100_000  # of a cover
 _Steps = TypeVar("_Steps", FloatArray, ComplexArray)
+ROOT = -1  # parent of the rectangles that a cover begins with
 OPEN, NOTHING = -1, -2  # children that are not made yet; that hold no dyad
 
 
+@dataclass(slots=True)
+class Trail:
+    """Rectangles that a proof examined, by number, and the pairs that it halved: enough for a certificate."""
+
+    rectangles: list[Tubes] = field(default_factory=list)
+    # Numbers of the rectangles that these are halves of
+    parents: list[IntArray] = field(default_factory=list)
+    # Number of the rectangle that each piece of the table is in
+    pieces: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    first: int = 0  # how many of these pieces a proof begins with
+    # Driver and driven pieces of pairs, level by level
+    halved: list[tuple[IntArray, IntArray]] = field(default_factory=list)
+
+    def look(self, rectangles: Tubes, parents: IntArray) -> IntArray:
+        """Note rectangles; their numbers."""
+        begin = sum(map(len, self.parents))
+        self.rectangles.append(rectangles)
+        self.parents.append(parents)
+        return np.arange(begin, begin + len(parents))
+
+
 class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
-    """A proof takes more pieces than it may, or than it can tell apart; states which."""
+    """A proof takes more pieces than it may, or than it can distinguish; states which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +63,15 @@ class Pieces:
         return len(self.tubes)
 
     @classmethod
-    def of(cls, asked: Asked, tubes: Tubes) -> tuple[Pieces, IntArray]:
+    def of(cls, required: Required, tubes: Tubes) -> tuple[Pieces, IntArray]:
         """The pieces that rectangles hold, and which of these each is in."""
-        tubes, filled = contracted(asked.curve, tubes)
+        tubes, filled = contracted(required.curve, tubes)
         rows = np.flatnonzero(filled)
         tubes = tubes[rows]
-        near = possible_arms(asked, tubes.span)
+        near = possible_arms(required, tubes.span)
         rows, tubes = rows[near], tubes[near]
-        centres = centres_of(asked.curve, tubes, asked.longest)
-        roles = roles_of(asked, tubes.span, centres.span)
+        centres = centres_of(required.curve, tubes, required.longest)
+        roles = roles_of(required, tubes.span, centres.span)
         some = np.flatnonzero(roles.driver | roles.driven)
         kept = cls(tubes[some], centres[some], roles.driver[some], roles.driven[some], roles.sense[some])
         return kept, rows[some]
@@ -86,9 +107,9 @@ class Pieces:
         return done
 
 
-def squares(asked: Asked) -> Tubes:
+def squares(required: Required) -> Tubes:
     """The squares that a cover begins with: within reach of the arms."""
-    reach = asked.driver.arm[1]
+    reach = required.driver.arm[1]
     step = 2 * reach / SQUARES
     even = -reach + step * (np.arange(SQUARES) + 0.5)
     middle = (even[:, None] + 1j * even).ravel()
@@ -100,7 +121,7 @@ def squares(asked: Asked) -> Tubes:
 class Table:
     """All pieces of a proof."""
 
-    asked: Asked
+    required: Required
     pieces: Pieces
     rectangles: int = 0  # how many were looked at
     trail: Trail | None = None  # where these are noted
@@ -110,12 +131,12 @@ class Table:
         self._children = np.full((len(self.pieces), 2), OPEN)
 
     @classmethod
-    def covering(cls, asked: Asked, trail: Trail | None = None) -> Table:
-        """Pieces that hold all dyads that may meet what is asked of one.
+    def covering(cls, required: Required, trail: Trail | None = None) -> Table:
+        """Pieces that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more rectangles than a cover may have; StopRequested if asked to stop.
+        TooMany where they take more rectangles than a cover may have; `StopRequested` on request.
         """
-        active = squares(asked)
+        active = squares(required)
         parents = np.full(len(active), ROOT)
         noted = Trail() if trail is None else trail
         done: list[Pieces] = []
@@ -126,14 +147,14 @@ class Table:
             count += len(active)
             if count > MOST_RECTANGLES:
                 raise TooMany("the curve takes too many pieces to be covered")
-            found, rows = Pieces.of(asked, active)
+            found, rows = Pieces.of(required, active)
             numbers, ready = noted.look(active, parents)[rows], found.resolved
             done.append(found[ready])
             places.append(numbers[ready])
             active, parents = found.tubes[~ready].halves, np.tile(numbers[~ready], 2)
         noted.pieces = np.concatenate(places)
         noted.first = len(noted.pieces)
-        return cls(asked, Pieces.joined(*done), count, trail)
+        return cls(required, Pieces.joined(*done), count, trail)
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -143,7 +164,7 @@ class Table:
         new = np.unique(which[self._children[which, 0] == OPEN])
         if len(new):
             rectangles = self.pieces.tubes[new].halves
-            made, rows = Pieces.of(self.asked, rectangles)
+            made, rows = Pieces.of(self.required, rectangles)
             if self.trail is not None:
                 looked_at = self.trail.look(rectangles, np.tile(self.trail.pieces[new], 2))
                 self.trail.pieces = np.concatenate([self.trail.pieces, looked_at[rows]])

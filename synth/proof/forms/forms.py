@@ -167,7 +167,7 @@ def _total(each: FloatArray) -> FloatArray:
 
 
 def _mixed(one: FloatArray | ComplexArray, other: FloatArray | ComplexArray) -> FloatArray:
-    """What products of two different symbols change at most; of complex ones in the imaginary part."""
+    """The greatest change by products of two different symbols; of complex ones in the imaginary part."""
     most = np.zeros(one.shape[1:])
     for i, j in combinations(range(len(one)), 2):
         product = one[i] * other[j] + one[j] * other[i]

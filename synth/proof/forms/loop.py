@@ -15,7 +15,7 @@ Lengths = tuple[Form, ...]  # r1, r2, r3, r4
 
 @dataclass(frozen=True, slots=True)
 class LoopLimits:
-    """What is asked of a loop."""
+    """The requirements on a loop."""
 
     lengths: tuple[Limits, Limits, Limits, Limits]  # of r1, r2, r3, r4
     ratio: float  # longest to shortest link at most
@@ -49,7 +49,7 @@ def transmission_bound(
     """Upper bounds of the transmission angle, rad; and forms, positive where it exceeds `least`, rad.
 
     `lengths` are r1, r2, r3, r4; `arms` are from A to B and from O4 to B at each target, in any frame;
-    `passed` tells where A surely passes the ground line between O2 and O4, or beyond O2, while it counts.
+    `passed` states where A surely passes the ground line between O2 and O4, or beyond O2, while it counts.
     """
     r1, r2, r3, r4 = lengths
     product = r3 * r4
@@ -104,7 +104,7 @@ def square_at_targets(dots: list[Form], product: Form, cosine: FloatArray) -> tu
 
 
 def _turning(limits: LoopLimits, lengths: Lengths) -> tuple[Form, dict[int, tuple[Form, Form]]]:
-    """What has to be positive for a full turn: one form, and two by the sign of r1 - r2."""
+    """Forms that are positive for a full turn: one, and two by the sign of r1 - r2."""
     r1, r2, r3, r4 = lengths
     margin = (r1 + r2 + r3 + r4).times(limits.margin)
     ground, coupler = r1 - r2, r3 - r4
@@ -120,7 +120,7 @@ def _possible(forms: tuple[Form, Form]) -> BoolArray:
 
 
 def _turning_forms(limits: LoopLimits, lengths: Lengths) -> list[Form]:
-    """What has to be positive for a full turn, where only one sign of r1 - r2 is possible."""
+    """Forms that are positive for a full turn, where only one sign of r1 - r2 is possible."""
     total, by_sign = _turning(limits, lengths)
     nowhere = np.zeros(len(total.centre), dtype=bool)
     can = {sign: _possible(by_sign[sign]) if sign in limits.longer_ground else nowhere for sign in by_sign}

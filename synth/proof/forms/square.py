@@ -10,7 +10,7 @@ from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.synth.proof.forms.forms import ROUNDING, Form
 
 SWEEPS = 2
-_WIDER = 1e-9  # of a side: what is left is widened by this for rounding
+_WIDER = 1e-9  # of a side: the remaining part is widened by this for rounding
 _Side = tuple[FloatArray, FloatArray]
 
 

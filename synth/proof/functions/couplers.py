@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import ComplexArray, IntArray
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.curve import poles
 from grashof.synth.proof.curve.patches import Patches
-from grashof.synth.proof.curve.poles import poles
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Side, Table
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
@@ -28,7 +28,7 @@ class CurveOfCouplers:
     @classmethod
     def of(cls, motion: Displacements, ratio: float) -> CurveOfCouplers:
         """All within a ratio of lengths."""
-        return cls(Table.covering(Asked.within(motion, ratio, 1 / ratio)))
+        return cls(Table.covering(Required.within(motion, ratio, 1 / ratio)))
 
     def __len__(self) -> int:
         return len(self.table)
@@ -45,7 +45,7 @@ class CurveOfCouplers:
 
     def dyads(self, which: IntArray) -> Dyads:
         """Those in the middle."""
-        motion = self.table.asked.curve
+        motion = self.table.required.curve
         points: ComplexArray = motion.onto(self.table.pieces.tubes.middle[which])
         return dyads_at(Displacements(motion.rotation, motion.shift), points)
 

@@ -1,7 +1,7 @@
 """Functions of three and four pairs: bounds of the transmission angle of all four-bars that generate them.
 
 Seen from link 4, link 2 moves through known poses, and the coupler is a dyad of that motion: with O2 = 0 and
-O4 = 1 each coupler is a whole linkage. Four pairs leave a curve of couplers, three a plane.
+O4 = 1 each coupler is a complete linkage. Four pairs leave a curve of couplers, three a plane.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_linkage
 from grashof.synth.proof.claims.bounds import TOO_SMALL, Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.proof.curve.asked import LEAST, SLACK
+from grashof.synth.proof.curve.required import LEAST, SLACK
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.proof.forms.loop import LoopLimits, lengths_allowed, transmission_bound
@@ -137,7 +137,7 @@ class Sense:
         low, high = first + off + SLACK, first + self.aims.limits.span - off - SLACK
 
         def passes(angle: float) -> BoolArray:
-            """Whether a whole number of turns beyond an angle lies between both."""
+            """Whether an angle plus some number of full turns lies between both."""
             with np.errstate(invalid="ignore"):
                 inside: BoolArray = np.ceil((low - angle) / TURN) * TURN + angle <= high
             return inside & (off < np.inf)

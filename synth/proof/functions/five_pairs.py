@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.poses.five_poses import FIVE, STOPPED, Certified, certified_dyads, why_open
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
@@ -34,14 +34,14 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
         turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
         motion = Displacements(np.exp(1j * (turned - output)), 1.0 - np.exp(-1j * output))
         try:
-            made = certified_dyads(Asked.within(motion, aims.wanted.link_ratio_max), motion)
+            made = certified_dyads(Required.within(motion, aims.wanted.link_ratio_max), motion)
         except StopRequested:
             return replace(Certified.nothing(), why=STOPPED)
         made = replace(made, within=int(made.within - _trivial(made)), why=why_open(made, motion))
         found.append(made)
-    whole = replace(found[0], within=sum(one.within for one in found), seconds=perf_counter() - since)
+    joined = replace(found[0], within=sum(one.within for one in found), seconds=perf_counter() - since)
     why = next((one.why for one in found if one.why), "")
-    return replace(whole, complete=not why, why=why)
+    return replace(joined, complete=not why, why=why)
 
 
 def _trivial(dyads: Certified) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.synth.proof.points.equations import Passing
+from grashof.synth.proof.points.equations import PointEquations
 
 _NEWTON = 4  # steps from a linkage to the zero nearby
 _INFLATED = (2.0, 8.0)  # times the correction that is left: radii that are tried
@@ -14,17 +14,17 @@ _WIDER = 1 + 1e-9  # bounds, for rounding of sums
 _ROUNDING = 64 * np.finfo(float).eps  # of products of matrices
 
 
-def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
+def boxes(passing: PointEquations, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Boxes about the zeros near some linkages, in each of which Krawczyk's test proves exactly one.
 
     Middles (n, K) and half the widths (n, K), NaN where the test proves nothing, as at a double zero;
-    `unknowns` (n, K) are those of `Passing.rows`. With Y near the inverse of the slopes J at the middle c,
-    and D a bound of how they vary in the box, a box of half-widths r holds exactly one zero of F where
-    |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk, *Computing* 4, 1969).
+    `unknowns` (n, K) are those of `PointEquations.rows`. With Y near the inverse of the slopes J at the
+    middle c, and D a bound of how they vary in the box, a box of half-widths r holds exactly one zero of F
+    where |Y F(c)| + (|1 - Y J| + |Y| D) r < r (Krawczyk, *Computing* 4, 1969).
 
     A double zero is not claimed: through equal points, any turn of the coupler will do.
 
-    >>> middle, radius = boxes(Passing(np.zeros(9, dtype=complex), "four-bar"), np.ones((1, 16)))
+    >>> middle, radius = boxes(PointEquations(np.zeros(9, dtype=complex), "four-bar"), np.ones((1, 16)))
     >>> bool(np.isnan(radius).all())
     True
     """
@@ -47,7 +47,7 @@ def boxes(passing: Passing, unknowns: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def holds_one(
-    passing: Passing, middle: FloatArray, inverse: FloatArray, left: FloatArray, radius: FloatArray
+    passing: PointEquations, middle: FloatArray, inverse: FloatArray, left: FloatArray, radius: FloatArray
 ) -> BoolArray:
     """Krawczyk's test: which boxes of half-widths `radius`, (n, K), hold exactly one zero, shape (n,)."""
     at = passing.rows(middle, radius)

@@ -15,7 +15,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import closing_dyad
 
-_ROUNDING = 32 * np.finfo(float).eps  # of what is added up; no value takes more than ten operations
+_ROUNDING = 32 * np.finfo(float).eps  # of the sum of the terms; no value takes more than ten operations
 # The same of values, in extended precision where the machine has it; pairs of doubles are not relied on.
 _FINE = 32 * max(float(np.finfo(np.longdouble).eps), 1e-19)
 
@@ -44,13 +44,13 @@ class Dyad:
     """The equations of a dyad at M points: by its own k unknowns and, last, by the turn at each."""
 
     value: FloatArray
-    size: FloatArray  # of what is added up
+    size: FloatArray  # sum of the absolute terms
     slopes: FloatArray  # (n, M, k + 1)
     spread: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
-class Passing:
+class PointEquations:
     """The equations of a kind of linkage that passes points."""
 
     points: ComplexArray  # (N,), sizes: the first at the origin; in extended precision, for values as precise
@@ -171,7 +171,7 @@ _SECOND: dict[DyadKind, tuple[Callable[[FloatArray, FloatArray, Turned], Dyad], 
 
 
 def enough_points(kind: str) -> int:
-    """So many points leave linkages of a kind no freedom: equations are as many as unknowns."""
+    """Number of points that determine linkages of a kind: as many equations as unknowns."""
     return 5 + _SECOND[closing_dyad(kind)][1]
 
 

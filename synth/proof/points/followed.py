@@ -1,4 +1,4 @@
-"""What is proven of a list of linkages that pass as many points as leave no freedom."""
+"""Proofs about lists of linkages through as many points as leave no freedom."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
 from grashof.synth.proof.points.boxes import boxes
-from grashof.synth.proof.points.equations import Passing, enough_points
+from grashof.synth.proof.points.equations import PointEquations, enough_points
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import finder_for
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH, EveryLinkage
-from grashof.synth.theory.eight_points import INVERTED_SLIDER_CRANKS
+from grashof.synth.theory.point_families import INVERTED_SLIDER_CRANKS
 
 NEAR = 1e-6  # sizes: a linkage farther from the exact one does not count as enclosed
 ROUNDING = "doubles, enclosures widened for rounding; points as stored"
@@ -28,13 +28,13 @@ ROUNDING = "doubles, enclosures widened for rounding; points as stored"
 class Enclosed:
     """Linkages, each beside one that passes all points exactly; NaN where none is proven."""
 
-    middle: FloatArray  # (n, K): with `radius`, a box that holds exactly one solution of `Passing`
+    middle: FloatArray  # (n, K): with `radius`, a box that holds exactly one solution of `PointEquations`
     radius: FloatArray  # (n, K)
     within: FloatArray  # (n,), sizes and rad: greatest difference of an unknown from that solution at most
 
     @classmethod
-    def of(cls, passing: Passing, unknowns: FloatArray) -> Enclosed:
-        """Enclose what is near some linkages, given by their unknowns."""
+    def of(cls, passing: PointEquations, unknowns: FloatArray) -> Enclosed:
+        """Enclose the solutions near linkages, given by their unknowns."""
         middle, radius = boxes(passing, unknowns)
         within = np.max(np.abs(unknowns - middle) + radius, axis=1, initial=0.0)
         return cls(middle, radius, np.where(within <= NEAR, within, np.nan))
@@ -62,10 +62,10 @@ def proof_of_points(
     whole: bool,
     enough: bool = False,
 ) -> Proof | None:
-    """What is known of a list where finitely many linkages pass the points exactly; None of other problems.
+    """The proof about a list where finitely many linkages pass the points exactly; None for other problems.
 
-    `counts` are of what the search looked at. It was `stopped` or not, and tried all that it found (`whole`)
-    or not, perhaps as it had as many designs as it was asked for (`enough`).
+    `counts` are those of the search. It was `stopped` or not, and tried all that it found (`whole`) or not,
+    perhaps as it had as many designs as requested (`enough`).
     """
     if not _leaves_no_freedom(scaled):
         return None
@@ -79,7 +79,7 @@ def proof_of_points(
         why = _why_not_all(known, counts, stopped=stopped, whole=whole or enough)
     claim = Claim.REFUSED if why else Claim.FOLLOWED
     said = why or f"{known} of {known} known solutions"
-    said += "; as many designs as were asked for are listed, not all" * (enough and not why)
+    said += "; as many designs as requested are listed, not all" * (enough and not why)
     return Proof(
         claim=claim,
         mechanism=scaled.kind.mechanism,
@@ -97,13 +97,13 @@ def enclosed_designs(scaled: ScaledProblem, designs: Sequence[Candidate]) -> Enc
     points = _points(scaled)
     size = scaled.problem.task.size
     exact = np.asarray(points, np.clongdouble)
-    passing = Passing((exact - exact[0]) / size, scaled.kind.mechanism)
+    passing = PointEquations((exact - exact[0]) / size, scaled.kind.mechanism)
     unknowns = [unknowns_of(one, points, size) for one in designs]
     return Enclosed.of(passing, np.array(unknowns).reshape(len(unknowns), 2 * (len(points) - 1)))
 
 
 def unknowns_of(design: Candidate, points: ComplexArray, size: float) -> FloatArray:
-    """Where a design is, as `Passing.rows` has it, shape (K,); `points` (N,) and `size` are in length."""
+    """A design in the unknowns of `PointEquations.rows` (K,); `points` (N,) and `size` are in length."""
     linkage, count = design.linkage, len(points)
     at = solve_position(linkage, design.verdict.theta2[:count], design.verdict.assembly[:count])
     a, b = (_z(joint[0] - at.p[0]) / size for joint in (at.a, at.b))

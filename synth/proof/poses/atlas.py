@@ -14,14 +14,18 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.start import Round
+from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.claims.bounds import Bounds
-from grashof.synth.proof.curve.asked import POSES, Asked, with_forms
+from grashof.synth.proof.curve.required import POSES, Required, with_forms
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.branch_and_bound import Search
 from grashof.synth.proof.poses.lookout import screened_pairs
 from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
+from grashof.synth.starts.selection import feasible_starts, scores, starts_of
+from grashof.synth.theory.distinct import best_first
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
 SIZE = 0.02  # sizes: pieces are halved until they are so short
@@ -30,6 +34,9 @@ MOST_PAIRS = 100_000  # bounded for it
 AT_ONCE = 256  # pieces compared with all others
 SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
 NEAR = 4.0  # times the length of pieces: designs farther from all linkages of a region are of none
+MOST_REGIONS = 20  # whose best linkages are begun from
+CLOSER = 0.65  # share of the distance at which enough linkages are found: so the list has the better ones
+SPREAD = 0.6  # of the best transmission angle: linkages above it are spread over
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,16 +78,16 @@ class Atlas:
 def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     """All four-bars of four poses above half the best that bounds know; None where they know none.
 
-    StopRequested if asked to stop.
+    `StopRequested` on request.
     """
     if not bounds.closed or not bounds.lower or len(scaled.targets) != POSES or scaled.motion is None:
         return None
     about = with_forms(scaled) if bounds.left_out else scaled
-    asked = Asked.of(about)
-    asked = replace(asked, floor=max(asked.floor, SHARE * bounds.lower))
-    table = Table.covering(asked)
-    pairs = _small_pairs(asked, table)
-    linkages = screened_pairs(scaled, asked, table, pairs)
+    required = Required.of(about)
+    required = replace(required, floor=max(required.floor, SHARE * bounds.lower))
+    table = Table.covering(required)
+    pairs = _small_pairs(required, table)
+    linkages = screened_pairs(scaled, required, table, pairs)
     feasible = np.flatnonzero(linkages.feasible)
     labels, linkages = _joined(table, pairs)[feasible], linkages[feasible]
     names, label = np.unique(labels, return_inverse=True)
@@ -89,11 +96,13 @@ def atlas_of(scaled: ScaledProblem, bounds: Bounds) -> Atlas | None:
     number = np.empty(len(names), dtype=np.int64)
     number[np.argsort(-best, kind="stable")] = 1 + np.arange(len(names))
     sizes = _lengths(table, np.unique(np.concatenate([pairs.driver, pairs.driven])))
-    loci = _loci(scaled, asked, table, pairs[feasible], linkages.transmission)
+    loci = _loci(scaled, required, table, pairs[feasible], linkages.transmission)
     return Atlas(linkages, number[label], float(sizes.max(initial=SMALLEST)), loci)
 
 
-def _loci(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs, transmission: FloatArray) -> Loci:
+def _loci(
+    scaled: ScaledProblem, required: Required, table: Table, pairs: Pairs, transmission: FloatArray
+) -> Loci:
     """The pieces of pairs, each with the best of its linkages."""
     used, piece = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
     best = np.zeros(len(used))
@@ -101,14 +110,14 @@ def _loci(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs, trans
     tubes, centres = table.pieces.tubes[used], table.pieces.centres[used]
 
     def ends(middle: ComplexArray, along: ComplexArray) -> FloatArray:
-        return scaled.frame.outward(np.stack([middle - along, middle + along], axis=1) + asked.origin)
+        return scaled.frame.outward(np.stack([middle - along, middle + along], axis=1) + required.origin)
 
     return Loci(ends(tubes.middle, tubes.along), ends(centres.middle, centres.along), best)
 
 
-def _small_pairs(asked: Asked, table: Table) -> Pairs:
+def _small_pairs(required: Required, table: Table) -> Pairs:
     """Pairs of pieces that may hold linkages above the floor, halved until they are short."""
-    search, size = Search(asked, 0.0, 10 * MOST_PAIRS), SIZE
+    search, size = Search(required, 0.0, 10 * MOST_PAIRS), SIZE
     pairs, done = search.first(table), list[Pairs]()
     while pairs is not None and len(pairs):
         one, other = _lengths(table, pairs.driver) > size, _lengths(table, pairs.driven) > size
@@ -197,3 +206,16 @@ def _first_points(scaled: ScaledProblem, design: Candidate) -> list[complex]:
     linkage, verdict = design.linkage, design.verdict
     state = solve_position(linkage, verdict.theta2[0], verdict.assembly[0])
     return [complex(scaled.frame.inward(np.asarray(x))) for x in (linkage.o2, linkage.o4, state.a, state.b)]
+
+
+def round_of_regions(scaled: ScaledProblem, atlas: Atlas, enough: int) -> Round:
+    """Starts from the best linkage of each region, then as from any feasible linkages."""
+    linkages = fully_screened(scaled, atlas.linkages)
+    rows = np.flatnonzero(linkages.feasible)
+    order = rows[best_first(scores(scaled, linkages[rows]))]
+    _, first = np.unique(atlas.region[order], return_index=True)
+    firsts = order[np.sort(first)][:MOST_REGIONS]
+    good = rows[linkages.transmission[rows] >= SPREAD * linkages.transmission[rows].max(initial=0.0)]
+    starts = starts_of(scaled, linkages, firsts)
+    starts += feasible_starts(scaled, linkages[good], enough, peaks=0, closer=CLOSER)
+    return Round(starts, {"feasible finds": len(rows)})

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Side
 from grashof.synth.proof.poses.branch_and_bound import AT_ONCE, Bracket, all_pairs, in_blocks
 from grashof.synth.proof.poses.pairs import Pairs, sides_left
@@ -24,18 +24,18 @@ Lookout = Callable[["Tilings", Pairs, float], float]
 class Tilings:
     """The tiles of both sides."""
 
-    asked: Asked
+    required: Required
     driver: Tiling
     driven: Tiling
 
     @classmethod
-    def covering(cls, asked: Asked) -> Tilings:
-        """Tiles that hold all dyads that may meet what is asked of one.
+    def covering(cls, required: Required) -> Tilings:
+        """Tiles that hold all dyads that may meet the requirements on one.
 
-        TooMany where they take more tiles than a cover may have; StopRequested if asked to stop.
+        TooMany where they take more tiles than a cover may have; `StopRequested` on request.
         """
-        driver, driven = (Tiling.covering(OneSide.of(asked, is_driver=each)) for each in (True, False))
-        return cls(asked, driver, driven)
+        driver, driven = (Tiling.covering(OneSide.of(required, is_driver=each)) for each in (True, False))
+        return cls(required, driver, driven)
 
     @property
     def every(self) -> tuple[IntArray, IntArray]:
@@ -54,7 +54,7 @@ class Tilings:
         first, second = self.driver.sites, self.driven.sites
         one = Side(first.z[driver], first.c[driver], is_driver=True)
         other = Side(second.z[driven], second.c[driven], is_driver=False)
-        return sides_left(self.asked, one, other, first.sense[driver], least)
+        return sides_left(self.required, one, other, first.sense[driver], least)
 
     def halved(self, pairs: Pairs) -> tuple[IntArray, IntArray]:
         """Pairs with one tile halved, the larger one of each."""
@@ -74,7 +74,7 @@ class BestFirst(Bracket):
     def run(self, sides: Tilings, look: Lookout, *, content: bool = False) -> None:
         """Bound all pairs, then halve those with the greatest bounds, until none is left.
 
-        It ends early with the budget, where it is asked to stop, or where it is `content` with any
+        It ends early with the budget, on request, or where it is `content` with any
         design; `upper` holds even so.
         """
         self.left = self.bounded(all_pairs(*sides.every), sides.bounded)
@@ -82,7 +82,7 @@ class BestFirst(Bracket):
         while self.left is not None and len(self.left):
             best, rest = _parted(self.left)
             self.left = Pairs.joined([best, rest])
-            self.lower = max(self.lower, look(sides, self.left, max(self.lower, self.asked.floor)))
+            self.lower = max(self.lower, look(sides, self.left, max(self.lower, self.required.floor)))
             if content and self.lower:
                 return
             best, rest = (part[part.bound > self.threshold] for part in (best, rest))
@@ -97,7 +97,7 @@ class BestFirst(Bracket):
 
 
 def _parted(pairs: Pairs) -> tuple[Pairs, Pairs]:
-    """The pairs with the greatest bounds, so many as are halved together, and the others."""
+    """The pairs with the greatest bounds, which are halved together, and the others."""
     if len(pairs) <= HALVED:
         return pairs, pairs[:0]
     order = np.argpartition(-pairs.bound, HALVED)

@@ -11,7 +11,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.bounds import Bounds, logged
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import NOTHING, Table
 from grashof.synth.proof.poses.pairs import Pairs, bounded
 from grashof.synth.theory.stopping import stop_requested
@@ -28,7 +28,7 @@ Blocks = Iterator[tuple[IntArray, IntArray]]
 class Bracket:
     """The greatest transmission angle of linkages in pairs of pieces, between bounds."""
 
-    asked: Asked
+    required: Required
     gap: float  # rad, up to which the bounds are brought together
     most_pairs: int  # budget
     lower: float = 0.0  # rad, transmission angle of a design that is known; 0 where none is
@@ -41,7 +41,7 @@ class Bracket:
     @property
     def threshold(self) -> float:
         """Designs that transmit less do not count, rad."""
-        return max(self.lower + self.gap if self.lower else 0.0, self.asked.floor)
+        return max(self.lower + self.gap if self.lower else 0.0, self.required.floor)
 
     @property
     def done(self) -> bool:
@@ -63,7 +63,7 @@ class Bracket:
         left_out: tuple[str, ...],
         why: str,
     ) -> Bounds:
-        """What it has come to since a time, with the pieces that it began with and the best design."""
+        """The result since a time, with the pieces that it began with and the best design."""
         return logged(
             Bounds(
                 lower=self.lower,
@@ -80,7 +80,7 @@ class Bracket:
         )
 
     def bounded(self, blocks: Blocks, bound: Callable[[IntArray, IntArray, float], Pairs]) -> Pairs | None:
-        """What is left of pairs; None where the budget ends, or it is asked to stop."""
+        """The remaining pairs; None where the budget ends, or on request."""
         nothing = np.zeros(0, dtype=np.int64)
         found = [Pairs(nothing, nothing, np.zeros(0))]
         for one, other in blocks:
@@ -114,12 +114,12 @@ class Search(Bracket):
     def run(self, table: Table, look: Lookout, *, content: bool = False) -> None:
         """Bound all pairs, look for designs in those that are left, halve these, until none is left.
 
-        It ends early with the budget, where it is asked to stop, or where it is `content` with any
+        It ends early with the budget, on request, or where it is `content` with any
         design; `upper` holds even so.
         """
         self.left = self.first(table)
         while self.left is not None and len(self.left):
-            self.lower = max(self.lower, look(table, self.left, max(self.lower, self.asked.floor)))
+            self.lower = max(self.lower, look(table, self.left, max(self.lower, self.required.floor)))
             if content and self.lower:
                 return
             self.left = self.left[self.left.bound > self.threshold]
@@ -134,7 +134,7 @@ class Search(Bracket):
             self.left, self.levels = halved, self.levels + 1
 
     def first(self, table: Table) -> Pairs | None:
-        """All pairs of the pieces of a cover; None where they are too many, or it is asked to stop."""
+        """All pairs of the pieces of a cover; None where they are too many, or on request."""
         drivers = np.flatnonzero(table.pieces.driver)
         driven = np.flatnonzero(table.pieces.driven)
         found = self._bounded(table, all_pairs(drivers, driven))
@@ -154,7 +154,7 @@ class Search(Bracket):
         return self._bounded(table, in_blocks(one, other))
 
     def _bounded(self, table: Table, blocks: Blocks) -> Pairs | None:
-        return self.bounded(blocks, lambda *pair: bounded(self.asked, table.pieces, *pair))
+        return self.bounded(blocks, lambda *pair: bounded(self.required, table.pieces, *pair))
 
 
 def _halves(table: Table, which: IntArray, long: BoolArray | None) -> IntArray:

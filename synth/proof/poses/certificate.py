@@ -12,12 +12,11 @@ import numpy as np
 
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import IntArray
-from grashof.synth.proof.curve.asked import Asked, with_forms
 from grashof.synth.proof.curve.centres import centres_of
 from grashof.synth.proof.curve.dyads import possible_arms, roles_of
 from grashof.synth.proof.curve.pieces import Tubes, contracted
-from grashof.synth.proof.curve.table import Pieces, Side
-from grashof.synth.proof.curve.trail import Trail
+from grashof.synth.proof.curve.required import Required, with_forms
+from grashof.synth.proof.curve.table import Pieces, Side, Trail
 from grashof.synth.proof.poses.pairs import sifted
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
@@ -44,8 +43,8 @@ def certificate_of(
     against the bound that came of it.
     """
     about = with_forms(scaled)
-    asked = Asked.of(about, at_least)
-    return {"grashof_certificate": FORM, **_stated(about, asked, upper), **_tree(asked, trail, upper)}
+    required = Required.of(about, at_least)
+    return {"grashof_certificate": FORM, **_stated(about, required, upper), **_tree(required, trail, upper)}
 
 
 def writable(path: Path) -> None:
@@ -68,12 +67,12 @@ def write(certificate: dict[str, Any], path: Path) -> None:
         raise ProblemError(f"certificate {path}: {reason}; it must be a file that can be written") from None
 
 
-def _stated(scaled: ScaledProblem, asked: Asked, upper: float) -> dict[str, Any]:
-    """What is proven, in the units of the problem."""
+def _stated(scaled: ScaledProblem, required: Required, upper: float) -> dict[str, Any]:
+    """The proven statement, in the units of the problem."""
     task, size = scaled.problem.task, float(scaled.frame.scale)
     wanted = scaled.problem.requirements.resolved(size, scale_free=scaled.frame.scale_free)
-    asked_of = {name: getattr(wanted, name) for name in _BOXES}
-    boxes = {name: box for name, box in asked_of.items() if box and np.isfinite([box.x, box.y]).any()}
+    required_of = {name: getattr(wanted, name) for name in _BOXES}
+    boxes = {name: box for name, box in required_of.items() if box and np.isfinite([box.x, box.y]).any()}
     limits = dict(zip(("r1", "r2", "r3", "r4"), map(list, wanted.link_lengths), strict=True))
     return {
         "problem": scaled.problem.name,
@@ -87,9 +86,9 @@ def _stated(scaled: ScaledProblem, asked: Asked, upper: float) -> dict[str, Any]
                 **{name: {"x": list(box.x), "y": list(box.y)} for name, box in boxes.items()},
                 "rotatability": str(wanted.rotatability),
                 "rotatability_margin": wanted.rotatability_margin,
-                "order": asked.ordered,
-                "same_branch": asked.loop.one_branch,
-                "transmission_over": "cycle" if asked.over_turn else "task",
+                "order": required.ordered,
+                "same_branch": required.loop.one_branch,
+                "transmission_over": "cycle" if required.over_turn else "task",
             }
         ),
         "upper_deg": upper,
@@ -106,13 +105,13 @@ def _finite(limit: Any) -> Any:
     return None if limit in (np.inf, -np.inf) else limit
 
 
-def _tree(asked: Asked, trail: Trail, upper: float) -> dict[str, Any]:
+def _tree(required: Required, trail: Trail, upper: float) -> dict[str, Any]:
     """The rectangles, and the pairs of pieces, with what became of them."""
     rectangles = Tubes.joined(*trail.rectangles)
-    tubes, filled = contracted(asked.curve, rectangles)
-    near = possible_arms(asked, tubes.span)
-    centres = centres_of(asked.curve, tubes, asked.longest)
-    roles = roles_of(asked, tubes.span, centres.span)
+    tubes, filled = contracted(required.curve, rectangles)
+    near = possible_arms(required, tubes.span)
+    centres = centres_of(required.curve, tubes, required.longest)
+    roles = roles_of(required, tubes.span, centres.span)
     fates = np.select(
         [~filled, ~near, roles.driver & roles.driven, roles.driver, roles.driven],
         ["missed", "far", "either", "driver", "driven"], "barred",
@@ -127,7 +126,7 @@ def _tree(asked: Asked, trail: Trail, upper: float) -> dict[str, Any]:
         ],
         "fates": fates.tolist(),
         "first": trail.pieces[: trail.first].tolist(),
-        "pairs": _levels(asked, pieces, trail, np.radians(upper)),
+        "pairs": _levels(required, pieces, trail, np.radians(upper)),
     }
 
 
@@ -138,7 +137,7 @@ def _numbers(tubes: Tubes, *names: str) -> list[list[float]]:
     return made
 
 
-def _levels(asked: Asked, pieces: Pieces, trail: Trail, upper: float) -> list[dict[str, Any]]:
+def _levels(required: Required, pieces: Pieces, trail: Trail, upper: float) -> list[dict[str, Any]]:
     """All pairs by level: those that were halved, and the others by the condition that drops them."""
     parents = np.concatenate(trail.parents)
     count, first = len(parents), trail.pieces[: trail.first]
@@ -158,7 +157,7 @@ def _levels(asked: Asked, pieces: Pieces, trail: Trail, upper: float) -> list[di
         levels.append(
             {
                 "halved": np.stack([now // count, now % count], axis=1).tolist(),
-                **_reasons(asked, pieces, one[leaf], other[leaf], upper),
+                **_reasons(required, pieces, one[leaf], other[leaf], upper),
             }
         )
         one, other = (
@@ -175,14 +174,16 @@ def _keys(trail: Trail, pairs: tuple[IntArray, IntArray], count: int) -> IntArra
     return keys
 
 
-def _reasons(asked: Asked, pieces: Pieces, one: IntArray, other: IntArray, upper: float) -> dict[str, Any]:
+def _reasons(
+    required: Required, pieces: Pieces, one: IntArray, other: IntArray, upper: float
+) -> dict[str, Any]:
     """Pairs by the condition that drops them."""
     found: dict[str, list[list[int]]] = {"lengths": [], "transmission": [], "together": [], "left": []}
     for begin in range(0, len(one), _AT_ONCE):
         pairs = np.stack([one[begin : begin + _AT_ONCE], other[begin : begin + _AT_ONCE]], axis=1)
         least = np.full(len(pairs), upper)
         sides = Side.of(pieces, pairs[:, 0], is_driver=True), Side.of(pieces, pairs[:, 1], is_driver=False)
-        first, second, third, _ = sifted(asked, *sides, pieces.sense[pairs[:, 0]], least)
+        first, second, third, _ = sifted(required, *sides, pieces.sense[pairs[:, 0]], least)
         step = np.zeros(len(pairs), dtype=np.int64)
         for rows in (first, second, third):
             step[rows] += 1

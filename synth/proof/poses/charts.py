@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.synth.proof.curve.curve import poles
 from grashof.synth.proof.curve.enclosure import Steps, enclosed
 from grashof.synth.proof.curve.pieces import WIDER
-from grashof.synth.proof.curve.poles import poles
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements
 
@@ -96,7 +96,7 @@ class Tiles:
 
     @classmethod
     def rectangle(cls, charts: Charts, kind: int, low: FloatArray, high: FloatArray, count: int) -> Tiles:
-        """Squares that cover a rectangle between corners, shape (2,); so many at most on its longer side."""
+        """Squares that cover a rectangle between corners, shape (2,); at most `count` on its longer side."""
         wide = np.maximum(high - low, 0.0)
         side = max(float(wide.max()) / count, SMALL)
         many = np.maximum(np.ceil(wide / side), 1).astype(int)

@@ -8,9 +8,9 @@ import numpy as np
 
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, Limits
-from grashof.synth.proof.curve.asked import ANY_LENGTH, SLACK, Asked, Dyad
 from grashof.synth.proof.curve.curve import Curve
 from grashof.synth.proof.curve.dyads import allowed, lengths_of
+from grashof.synth.proof.curve.required import ANY_LENGTH, SLACK, Dyad, Required
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.forms.forms import Form, Span, greatest_quotient
 from grashof.synth.proof.forms.loop import STEEP, at_targets, square_at_targets
@@ -22,10 +22,10 @@ _NOBODY = Dyad((np.inf, 0.0), ANY_LENGTH, Box(), Box(), Box())  # no dyad of the
 
 @dataclass(frozen=True, slots=True)
 class Cranks:
-    """What is asked of the cranks that go with a slide."""
+    """The requirements on cranks that go with a slide."""
 
-    asked: Asked  # of the crank; nothing of the curve is a driven dyad
-    slider: Dyad  # what is asked of B
+    required: Required  # of the crank; nothing of the curve is a driven dyad
+    slider: Dyad  # the requirements on B
     slide: Slide
     offset: Limits  # sizes, of the slide from O2, positive to the left of its direction
     directions: tuple[float, ...]  # which of the slide's are allowed: 1 for that of `slide`, -1 for the other
@@ -33,22 +33,24 @@ class Cranks:
     @classmethod
     def of(cls, scaled: ScaledProblem, slide: Slide, at_least: float | None = None) -> Cranks:
         """Of a problem with displacements of the body; `at_least` an angle that counts, deg."""
-        asked, offset = Asked.of(scaled, at_least), scaled.wanted.offset or (-np.inf, np.inf)
+        required, offset = Required.of(scaled, at_least), scaled.wanted.offset or (-np.inf, np.inf)
         around = offset[0] - SLACK, offset[1] + SLACK
-        slider = replace(asked.driven, length=ANY_LENGTH, ground=Box(), keep_out=())
-        return cls(replace(asked, driven=_NOBODY), slider, slide, around, _directions(scaled.wanted, slide))
+        slider = replace(required.driven, length=ANY_LENGTH, ground=Box(), keep_out=())
+        return cls(
+            replace(required, driven=_NOBODY), slider, slide, around, _directions(scaled.wanted, slide)
+        )
 
     @staticmethod
     def curve_of(scaled: ScaledProblem) -> Curve:
         """The curve of a problem with displacements of the body."""
-        return Asked.of(scaled).curve
+        return Required.of(scaled).curve
 
     @property
     def may_slide(self) -> bool:
         """Whether B and its slide may be within their limits."""
         point, _ = self.slide.spans(1)
         arm = lengths_of(point, Span(0 * point.middle, point.steps, 0 * point.rest))
-        inside = arm.within(self.slider.arm) & allowed(self.asked, self.slider, point, point)
+        inside = arm.within(self.slider.arm) & allowed(self.required, self.slider, point, point)
         return bool(self.directions) and bool(inside.all())
 
     def rows_left(self, z: Span, c: Span, sense: IntArray, least: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -78,9 +80,9 @@ class Cranks:
         return rows, bound[rows]
 
     def _of_lengths(self, r2: Form, r3: Form, offset: Form) -> list[Form]:
-        """What has to be positive by limits of lengths, their ratio and the rule of full rotation."""
-        asked, loop, forms = self.asked, self.asked.loop, list[Form]()
-        for length, (low, high) in ((r2, asked.driver.length), (r3, loop.lengths[2])):
+        """Forms that are positive within limits of lengths, their ratio and the rule of full rotation."""
+        required, loop, forms = self.required, self.required.loop, list[Form]()
+        for length, (low, high) in ((r2, required.driver.length), (r3, loop.lengths[2])):
             forms.append(Form(length.centre - low, length.slopes, length.rest))
             forms.append(Form(high - length.centre, -length.slopes, length.rest))
         forms += [r3.times(loop.ratio) - r2, r2.times(loop.ratio) - r3]
@@ -98,8 +100,8 @@ class Cranks:
 
     def _at_poses(self, rod: Span, along: Span, r3: Form, least: FloatArray) -> tuple[FloatArray, list[Form]]:
         """By the poses: sin mu is the component of AB along the slide over r3, as the body sees both."""
-        seen = [along.placed(complex(turn.conj())) for turn in self.asked.curve.rotation]
-        bound, forms = at_targets(self.asked.loop, [each.dot(rod) for each in seen], r3, np.sin(least))
+        seen = [along.placed(complex(turn.conj())) for turn in self.required.curve.rotation]
+        bound, forms = at_targets(self.required.loop, [each.dot(rod) for each in seen], r3, np.sin(least))
         if least.size and least.min() > STEEP:
             beside = [each.placed(1j).dot(rod) for each in seen]
             closer, more = square_at_targets(beside, r3, np.cos(least))
@@ -110,13 +112,13 @@ class Cranks:
         self, z: Span, c: Span, across: Span, r2: Form, sense: IntArray
     ) -> tuple[BoolArray, BoolArray]:
         """Where A surely passes O2 + r2 across, or O2 - r2 across, while the transmission angle counts."""
-        asked, everywhere = self.asked, np.ones(len(sense), dtype=bool)
-        if asked.over_turn:
+        required, everywhere = self.required, np.ones(len(sense), dtype=bool)
+        if required.over_turn:
             return everywhere, everywhere
-        if not asked.ordered:
+        if not required.ordered:
             return ~everywhere, ~everywhere
         # F is between A1 and A4 where the triangle A1 F A4 has the sense of the order.
-        curve = asked.curve
+        curve = required.curve
         last = z.placed(complex(curve.rotation[-1]) - 1, complex(curve.shift[-1]))
         beside, crank = r2 * across.cross(last), (z - c).cross(last)
         sign = sense.astype(np.float64)

@@ -13,8 +13,8 @@ from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatA
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.proof import Claim, Proof, best_listed, quantity_of
-from grashof.synth.proof.curve.asked import Asked, unusable
 from grashof.synth.proof.curve.pieces import WIDER, Tubes
+from grashof.synth.proof.curve.required import Required, unusable
 from grashof.synth.proof.curve.table import Pieces, squares
 from grashof.synth.proof.forms.forms import Form, Span
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -26,7 +26,7 @@ FIVE = 5
 STOPPED = "it was stopped"
 MOST_RECTANGLES = 300_000
 CLOSE = 0.9  # of the largest box that Krawczyk's test accepts, about
-_NEWTON = 30  # steps from what is left to a root
+_NEWTON = 30  # steps from a remaining box to a root
 _SMALL = 1e-3  # sizes: pieces as short as that are tried for a root of their own
 
 
@@ -55,7 +55,7 @@ class Certified:
 
 
 def certified_poses(scaled: ScaledProblem) -> Certified | None:
-    """All dyads of a problem of five whole poses, met exactly by a four-bar; None of other problems.
+    """All dyads of a problem of five whole poses, met exactly by a four-bar; None for other problems.
 
     The finder has to know each of them: else they are not all.
     """
@@ -64,11 +64,11 @@ def certified_poses(scaled: ScaledProblem) -> Certified | None:
     if why := unusable(scaled):
         return replace(Certified.nothing(), why=why)
     since = perf_counter()
-    asked = replace(Asked.of(scaled), rotation=(0.0, TURN))
-    shift = scaled.motion.apply(np.array([asked.origin]))[0] - asked.origin
+    required = replace(Required.of(scaled), rotation=(0.0, TURN))
+    shift = scaled.motion.apply(np.array([required.origin]))[0] - required.origin
     motion = Displacements(scaled.motion.rotation, shift)
     try:
-        made = certified_dyads(asked, motion)
+        made = certified_dyads(required, motion)
     except StopRequested:
         return replace(Certified.nothing(), why=STOPPED)
     why = why_open(made, motion)
@@ -84,23 +84,23 @@ def why_open(made: Certified, motion: Displacements) -> str:
     return f"{counted(len(unknown), 'dyad')} came up that the search does not know" if unknown else ""
 
 
-def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
+def certified_dyads(required: Required, motion: Displacements) -> Certified:
     """All dyads of five displacements that meet the limits of a dyad, and perhaps some that do not.
 
-    The curve of `asked` is that of the first four poses, and the displacements are seen from its origin. A
+    The curve of `required` is that of the first four poses, and the displacements are seen from its origin. A
     cover of the curve is taken; a piece is dropped where the equation of the fifth pose has no zero on it,
     and settled where it lies in a box in which Krawczyk's test (*Computing* 4, 1969) proves that there is
-    exactly one zero of all four equations. StopRequested if asked to stop.
+    exactly one zero of all four equations. `StopRequested` on request.
     """
     known = _certified(motion, five_pose_dyads(motion))
-    active, count = squares(asked), 0
+    active, count = squares(required), 0
     last = complex(motion.rotation[-1]), complex(motion.shift[-1])
     while len(active):
         raise_if_stopped()
         count += len(active)
         if count > MOST_RECTANGLES:
-            return _counted(asked, known, complete=False, rectangles=count)
-        pieces, _ = Pieces.of(asked, active)
+            return _counted(required, known, complete=False, rectangles=count)
+        pieces, _ = Pieces.of(required, active)
         pieces = pieces[_may_meet(pieces.tubes.span, pieces.centres.span, *last)]
         pieces = pieces[~_settled(known, pieces)]
         small = np.flatnonzero(pieces.tubes.half < _SMALL)
@@ -109,14 +109,14 @@ def certified_dyads(asked: Asked, motion: Displacements) -> Certified:
             known = _joined(known, more)
             pieces = pieces[~_settled(known, pieces)]
         active = pieces.tubes.halves
-    return _counted(asked, known, complete=True, rectangles=count)
+    return _counted(required, known, complete=True, rectangles=count)
 
 
-def _counted(asked: Asked, known: Certified, *, complete: bool, rectangles: int) -> Certified:
+def _counted(required: Required, known: Certified, *, complete: bool, rectangles: int) -> Certified:
     """The same with how many may meet the limits."""
     size = 1e-9 * (1.0 + np.abs(known.moving))
     points = Tubes.rectangles(known.moving, np.ones_like(known.moving), size, size)
-    within = len(Pieces.of(asked, points)[0])
+    within = len(Pieces.of(required, points)[0])
     return replace(known, complete=complete, within=within, rectangles=rectangles)
 
 
@@ -211,7 +211,7 @@ def _newton(motion: Displacements, pieces: Pieces, which: IntArray) -> Dyads:
 
 
 def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate], *, whole: bool) -> Proof:
-    """What certified dyads of five poses prove of listed designs, where the search was whole."""
+    """The proof of listed designs by certified dyads of five poses, where the search was exhaustive."""
     best = best_listed(problem, designs)
     proof = Proof(
         claim=Claim.REFUSED,
@@ -219,7 +219,7 @@ def proof_of_all(problem: Problem, dyads: Certified, designs: Sequence[Candidate
         lower=best,
         pieces=(dyads.within, dyads.within),
         seconds=round(dyads.seconds, 4),
-        why=dyads.why or ("" if whole else "the search was not whole"),
+        why=dyads.why or ("" if whole else "the search was not exhaustive"),
     )
     if proof.why:
         return proof

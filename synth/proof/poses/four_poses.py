@@ -7,9 +7,8 @@ from time import perf_counter
 import numpy as np
 
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving
-from grashof.synth.proof.curve.asked import Asked, left_out, refusal, with_forms
-from grashof.synth.proof.curve.table import Table, TooMany
-from grashof.synth.proof.curve.trail import Trail
+from grashof.synth.proof.curve.required import Required, left_out, refusal, with_forms
+from grashof.synth.proof.curve.table import Table, TooMany, Trail
 from grashof.synth.proof.poses.branch_and_bound import MOST_LEFT, MOST_LEVELS, Search
 from grashof.synth.proof.poses.lookout import Lookout
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -32,12 +31,12 @@ def bounds_of_four(
     since = perf_counter()
     without = left_out(scaled)
     about = with_forms(scaled) if without else scaled
-    asked = Asked.of(about, at_least)
-    search = Search(asked, float(np.radians(proving.gap)), proving.most_pairs)
-    look = Lookout(about, asked)
+    required = Required.of(about, at_least)
+    search = Search(required, float(np.radians(proving.gap)), proving.most_pairs)
+    look = Lookout(about, required)
     begun = (0, 0)
     try:
-        table = Table.covering(asked, trail)
+        table = Table.covering(required, trail)
         begun = int(table.pieces.driver.sum()), int(table.pieces.driven.sum())
         search.run(table, look, content=at_least is not None)
         why = "" if search.done or (search.lower and at_least is not None) else _open(search)

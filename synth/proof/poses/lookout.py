@@ -13,7 +13,7 @@ from grashof.synth.designs.polishing import polished_solve
 from grashof.synth.programme.nonlinear_programme import solve_by_exchange
 from grashof.synth.programme.start import Start
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.proof.curve.asked import Asked
+from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Table
 from grashof.synth.proof.poses.pairs import Pairs
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -32,14 +32,14 @@ class Lookout:
     """Looks for designs in the middle of pairs; where none is, as under limits of no width, near it."""
 
     scaled: ScaledProblem  # with the requirements that the proof is about
-    asked: Asked
+    required: Required
     best: Candidate | None = field(default=None)  # the best design so far
     _climbs: int = field(default=0)
 
     def __call__(self, table: Table, pairs: Pairs, least: float) -> float:
         """The transmission angle of a design better than `least`, rad; 0 where none is found."""
         best_first = pairs[np.argsort(-pairs.bound, kind="stable")[:MOST]]
-        return self.best_of(screened_pairs(self.scaled, self.asked, table, best_first), least)
+        return self.best_of(screened_pairs(self.scaled, self.required, table, best_first), least)
 
     def best_of(self, found: Screened, least: float) -> float:
         """Transmission angle of a design better than `least`, rad, among linkages or near them; else 0."""
@@ -53,7 +53,7 @@ class Lookout:
         return max([self._climbed(found, int(row), least) for row in nearest], default=0.0)
 
     def _climbed(self, found: Screened, row: int, least: float) -> float:
-        """What a solve from a pair comes to."""
+        """The result of a solve from a pair."""
         self._climbs += 1
         start = Start.of_screened(found, row, self.scaled.objective)
         solve = polished_solve(self.scaled, start, solve_by_exchange(self.scaled, start))
@@ -73,13 +73,13 @@ class Lookout:
         return transmitted
 
 
-def screened_pairs(scaled: ScaledProblem, asked: Asked, table: Table, pairs: Pairs) -> Screened:
+def screened_pairs(scaled: ScaledProblem, required: Required, table: Table, pairs: Pairs) -> Screened:
     """The linkages in the middle of pairs, brought onto the curve, and to dyads in stated places."""
     motion = scaled.motion
     if motion is None:
         raise TypeError("only whole poses that are met exactly have dyads")
     unique, back = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
-    points: ComplexArray = asked.curve.onto(table.pieces.tubes.middle[unique]) + asked.origin
+    points: ComplexArray = required.curve.onto(table.pieces.tubes.middle[unique]) + required.origin
     centres = centre_points(motion, points)
     usable = np.isfinite(centres)
     dyads = polish(motion, Dyads(points, np.where(usable, centres, 0.0)), steps=2)

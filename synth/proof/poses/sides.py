@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
-from grashof.synth.proof.curve.asked import Asked, Dyad
 from grashof.synth.proof.curve.dyads import lengths_of, possible_arms, possible_radii, roles_of, same_lengths
+from grashof.synth.proof.curve.required import Dyad, Required
 from grashof.synth.proof.curve.table import NOTHING, OPEN, TooMany
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.poses.charts import GROUND, MOVING, Charts, Tiles
@@ -16,7 +16,7 @@ from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 8  # along the longer side of a rectangle that is covered
-COARSE = 0.5  # length of first tiles, as a share of what is near
+COARSE = 0.5  # length of first tiles, as a share of the local scale
 TINY = 2e-4  # sizes: tiles as small as that are not halved for themselves
 ENOUGH = 500  # tiles to begin with, about: those that are too large then are halved where pairs need it
 MOST_TILES = 60_000  # looked at for a side alone
@@ -24,27 +24,27 @@ MOST_TILES = 60_000  # looked at for a side alone
 
 @dataclass(frozen=True, slots=True)
 class OneSide:
-    """What is asked of the dyad of one side."""
+    """The requirements on the dyad of one side."""
 
-    asked: Asked  # the same of both dyads, so far as it is asked of one alone
+    required: Required  # the requirements on both dyads, as far as they concern one alone
     is_driver: bool
     charts: Charts
 
     @classmethod
-    def of(cls, asked: Asked, *, is_driver: bool) -> OneSide:
+    def of(cls, required: Required, *, is_driver: bool) -> OneSide:
         """The side of the driver, or the other one."""
-        dyad = asked.driver if is_driver else asked.driven
-        motion = Displacements(asked.curve.rotation, asked.curve.shift)
-        turn = np.exp(1j * asked.first_turn)
+        dyad = required.driver if is_driver else required.driven
+        motion = Displacements(required.curve.rotation, required.curve.shift)
+        turn = np.exp(1j * required.first_turn)
         by_z = Charts.of(motion, dyad.length[1], MOVING, complex(turn))
         sizes = [float(np.prod(high - low)) for low, high in (_body(dyad), _ground(dyad))]
         main = MOVING if sizes[0] <= sizes[1] else GROUND
-        return cls(replace(asked, driver=dyad, driven=dyad), is_driver, replace(by_z, main=main))
+        return cls(replace(required, driver=dyad, driven=dyad), is_driver, replace(by_z, main=main))
 
     @property
     def tiles(self) -> Tiles:
         """Those that a cover begins with; TooMany where nothing bounds the places of pivots."""
-        dyad, charts = self.asked.driver, self.charts
+        dyad, charts = self.required.driver, self.charts
         body, ground = _body(dyad), _ground(dyad)
         if not np.isfinite([*body, *ground]).all():
             raise TooMany("the plane takes too many squares to be covered")
@@ -97,13 +97,13 @@ class Sites:
     def of(cls, side: OneSide, tiles: Tiles) -> tuple[Sites, IntArray]:
         """Those of some tiles that may hold any, and which of these each is."""
         z, c, known = tiles.spans
-        asked = side.asked
-        keep = tiles.counted(z, c) & possible_arms(asked, z)
-        keep &= possible_radii(side.charts.motion.inverse(), c, asked.driver.length)
-        keep &= known | same_lengths(asked.curve, z, c)
+        required = side.required
+        keep = tiles.counted(z, c) & possible_arms(required, z)
+        keep &= possible_radii(side.charts.motion.inverse(), c, required.driver.length)
+        keep &= known | same_lengths(required.curve, z, c)
         rows = np.flatnonzero(keep)
         z, c = z[rows], c[rows]
-        roles = roles_of(asked, z, c)
+        roles = roles_of(required, z, c)
         some = np.flatnonzero(roles.driver if side.is_driver else roles.driven)
         rows = rows[some]
         return cls(tiles[rows], z[some], c[some], known[rows], roles.sense[some]), rows
@@ -149,9 +149,9 @@ class Sites:
 
 
 def is_empty(side: OneSide, most: int = MOST_TILES) -> bool | None:
-    """Whether no dyad meets what is asked of a side; None where that is open after so many tiles.
+    """Whether no dyad meets the requirements on a side; None where that is open at the end of the budget.
 
-    TooMany where nothing bounds the places of its pivots; StopRequested if asked to stop.
+    TooMany where nothing bounds the places of its pivots; `StopRequested` on request.
     """
     active, count = side.tiles, 0
     while len(active):
@@ -180,9 +180,9 @@ class Tiling:
 
     @classmethod
     def covering(cls, side: OneSide) -> Tiling:
-        """Tiles that hold all dyads that may meet what is asked of one; not so many that pairs are too many.
+        """Tiles that hold all dyads that may meet the requirements; few enough for all pairs of them.
 
-        TooMany where nothing bounds the places of its pivots; StopRequested if asked to stop.
+        TooMany where nothing bounds the places of its pivots; `StopRequested` on request.
         """
         done, _ = Sites.of(side, side.tiles)
         while not done.resolved.all() and len(done) < ENOUGH:

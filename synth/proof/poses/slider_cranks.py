@@ -1,7 +1,7 @@
 """Slider-cranks through four whole poses: bounds of the best there is, over pieces of the crank's curve.
 
 Of the body one point alone can slide on a line through all poses, so that B and the slide are known; the
-crank is any dyad of the circle-point curve. What is left has one parameter.
+crank is any dyad of the circle-point curve. One parameter remains.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged
 from grashof.synth.proof.claims.bounds import STOPPED, TOO_SMALL, Bounds, Proving, logged
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.proof.curve.asked import POSES, left_out, not_bounded, unusable, with_forms
 from grashof.synth.proof.curve.dyads import roles_of
+from grashof.synth.proof.curve.required import POSES, left_out, not_bounded, unusable, with_forms
 from grashof.synth.proof.curve.sliding import Slide
 from grashof.synth.proof.curve.table import Table, TooMany
 from grashof.synth.proof.forms.forms import Span
@@ -42,7 +42,7 @@ FORMS = (
 def bounds_of_slider_cranks(
     scaled: ScaledProblem, proving: Proving, at_least: float | None = None
 ) -> Bounds | None:
-    """Bounds of the best slider-crank through four whole poses; None of other problems.
+    """Bounds of the best slider-crank through four whole poses; None for other problems.
 
     With `at_least`, deg, it only decides whether a design has that much, and ends with the first one.
     """
@@ -60,7 +60,7 @@ def bounds_of_slider_cranks(
     cranks = Cranks.of(about, slide, at_least)
     if not cranks.may_slide:
         why = _outside(about, slide)
-        made = Bounds(upper=cranks.asked.floor, closed=True, left_out=without, why=why)
+        made = Bounds(upper=cranks.required.floor, closed=True, left_out=without, why=why)
         return logged(replace(made, seconds=perf_counter() - since))
     search = _Search(about, cranks, float(np.radians(proving.gap)), min(proving.most_pairs, MOST_PIECES))
     try:
@@ -88,9 +88,9 @@ def bounds_of_slider_cranks(
 def _suits(scaled: ScaledProblem) -> bool:
     """Whether these are slider-cranks through four whole poses, met exactly, at any time."""
     task = scaled.problem.task
-    whole = scaled.exact and task.is_whole and len(task) == POSES
+    exact = scaled.exact and task.is_whole and len(task) == POSES
     free = not task.is_timed and not (task.closed and task.returns)
-    return scaled.kind.dyad.bars == 1 and whole and free
+    return scaled.kind.dyad.bars == 1 and exact and free
 
 
 def _with_motion(scaled: ScaledProblem) -> ScaledProblem:
@@ -125,7 +125,7 @@ class _Search:
     @property
     def threshold(self) -> float:
         """Designs that transmit less do not count, rad."""
-        return max(self.lower + self.gap if self.best else 0.0, self.cranks.asked.floor)
+        return max(self.lower + self.gap if self.best else 0.0, self.cranks.required.floor)
 
     @property
     def done(self) -> bool:
@@ -141,7 +141,7 @@ class _Search:
 
     def run(self, *, content: bool = False) -> None:
         """Bound all pieces, look for designs in those that are left, halve these, until none is left."""
-        table = Table.covering(self.cranks.asked)
+        table = Table.covering(self.cranks.required)
         pieces = np.flatnonzero(table.pieces.driver)
         self.begun = len(pieces)
         while True:
@@ -171,7 +171,7 @@ class _Search:
 
     def _look(self, table: Table, pieces: IntArray) -> None:
         """Take the best design in the middle of pieces that the judge accepts, where it is better."""
-        curve, least = self.cranks.asked.curve, max(self.lower, self.cranks.asked.floor)
+        curve, least = self.cranks.required.curve, max(self.lower, self.cranks.required.floor)
         motion = Displacements(curve.rotation, curve.shift)
         z = curve.onto(table.pieces.tubes.middle[pieces])
         c = centre_points(motion, z)
@@ -180,7 +180,7 @@ class _Search:
             return
         dyads = polish(motion, Dyads(z[known], c[known]), steps=2)
         a, o2 = _alone(dyads.moving), _alone(dyads.ground)
-        sense = roles_of(self.cranks.asked, a, o2).sense
+        sense = roles_of(self.cranks.required, a, o2).sense
         rows, bound = self.cranks.rows_left(a, o2, sense, np.full(len(sense), least))
         order = rows[np.argsort(-bound, kind="stable")]
         # Between limits of no width the best are at the edge of the slack, which the judge does not grant.
@@ -191,7 +191,7 @@ class _Search:
 
     def _taken(self, a: complex, o2: complex) -> bool:
         """Whether the judge accepts the linkage of a crank, and it is the best so far."""
-        slide, origin = self.cranks.slide, self.cranks.asked.origin
+        slide, origin = self.cranks.slide, self.cranks.required.origin
         rod = slide.point - a
         for along in (slide.along, -slide.along):
             o4 = slide.point + abs(rod) * along
@@ -201,7 +201,7 @@ class _Search:
             if made is None or not made.verdict.ok:
                 continue
             transmitted = float(made.values[quantity_of(self.scaled.problem).key])
-            if transmitted <= max(self.lower, self.cranks.asked.floor):
+            if transmitted <= max(self.lower, self.cranks.required.floor):
                 return False
             self.lower, self.best = transmitted, made
             return True

@@ -8,7 +8,7 @@ from time import perf_counter
 import numpy as np
 
 from grashof.synth.proof.claims.bounds import STOPPED, Bounds, Proving, logged
-from grashof.synth.proof.curve.asked import THREE, Asked, left_out, refusal, unusable, with_forms
+from grashof.synth.proof.curve.required import THREE, Required, left_out, refusal, unusable, with_forms
 from grashof.synth.proof.curve.table import TooMany
 from grashof.synth.proof.poses.best_first import MOST_LEFT, BestFirst, Tilings
 from grashof.synth.proof.poses.lookout import Lookout
@@ -31,7 +31,7 @@ class _Middles:
 
     look: Lookout
     scaled: ScaledProblem
-    asked: Asked
+    required: Required
     steps: int = field(default=0)
 
     def __call__(self, sides: Tilings, pairs: Pairs, least: float) -> float:
@@ -44,7 +44,9 @@ class _Middles:
         best = Pairs.joined([pairs[:LOOKED_AT], pairs[self.steps % every :: every]])
         self.steps += 1
         driver, driven = (
-            polish(motion, Dyads(*(each.middle[which] + self.asked.origin for each in (of.z, of.c))), steps=2)
+            polish(
+                motion, Dyads(*(each.middle[which] + self.required.origin for each in (of.z, of.c))), steps=2
+            )
             for of, which in ((sides.driver.sites, best.driver), (sides.driven.sites, best.driven))
         )
         found = judged_pairs(motion, complex(self.scaled.targets[0]), driver, driven, self.scaled.wanted)
@@ -52,28 +54,28 @@ class _Middles:
 
 
 def sides_of(scaled: ScaledProblem) -> Bounds | None:
-    """A proof that there is no design, as no dyad of one side meets what is asked of it; else None.
+    """A proof that there is no design, as no dyad of one side meets its requirements; else None.
 
     The objective does not matter.
     """
-    asked, without = _asked(scaled)
+    required, without = _required(scaled)
     since = perf_counter()
     for is_driver, words in SIDES.items():
         try:
-            empty = is_empty(OneSide.of(asked, is_driver=is_driver))
+            empty = is_empty(OneSide.of(required, is_driver=is_driver))
         except (TooMany, StopRequested):
             return None
         if empty:
             why = f"{words} meets the poses nowhere within its limits"
             spent = perf_counter() - since
-            return logged(Bounds(upper=asked.floor, closed=True, seconds=spent, left_out=without, why=why))
+            return logged(Bounds(upper=required.floor, closed=True, seconds=spent, left_out=without, why=why))
     return None
 
 
-def _asked(scaled: ScaledProblem, at_least: float | None = None) -> tuple[Asked, tuple[str, ...]]:
-    """What has forms, and what is left out."""
+def _required(scaled: ScaledProblem, at_least: float | None = None) -> tuple[Required, tuple[str, ...]]:
+    """The requirements that have forms, and those that are left out."""
     without = left_out(scaled)
-    return Asked.of(with_forms(scaled) if without else scaled, at_least), without
+    return Required.of(with_forms(scaled) if without else scaled, at_least), without
 
 
 def bounds_of_three(
@@ -92,19 +94,19 @@ def bounds_of_three(
     if why:
         return Bounds(why=why, refused=True) if proving.minutes else None
     since = perf_counter()
-    asked, without = _asked(scaled, at_least)
+    required, without = _required(scaled, at_least)
     about = with_forms(scaled) if without else scaled
-    search = BestFirst(asked, float(np.radians(proving.gap)), proving.most_pairs, lower=lower)
-    look = Lookout(about, asked)
+    search = BestFirst(required, float(np.radians(proving.gap)), proving.most_pairs, lower=lower)
+    look = Lookout(about, required)
     begun = (0, 0)
     try:
-        sides = Tilings.covering(asked)
+        sides = Tilings.covering(required)
         begun = len(sides.driver), len(sides.driven)
         if not proving.minutes:
             if begun[0] * begun[1] > FEW:
                 return None
             search.most_pairs = min(search.most_pairs, FEW_PAIRS)
-        search.run(sides, _Middles(look, about, asked), content=at_least is not None)
+        search.run(sides, _Middles(look, about, required), content=at_least is not None)
         decided = search.done or (at_least is not None and search.lower)
         why = "" if decided else _open(search)
     except TooMany as ended:

@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter
 
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.proof.strokes.members import Family, Members
+from grashof.synth.proof.claims.bounds import Bounds, Proving
+from grashof.synth.proof.strokes.members import Family, MemberBounds
 from grashof.synth.proof.strokes.ranges import Range
+from grashof.synth.proof.strokes.required import (
+    families_of_stroke,
+    floor_of,
+    refusal_of_stroke,
+    sizes_left_out,
+)
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 _BEGUN = 64  # pieces of each family
 _MOST_LEVELS = 60
@@ -19,7 +28,7 @@ _OFF = 1e-14  # rad: more than the rounding of an angle
 
 @dataclass(frozen=True, slots=True)
 class Cover:
-    """What is known of the greatest transmission angle in families."""
+    """Bounds of the greatest transmission angle in families."""
 
     lower: float = 0.0  # rad, of a member that is allowed and counts; 0 where none is known
     upper: float = np.pi / 2  # rad; no member has more
@@ -29,17 +38,38 @@ class Cover:
     levels: int = 0  # how often what was left was halved
 
 
+def bounds_of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
+    """Bounds of the best design; None of other tasks. `at_least` is in deg."""
+    if not scaled.problem.task.at_limits:
+        return None
+    since = perf_counter()
+    cover = covered(families_of_stroke(scaled), float(np.radians(proving.gap)), floor_of(scaled, at_least))
+    made = Bounds(
+        lower=cover.lower,
+        upper=cover.upper,
+        closed=cover.closed,
+        pieces=(cover.begun, 0),
+        pairs=cover.bounded,
+        levels=cover.levels,
+        seconds=perf_counter() - since,
+        left_out=sizes_left_out(scaled),
+        why="" if cover.closed else "pieces of families stay open, as small as rounding or too many",
+    )
+    why = refusal_of_stroke(scaled)
+    return Bounds(why=why, refused=True) if why and not made.none else made
+
+
 def covered(families: Sequence[Family], gap: float, floor: float) -> Cover:
     """Bounds of the greatest transmission angle of all members of families.
 
     They are brought together up to `gap`, rad; members that transmit less than `floor`, rad, do not count.
     """
-    whole, open_bounds = Cover(), [0.0]
+    cover, open_bounds = Cover(), [0.0]
     for family in families:
-        whole, left = _family(family, whole, gap, floor)
+        cover, left = _family(family, cover, gap, floor)
         open_bounds.append(left)
-    threshold, left = _threshold(whole, gap, floor), max(open_bounds)
-    return replace(whole, upper=float(min(max(threshold, left), np.pi / 2)), closed=bool(left <= threshold))
+    threshold, left = _threshold(cover, gap, floor), max(open_bounds)
+    return replace(cover, upper=float(min(max(threshold, left), np.pi / 2)), closed=bool(left <= threshold))
 
 
 def _threshold(cover: Cover, gap: float, floor: float) -> float:
@@ -47,7 +77,7 @@ def _threshold(cover: Cover, gap: float, floor: float) -> float:
 
 
 def _family(family: Family, cover: Cover, gap: float, floor: float) -> tuple[Cover, float]:
-    """What one more family adds; and the greatest bound of what is left of it, or 0."""
+    """The cover with one more family, and the greatest bound of its open pieces, or 0."""
     low, high = _first(family)
     cover = replace(cover, begun=cover.begun + len(low))
     for level in range(_MOST_LEVELS + 1):
@@ -76,8 +106,8 @@ def _first(family: Family) -> tuple[FloatArray, FloatArray]:
     return edges[:-1], edges[1:]
 
 
-def _bounds(members: Members, from_middle: Range, middle: Members) -> FloatArray:
-    """What pieces transmit at most, rad; nothing where no member of them is allowed.
+def _bounds(members: MemberBounds, from_middle: Range, middle: MemberBounds) -> FloatArray:
+    """The greatest transmission angle of pieces, rad; nothing where no member of them is allowed.
 
     The cosine changes from the middle of a piece by no more than its slope does.
     """
@@ -89,8 +119,8 @@ def _bounds(members: Members, from_middle: Range, middle: Members) -> FloatArray
     return np.where(possible, np.arccos(np.clip(cosine, 0.0, 1.0)) + _OFF, 0.0)
 
 
-def _sure(members: Members) -> FloatArray:
-    """What members transmit at least, rad; nothing where they may be ruled out."""
+def _sure(members: MemberBounds) -> FloatArray:
+    """The least transmission angle of members, rad; nothing where they may be ruled out."""
     allowed = np.ones(members.cosine.low.shape, dtype=bool)
     for some, most in members.conditions:
         allowed &= some.high <= most.low

@@ -1,4 +1,4 @@
-"""All linkages with a swing or a stroke and a time ratio, enclosed: what they transmit and what they miss.
+"""All linkages with a swing or a stroke and a time ratio, enclosed: transmission angles and missed limits.
 
 In the limit positions driver and coupler are in line, B1 and B2 are at r3 + r2 and r3 - r2 from O2, and are
 seen from there under the lag, by which the driver turns more than half a turn in the slow stroke. With
@@ -25,13 +25,13 @@ from grashof.problems.values.arrays import Limits
 from grashof.synth.proof.strokes.ranges import HALF_TURN, ONE, Range, hypotenuse
 
 _TWO = Range.of(2.0)
-# What has to be at most something else.
+# The first of each pair has to be at most the second.
 Conditions: TypeAlias = list[tuple[Range, Range]]
 
 
 @dataclass(frozen=True, slots=True)
 class StrokeLimits:
-    """What is asked of linkages by their sizes, with the slack of the judge."""
+    """The requirements on the sizes of linkages, with the slack of the judge."""
 
     lengths: Mapping[str, Limits]  # by their names
     ratio: float  # longest to shortest link at most
@@ -40,12 +40,12 @@ class StrokeLimits:
 
 
 @dataclass(frozen=True, slots=True)
-class Members:
+class MemberBounds:
     """Pieces of a family."""
 
     cosine: Range  # of the worst transmission angle over the turn
     slope: Range  # its derivative by the number of the family
-    conditions: Conditions  # what has to be at most something else for members to be allowed
+    conditions: Conditions  # for members to be allowed
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,20 +54,20 @@ class Family:
 
     low: float
     high: float
-    members: Callable[[Range], Members]
+    members: Callable[[Range], MemberBounds]
 
 
 def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimits) -> Family:
     """Crank-rockers with a swing (rad) and a time ratio, by r2 / r3.
 
-    `side`, 1 or -1, tells two families apart that differ where the time ratio is not 1: the sense in which
+    `side`, 1 or -1, distinguishes two families that differ where the time ratio is not 1: the sense in which
     link 4 swings in the slow stroke of a driver that turns counter-clockwise.
     """
     half = Range.of(swing) / _TWO
     a = _half_lag(time_ratio) * Range.of(float(side))
     unit = half.sine
 
-    def members(x: Range) -> Members:
+    def members(x: Range) -> MemberBounds:
         line = _InLine.of(x, a, half - a)
         r1, r2, r3, r4 = line.ground, x * unit, unit, line.output
         lengths = {"r1": r1, "r2": r2, "r3": r3, "r4": r4}
@@ -79,7 +79,7 @@ def crank_rockers(swing: float, time_ratio: float, side: int, limits: StrokeLimi
         ]
         of_scale = _some_scale(lengths, limits.lengths)
         alike = _alike(lengths.values(), limits)
-        return Members(line.cosine, line.slope, [line.assembled, *turns, *alike, *of_scale])
+        return MemberBounds(line.cosine, line.slope, [line.assembled, *turns, *alike, *of_scale])
 
     return Family(*_shares(limits), members)
 
@@ -89,7 +89,7 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
     a = _half_lag(time_ratio)
     way = Range.of(stroke)
 
-    def members(x: Range) -> Members:
+    def members(x: Range) -> MemberBounds:
         line = _InLine.of(x, a, Range.of(0.0) - a)
         r3 = way / (_TWO * line.output)
         r2, offset = x * r3, line.across * r3 / line.output
@@ -98,7 +98,7 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
         sizes = [*_inside(r2, limits.lengths["r2"]), *_inside(r3, limits.lengths["r3"])]
         sizes += _inside(offset, limits.offset)
         alike = _alike((r2, r3), limits)
-        return Members(line.cosine, line.slope, [line.assembled, *turns, *alike, *sizes])
+        return MemberBounds(line.cosine, line.slope, [line.assembled, *turns, *alike, *sizes])
 
     return Family(*_shares(limits), members)
 
@@ -116,7 +116,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
     room = (HALF_TURN / _TWO - half) / _TWO  # greatest p, and what half the swing lacks of 90 deg, halved
     flat = _TWO * room.sine * room.sine  # 1 - sin(swing / 2)
 
-    def members(w: Range) -> Members:
+    def members(w: Range) -> MemberBounds:
         r1, r2 = ONE + w * w, (ONE - w) * (ONE + w) * sine
         offset = _TWO * w * cosine
         more, less = _margins(limits)
@@ -127,7 +127,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
         square = (ONE + sine) * w * w
         apart = flat + square  # r1 - r2
         slope = _TWO * cosine * (flat - square) / (apart * apart)
-        return Members(offset / apart, slope, [*turns, *alike, *of_scale])
+        return MemberBounds(offset / apart, slope, [*turns, *alike, *of_scale])
 
     return Family(0.0, float((room.sine / room.cosine).high), members)
 
@@ -140,7 +140,7 @@ def _half_lag(time_ratio: float) -> Range:
 
 @dataclass(frozen=True, slots=True)
 class _InLine:
-    """What all linkages have whose driver and coupler are in line in the limit positions."""
+    """Ranges of linkages whose driver and coupler are in line in the limit positions."""
 
     ground: Range  # its length times sin(swing / 2) / r3
     output: Range  # its length times sin(swing / 2) / r3
@@ -184,7 +184,7 @@ def _inside(length: Range, limits: Limits) -> Conditions:
 
 
 def _some_scale(lengths: Mapping[str, Range], limits: Mapping[str, Limits]) -> Conditions:
-    """What lets lengths be inside their limits at some scale: each two of them do."""
+    """Conditions for lengths to be inside their limits at some scale: each two of them are."""
     return [
         (Range.of(least) * other, Range.of(most) * one)
         for name, one in lengths.items()

@@ -60,7 +60,7 @@ class Range:
 
     @property
     def root(self) -> Range:
-        """The square root, of what is not negative."""
+        """The square root of ranges that are not negative."""
         found = _outward(np.sqrt(np.maximum(self.low, 0.0)), np.sqrt(self.high))
         return Range(np.maximum(found.low, 0.0), found.high)
 

@@ -1,4 +1,4 @@
-"""What function generators are searched for, in each sense, and how they become linkages."""
+"""The aims of a search for function generators, in each sense, and generators as linkages."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
-INSIDE = 4e-8  # by so much limits are kept, so that rounding misses none
+INSIDE = 4e-8  # margin by which limits are kept, so that rounding misses none
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class FunctionAims:
     wanted: Requirements  # resolved
     limits: ShapeLimits  # of drivers that turn counter-clockwise
     sizes: dict[str, Limits]  # limits of lengths, by name
-    unit: float  # of outputs: 1 rad, or the whole travel
+    unit: float  # of outputs: 1 rad, or the full travel
     exact: bool
 
     @classmethod
@@ -76,7 +76,7 @@ class FunctionAims:
 
     @property
     def kinds(self) -> str:
-        """What linkages of its kind are called."""
+        """The name of linkages of its kind, in the plural."""
         return f"{self.problem.mechanism[0].replace('inverted-', 'inverted ')}s"
 
     @property
@@ -118,28 +118,30 @@ class FunctionAims:
         """Whether mirror images do as well, so that one sense of the driver stands for both."""
         return self.wanted.offset is None and self.problem.requirements.theta2_start_deg is None
 
-    def pairs(self, sense: int) -> Wanted:
+    def pairs(self, sense: int) -> DesiredOutput:
         """The pairs, from the beginning of the range."""
-        return Wanted(
+        return DesiredOutput(
             self.task.driver_turns - self.task.span[0],
             sense * self.task.outputs / self.unit,
             self.task.weights,
         )
 
-    def samples(self, sense: int, count: int = SAMPLES) -> Wanted:
+    def samples(self, sense: int, count: int = SAMPLES) -> DesiredOutput:
         """Chebyshev-Lobatto points of the range."""
         places, weights = lobatto_with_weights(count)
         turned = self.limits.span * places
-        return Wanted(turned, sense * self.task.output(turned + self.task.span[0]) / self.unit, weights)
+        return DesiredOutput(
+            turned, sense * self.task.output(turned + self.task.span[0]) / self.unit, weights
+        )
 
     def dense(self, sense: int) -> tuple[FloatArray, FloatArray]:
         """Rotations from the beginning of the range, and the outputs there: extremes are found among them."""
         turned = np.linspace(0.0, self.limits.span, DENSE)
         return turned, sense * self.task.output(turned + self.task.span[0]) / self.unit
 
-    def linkage(self, made: Generators, driver: int) -> Linkage:
+    def linkage(self, batch: Generators, driver: int) -> Linkage:
         """The linkage of one generator, placed and scaled as limits have it."""
-        return made.linkage(self.wanted, self.unit, driver)
+        return batch.linkage(self.wanted, self.unit, driver)
 
     def generator(self, linkage: Linkage, driver: int, theta2: float) -> Generators:
         """The generator that a linkage is, its driver at `theta2`, rad, at the first pair."""

@@ -14,10 +14,10 @@ from grashof.problems import Linkage, ProblemError
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.optima import Optima
 from grashof.synth.starts.functions.pairs import KNOWN, exact_functions
-from grashof.synth.starts.whole_designs import WholeDesigns
 from grashof.synth.theory.functions.fit import fitted
 from grashof.synth.theory.functions.optima import refined
 from grashof.synth.theory.functions.output import Generators
@@ -31,7 +31,7 @@ CLOSE = 8  # of the designs that miss a requirement
 
 
 @dataclass(frozen=True)
-class Functions(WholeDesigns):
+class Functions(DesignFinder):
     """Linkages that generate a function.
 
     Round 0 looks for those through all pairs, or those of least error; the others, a round for each angle,
@@ -42,17 +42,17 @@ class Functions(WholeDesigns):
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
-        """An output is asked for."""
+        """Tasks with an output."""
         return bool(scaled.problem.task.has_output.any())
 
     @cached_property
     def aims(self) -> FunctionAims:
-        """What is searched for."""
+        """The aims of the search."""
         return FunctionAims.of(self.scaled)
 
     @property
     def exhausted(self) -> str:
-        """Why there are no others."""
+        """Why the list has ended."""
         if self.aims.obstacle:
             return self.aims.obstacle
         if not self.aims.exact:
@@ -83,7 +83,7 @@ class Functions(WholeDesigns):
         if self.aims.exact or self.aims.obstacle:
             return None
         search = Optima.each(self.aims)[0]
-        found = [(optimum.made, search.driver) for optimum in search.quick_pass()]
+        found = [(optimum.generator, search.driver) for optimum in search.quick_pass()]
         return Round(self._linkages(found), {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
@@ -91,8 +91,8 @@ class Functions(WholeDesigns):
         if number >= self.rounds_a_pass or self.aims.obstacle:
             return None
         if self.aims.exact:
-            made = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)
-            return self._round(made, together=not self._in_order)
+            batch = exact_functions(self.aims, rng, max(enough, 8) + SPARE, size)
+            return self._round(batch, together=not self._in_order)
         if number:
             return self._round(self._at_level(self.levels[number - 1], rng))
         found = [
@@ -101,9 +101,9 @@ class Functions(WholeDesigns):
             for optimum in search.optima(search.starts(rng, size), few=False)
         ]
         best = min((optimum for optimum, _ in found), key=lambda each: each.error, default=None)
-        cosine = 1.0 if best is None else best.made.worst_cosine(self.aims.limits.span)[0]
+        cosine = 1.0 if best is None else best.generator.worst_cosine(self.aims.limits.span)[0]
         needless = sum(level <= np.degrees(np.arccos(cosine)) for level in self.levels)
-        return self._round([(optimum.made, driver) for optimum, driver in found], skip=needless)
+        return self._round([(optimum.generator, driver) for optimum, driver in found], skip=needless)
 
     def _at_level(self, level: float, rng: np.random.Generator) -> list[tuple[Generators, int]]:
         """Some of the least errors of generators that transmit so much, deg."""
@@ -114,7 +114,7 @@ class Functions(WholeDesigns):
         least = min(error for *_, error in begun)
         hopeful = [(search, starts) for search, starts, error in begun if error <= WORSE * least]
         return [
-            (optimum.made, search.driver)
+            (optimum.generator, search.driver)
             for search, starts in hopeful
             for optimum in search.optima(starts, few=True)
         ]
@@ -125,22 +125,22 @@ class Functions(WholeDesigns):
             return []
         found = [
             (optimum, search)
-            for search, made in self._again(designs)
-            for optimum in search.optima(made, few=True)
+            for search, batch in self._again(designs)
+            for optimum in search.optima(batch, few=True)
         ]
         found.sort(key=lambda each: each[0].error)
         settled = [(search.settled(optimum), search) for optimum, search in found[:1]]
-        return self._linkages([(optimum.made, search.driver) for optimum, search in found + settled])
+        return self._linkages([(optimum.generator, search.driver) for optimum, search in found + settled])
 
     def follow(self, design: Candidate) -> list[Linkage]:
         """The generator that a design leads to: through all pairs, or of least error nearby."""
         found = list[tuple[Generators, int]]()
-        for search, made in self._again([design]):
+        for search, batch in self._again([design]):
             if self.aims.exact:
                 pairs, held = self.aims.pairs(search.sense), search.first is not None
-                found.append((fitted(pairs, made, search.limits.of, held=held)[0], search.driver))
+                found.append((fitted(pairs, batch, search.limits.of, held=held)[0], search.driver))
             else:
-                found.append((refined(search.aim(), made).made, search.driver))
+                found.append((refined(search.aim(), batch).generator, search.driver))
         return self._linkages([each for each in found if len(each[0])])
 
     def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
@@ -149,12 +149,12 @@ class Functions(WholeDesigns):
         mine = list[list[Generators]]([] for _ in every)
         for one in designs:
             driver = one.verdict.direction
-            made = self.aims.generator(one.linkage, driver, float(one.verdict.theta2[0]))
+            batch = self.aims.generator(one.linkage, driver, float(one.verdict.theta2[0]))
             fit = [
-                search.aim().error(made) if self.aims.mirrored or driver == search.driver else np.inf
+                search.aim().error(batch) if self.aims.mirrored or driver == search.driver else np.inf
                 for search in every
             ]
-            mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(made)
+            mine[int(np.argmin(np.nan_to_num(fit, nan=np.inf)))].append(batch)
         for search, several in zip(every, mine, strict=True):
             if several:
                 yield search, self.aims.kind.joined(several)
@@ -165,12 +165,12 @@ class Functions(WholeDesigns):
         known = KNOWN if self.scaled.own_objective is None else set[str]()
         return all(goal.key in known for goal, _ in self.scaled.problem.goals)
 
-    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Proposal]:
         """Of exact ones the few most promising; of least errors those at every transmission angle."""
-        del asked, key
+        del required, key
         numbers = range(self.rounds_a_pass)
-        made = [self.round(number, CLOSE, rng, 1) for number in numbers]
-        return [each for found in made if found is not None for each in found.starts]
+        batch = [self.round(number, CLOSE, rng, 1) for number in numbers]
+        return [each for found in batch if found is not None for each in found.starts]
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """Limits that contradict each other; pairs that no linkage goes through."""
@@ -180,15 +180,15 @@ class Functions(WholeDesigns):
         return f"no {self.aims.kinds[:-1]} goes through {pairs}"
 
     def _round(
-        self, made: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False
+        self, batch: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False
     ) -> Round:
-        linkages = self._linkages(made)
+        linkages = self._linkages(batch)
         return Round(linkages, {FINDS: len(linkages)}, skip=skip, together=together)
 
-    def _linkages(self, made: Sequence[tuple[Generators, int]]) -> list[Linkage]:
+    def _linkages(self, batch: Sequence[tuple[Generators, int]]) -> list[Linkage]:
         """Generators as linkages, but for pivots that coincide and lengths beyond the floats."""
         linkages = list[Linkage]()
-        for one, driver in made:
+        for one, driver in batch:
             with suppress(ProblemError):
                 linkages.append(self.aims.linkage(one, driver))
         return linkages

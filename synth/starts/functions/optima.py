@@ -21,11 +21,8 @@ from grashof.synth.theory.stopping import stop_requested
 CRANKS = 8000  # random full cranks, from which least squares begins besides
 PULLS = (0.1, 1.0)  # rad, or shares of the travel: what a missed limit counts as in least squares
 BASINS, TRIED, SHORT = 9, 30, 5  # starts that are refined to the end, and those tried in few steps
-FIRST, SPARSE, QUICK_STEPS = (
-    3,
-    16,
-    12,
-)  # of a quick pass: starts tried, one of so many fitted, in so many steps
+# Of a quick pass: starts tried, the stride of those fitted, and their steps.
+FIRST, SPARSE, QUICK_STEPS = 3, 16, 12
 BEST = 2  # of the ends at a transmission angle that a choice is offered at
 HOPELESS = 50.0  # times the least error: no further
 CELL = 0.04  # of optima: closer ones are alike
@@ -55,27 +52,27 @@ class Optima:
         """Least squares from many starts, best first; limits pull."""
         aims, limits = self.aims, self.limits
         by_pairs = len(aims.task) >= 6 and aims.task.norm == "rms"
-        wanted = aims.pairs(self.sense) if by_pairs else aims.samples(self.sense)
+        desired = aims.pairs(self.sense) if by_pairs else aims.samples(self.sense)
         full = limits.margin is not None or bool(limits.shortest)
         found: list[Generators] = []
         for _ in range(max(1, round(effort))):
-            kinds = [function_starts(aims.kind, wanted, rng, self.first)]
+            kinds = [function_starts(aims.kind, desired, rng, self.first)]
             if full:
-                cranks = crank_starts(aims.kind, wanted, rng, CRANKS, self.first, limits.shortest)
+                cranks = crank_starts(aims.kind, desired, rng, CRANKS, self.first, limits.shortest)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
             for starts in kinds:
                 for pull in PULLS if full else PULLS[:1]:
-                    made, square = fitted(wanted, starts, limits.of, pull=pull, held=self.first is not None)
-                    found.append(made[best_apart(made, square, CELL)[:TRIED]])
-        made = aims.kind.joined(found)
-        square = wanted.square(wanted.errors(made))
-        return made[best_apart(made, np.nan_to_num(square, nan=np.inf), CELL)]
+                    batch, square = fitted(desired, starts, limits.of, pull=pull, held=self.first is not None)
+                    found.append(batch[best_apart(batch, square, CELL)[:TRIED]])
+        batch = aims.kind.joined(found)
+        square = desired.square(desired.errors(batch))
+        return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
 
     def aim(self) -> Aim:
-        """What is made least."""
+        """The error to be made least."""
         greatest, most = self.aims.task.norm == "max", self.aims.greatest_error
-        wanted = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
-        return Aim(wanted, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
+        desired = self.aims.samples(self.sense) if greatest else self.aims.pairs(self.sense)
+        return Aim(desired, self.limits.of, greatest=greatest, held=self.first is not None, band=most)
 
     def optima(self, starts: Generators, *, few: bool) -> Iterator[Optimum]:
         """The best distinct optima from starts that come best first; of `few` only the best ones."""
@@ -83,7 +80,7 @@ class Optima:
         tried = self._tried(aim, starts, TRIED)
         worth = np.array([_worth(one) for one in tried])
         hopeful = [tried[k] for k in _apart(tried, worth) if worth[k] <= HOPELESS * worth.min() + MET]
-        ends = [refined(aim, one.made) for one in hopeful[:BASINS]]
+        ends = [refined(aim, one.generator) for one in hopeful[:BASINS]]
         if few:
             ends = sorted(ends, key=_worth)[:BEST]
         if aim.greatest:
@@ -95,14 +92,14 @@ class Optima:
     def quick_pass(self) -> Iterator[Optimum]:
         """One that is good, from few starts: most often there is one, before the search has begun."""
         rng, aim = np.random.default_rng(0), self.aim()
-        starts = function_starts(self.aims.kind, aim.wanted, rng, self.first)[::SPARSE]
-        made, square = fitted(
-            aim.wanted, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
+        starts = function_starts(self.aims.kind, aim.desired, rng, self.first)[::SPARSE]
+        batch, square = fitted(
+            aim.desired, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
         )
-        best = made[best_apart(made, square, CELL)]
+        best = batch[best_apart(batch, square, CELL)]
         if not len(best):
             return
-        end = refined(aim, min(self._tried(aim, best, FIRST), key=_worth).made)
+        end = refined(aim, min(self._tried(aim, best, FIRST), key=_worth).generator)
         if aim.greatest:
             end = self._with_extremes(aim, end)
         if end.missed <= ROUNDING:
@@ -117,14 +114,14 @@ class Optima:
         """The same to all its digits: its valley is narrow, and its extremes move with it."""
         for _ in range(SETTLED):
             before, aim = end.error, self.aim()
-            end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.made)
+            end = self._with_extremes(aim, end) if aim.greatest else refined(aim, end.generator)
             if abs(end.error - before) <= MET * before or stop_requested():
                 break
         return end
 
     def _with_extremes(self, aim: Aim, end: Optimum) -> Optimum:
         """The same with all extremes of its error in view."""
-        return refined(with_extremes(aim, end.made, *self.aims.dense(self.sense)), end.made)
+        return refined(with_extremes(aim, end.generator, *self.aims.dense(self.sense)), end.generator)
 
 
 def _worth(one: Optimum) -> float:
@@ -137,6 +134,6 @@ def _apart(some: list[Optimum], worth: FloatArray) -> list[int]:
     finite = np.flatnonzero(np.isfinite(worth))
     if not finite.size:
         return []
-    made = some[0].made.joined([some[k].made for k in finite])
-    best: list[int] = finite[best_apart(made, worth[finite], CELL)].tolist()
+    batch = some[0].generator.joined([some[k].generator for k in finite])
+    best: list[int] = finite[best_apart(batch, worth[finite], CELL)].tolist()
     return best

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.starts.functions.aims import FunctionAims
-from grashof.synth.theory.functions.fit import Wanted, best_apart, fitted
+from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import function_starts
@@ -33,43 +33,43 @@ def exact_functions(
     """
     found: list[tuple[FloatArray, Generators, int]] = []
     for sense, driver, first in aims.ways():
-        made = _through(aims, sense, driver, first, rng, effort)
-        if len(made) and not stop_requested():
-            found.append((expected_score(aims, made, sense), made, driver))
+        batch = _through(aims, sense, driver, first, rng, effort)
+        if len(batch) and not stop_requested():
+            found.append((expected_score(aims, batch, sense), batch, driver))
     if not found:
         return []
     score = np.concatenate([each for each, _, _ in found])
-    drivers = np.concatenate([np.full(len(made), driver) for _, made, driver in found])
-    made = aims.kind.joined([each for _, each, _ in found])
+    drivers = np.concatenate([np.full(len(batch), driver) for _, batch, driver in found])
+    batch = aims.kind.joined([each for _, each, _ in found])
     cell = NEAR
-    best = best_apart(made, -score, cell)
+    best = best_apart(batch, -score, cell)
     while len(best) > 4 * most:  # a curve or surface of designs: farther apart
         cell *= 1.5
-        best = best_apart(made, -score, cell)
-    return [(made[k : k + 1], int(drivers[k])) for k in best[:most]]
+        best = best_apart(batch, -score, cell)
+    return [(batch[k : k + 1], int(drivers[k])) for k in best[:most]]
 
 
 def _through(
     aims: FunctionAims, sense: int, driver: int, first: float | None, rng: np.random.Generator, effort: float
 ) -> Generators:
     """All that are found through the pairs and keep the limits."""
-    wanted, kind, limits = aims.pairs(sense), aims.kind, aims.limits_of(driver)
-    turned, output = wanted.turned - wanted.turned[0], wanted.output - wanted.output[0]
-    count, pairs = len(turned), _Pairs(aims, sense, limits, wanted, turned, output)
+    desired, kind, limits = aims.pairs(sense), aims.kind, aims.limits_of(driver)
+    turned, output = desired.turned - desired.turned[0], desired.output - desired.output[0]
+    count, pairs = len(turned), _Pairs(aims, sense, limits, desired, turned, output)
     pinned = _pinned(aims) and count < kind.EXACT
     if count > kind.EXACT or (first is not None and count > kind.LINEAR) or pinned:
-        starts = function_starts(kind, wanted, rng, first)
-        near = fitted(wanted, starts, limits.of, held=first is not None)[0]
+        starts = function_starts(kind, desired, rng, first)
+        near = fitted(desired, starts, limits.of, held=first is not None)[0]
         return pairs.kept(near)
     if first is not None:
         angle = np.pi * (np.arange(round(GRID**2 * effort)) + rng.random()) / round(GRID**2 * effort)
         both = [
             kind.at_starts(turned, output, np.full(len(angle), start), kind.place_of(angle))
-            for start in (first + wanted.turned[0], first + wanted.turned[0] + np.pi)
+            for start in (first + desired.turned[0], first + desired.turned[0] + np.pi)
         ]
-        made = kind.joined(both)
-        held = np.abs(np.angle(np.exp(1j * (made.first - first - wanted.turned[0])))) < MET
-        return pairs.kept(made[held].begun(wanted.turned[0]))
+        batch = kind.joined(both)
+        held = np.abs(np.angle(np.exp(1j * (batch.first - first - desired.turned[0])))) < MET
+        return pairs.kept(batch[held].begun(desired.turned[0]))
     if count == kind.EXACT:
         return pairs.through()
     if count == kind.EXACT - 1:
@@ -90,21 +90,21 @@ class _Pairs:
     aims: FunctionAims
     sense: int
     limits: ShapeLimits
-    wanted: Wanted
+    desired: DesiredOutput
     turned: FloatArray  # from the first pair
     output: FloatArray
 
     def through(self) -> Generators:
         """Of as many pairs as can be met: all there are."""
-        made, _ = self.aims.kind.through(self.turned[None], self.output[None])
-        return self.kept(made.begun(self.wanted.turned[0]))
+        batch, _ = self.aims.kind.through(self.turned[None], self.output[None])
+        return self.kept(batch.begun(self.desired.turned[0]))
 
     def through_and(self, between: float, tried: FloatArray) -> Generators:
         """Through the pairs and one more at a driver angle, at each of several outputs."""
         turned = np.broadcast_to(np.append(self.turned, between), (len(tried), len(self.turned) + 1))
         output = np.broadcast_to(self.output, (len(tried), len(self.output)))
-        made, _ = self.aims.kind.through(turned, np.concatenate([output, tried[:, None]], axis=1))
-        return self.kept(made.begun(self.wanted.turned[0]))
+        batch, _ = self.aims.kind.through(turned, np.concatenate([output, tried[:, None]], axis=1))
+        return self.kept(batch.begun(self.desired.turned[0]))
 
     def on_curve(self, count: int) -> Generators:
         """Of one pair less: the curve, and once more where it is best."""
@@ -116,7 +116,7 @@ class _Pairs:
         for _ in range(ZOOMS):
             if not len(pool):
                 break
-            at = _output_at(self.best(pool), self.wanted.turned[0], between)
+            at = _output_at(self.best(pool), self.desired.turned[0], between)
             more = self.through_and(between, (at[:, None] + step * np.linspace(-1, 1, ZOOM)).ravel())
             pool, step = self.aims.kind.joined([pool, more]), 3 * step / ZOOM
         return pool
@@ -135,8 +135,8 @@ class _Pairs:
             if not len(pool):
                 break
             best = self.best(pool)
-            drivers = best.first + self.wanted.turned[0]
-            angles = kind.angle_of(best.outputs(self.wanted.turned[:1])[:, 0])
+            drivers = best.first + self.desired.turned[0]
+            angles = kind.angle_of(best.outputs(self.desired.turned[:1])[:, 0])
             tried = [
                 (at[:, None] + step * move).ravel() for at, move in zip((drivers, angles), about, strict=True)
             ]
@@ -146,59 +146,59 @@ class _Pairs:
     def at_starts(self, driver: FloatArray, angle: FloatArray) -> Generators:
         """Those with given starts."""
         kind = self.aims.kind
-        made = kind.at_starts(self.turned, self.output, driver, kind.place_of(angle))
-        return self.kept(made.begun(self.wanted.turned[0]))
+        batch = kind.at_starts(self.turned, self.output, driver, kind.place_of(angle))
+        return self.kept(batch.begun(self.desired.turned[0]))
 
     def best(self, pool: Generators) -> Generators:
         """A few of the most promising that are distinct."""
         return pool[best_apart(pool, -expected_score(self.aims, pool, self.sense), NEAR)[:ZOOMED]]
 
-    def kept(self, made: Generators) -> Generators:
+    def kept(self, batch: Generators) -> Generators:
         """Those within the limits that meet every pair on one branch."""
-        made = made.finite
-        made = made[made.worst_cosine(self.limits.span) < 1]
-        made = made[self.limits.of(made).value.min(axis=1) >= -ROUNDING]
-        if not len(made):
-            return made
-        wanted = self.wanted
-        dense = np.unique(np.concatenate([wanted.turned, np.linspace(0.0, self.limits.span, 41)]))
-        path = made.outputs(dense)[:, np.searchsorted(dense, wanted.turned)]
-        off = path - path[:, :1] - (wanted.output - wanted.output[0])
+        batch = batch.finite
+        batch = batch[batch.worst_cosine(self.limits.span) < 1]
+        batch = batch[self.limits.of(batch).value.min(axis=1) >= -ROUNDING]
+        if not len(batch):
+            return batch
+        desired = self.desired
+        dense = np.unique(np.concatenate([desired.turned, np.linspace(0.0, self.limits.span, 41)]))
+        path = batch.outputs(dense)[:, np.searchsorted(dense, desired.turned)]
+        off = path - path[:, :1] - (desired.output - desired.output[0])
         most = max(MET, 0.5 * self.aims.problem.requirements.tolerance)
-        return made[np.abs(off).max(axis=1) < most]
+        return batch[np.abs(off).max(axis=1) < most]
 
 
-def _output_at(made: Generators, before: float, turned: float) -> FloatArray:
+def _output_at(batch: Generators, before: float, turned: float) -> FloatArray:
     """Output from the first pair to a place, shape (M,)."""
-    path = made.outputs(before + np.linspace(0.0, turned, 65))
+    path = batch.outputs(before + np.linspace(0.0, turned, 65))
     rotated: FloatArray = path[:, -1] - path[:, 0]
     return rotated
 
 
-def expected_score(aims: FunctionAims, made: Generators, sense: int) -> FloatArray:
-    """What the objective makes of generators, as far as it is known here, shape (M,); greater is better."""
-    score = np.zeros(len(made))
+def expected_score(aims: FunctionAims, batch: Generators, sense: int) -> FloatArray:
+    """Score of generators by the objective, as far as it is known here, shape (M,)."""
+    score = np.zeros(len(batch))
     for goal, weight in aims.problem.goals:
-        value = _known(aims, goal.key, made, sense)
+        value = _known(aims, goal.key, batch, sense)
         if value is not None:
             score += weight * goal.better * value / aims.problem.scale(goal)
     return np.where(np.isfinite(score), score, -np.inf)
 
 
-def _known(aims: FunctionAims, key: str, made: Generators, sense: int) -> FloatArray | None:
+def _known(aims: FunctionAims, key: str, batch: Generators, sense: int) -> FloatArray | None:
     """A quantity of generators; None for those that only the judge measures."""
     if key == "transmission_min_task":
-        return np.arccos(np.minimum(made.worst_cosine(aims.limits.span), 1.0))
+        return np.arccos(np.minimum(batch.worst_cosine(aims.limits.span), 1.0))
     if key == "transmission_min_cycle":
-        return np.arccos(np.minimum(made.worst_cosine(2 * np.pi), 1.0))
+        return np.arccos(np.minimum(batch.worst_cosine(2 * np.pi), 1.0))
     if key == "link_ratio":
-        return made.link_ratio
+        return batch.link_ratio
     if key in _ERRORS:
-        errors = aims.unit * aims.samples(sense, 31).errors(made)
+        errors = aims.unit * aims.samples(sense, 31).errors(batch)
         size: FloatArray = (
             np.abs(errors).max(axis=1) if key.endswith("max") else np.sqrt((errors**2).mean(axis=1))
         )
         return size
     if key == "size":
-        return made.extent(aims.limits.span, aims.task.size)
+        return batch.extent(aims.limits.span, aims.task.size)
     return None

@@ -4,69 +4,67 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import ClassVar, TypeAlias
 
 import numpy as np
 
 from grashof.problems import Box, Requirements, Task
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.starts.strokes.member_choice import apart, unbeaten
-from grashof.synth.starts.strokes.places import Places
-from grashof.synth.starts.strokes.rocker_places import RockerPlaces
-from grashof.synth.starts.strokes.shaper_places import ShaperPlaces
-from grashof.synth.starts.strokes.slide_places import SlidePlaces
-from grashof.synth.starts.whole_designs import WholeDesigns
-from grashof.synth.theory.limit_positions import Family, Members, best_of, highest, stretches
+from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.strokes.rocker_kind import RockerKind
+from grashof.synth.starts.strokes.shaper_kind import ShaperKind
+from grashof.synth.starts.strokes.slider_kind import SliderKind
+from grashof.synth.starts.strokes.stroke_kind import StrokeKind
+from grashof.synth.theory.distinct import DISTINCT, pick_apart
+from grashof.synth.theory.limit_positions import Family, StrokeLinkages, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
 _SAMPLES = 400  # members of a stretch that are looked at
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
-_MANY = 20  # members to choose the closest from, where the families do not tell
-_MISSING = 4  # of these are kept though they miss something, to tell what it is
+_MANY = 20  # members to choose the closest from, where the families do not decide
+_MISSING = 4  # of these are kept though they miss something, to report it
 
 # O2, O4 (n,), and A, B and theta2 in the limit positions (n, 2), in the frame.
-_Places: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
+_Positions: TypeAlias = tuple[ComplexArray, ComplexArray, ComplexArray, ComplexArray, FloatArray]
 
-# Families, whether mirrored, and where their members keep limits.
-_Stretches: TypeAlias = list[tuple[Family, bool, list[tuple[float, float]]]]
+# Families, and where their members keep limits.
+_Stretches: TypeAlias = list[tuple[Family, list[tuple[float, float]]]]
 
 
-def places_of(kind: Kind) -> type[Places]:
+def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
     """Where members lie, of a kind of linkage."""
-    return next(
-        each for each in (RockerPlaces, SlidePlaces, ShaperPlaces) if isinstance(kind.dyad, each.dyad)
-    )
+    return next(each for each in (RockerKind, SliderKind, ShaperKind) if isinstance(kind.dyad, each.dyad))
 
 
 @dataclass(frozen=True)
-class LimitPositions(WholeDesigns):
+class LimitPositions(DesignFinder):
     """All linkages with a swing, or a stroke, and a time ratio."""
 
     exhausted: ClassVar[str] = "no others are worth listing"
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
-        """Swing and time ratio are asked for."""
+        """Tasks with a swing or stroke and a time ratio."""
         return scaled.problem.task.at_limits
 
     @property
     def beginning(self) -> str:
         """Whose limit positions are looked at."""
-        return f"computing {self.places.what} by their limit positions"
+        return f"computing {self.stroke_kind.what} by their limit positions"
 
     @cached_property
-    def places(self) -> Places:
-        """What differs between kinds of linkage."""
-        return places_of(self.scaled.kind)(self.task, self.wanted)
+    def stroke_kind(self) -> StrokeKind:
+        """Families and places of this kind of linkage."""
+        return stroke_kind_of(self.scaled.kind)(self.task, self.wanted)
 
     @property
     def rounds_a_pass(self) -> int:
@@ -75,7 +73,7 @@ class LimitPositions(WholeDesigns):
 
     @property
     def task(self) -> Task:
-        """What is asked."""
+        """The task of the problem."""
         return self.scaled.problem.task
 
     @property
@@ -85,14 +83,14 @@ class LimitPositions(WholeDesigns):
 
     @property
     def elsewhere(self) -> bool:
-        """Whether anything is asked besides lengths, pivots and transmission: more places are tried then."""
-        beyond = set(self.wanted.limited) - self.places.kept
+        """Whether more than lengths, pivots and transmission is limited: more places are tried then."""
+        beyond = set(self.wanted.limited) - self.stroke_kind.kept
         return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:
-        """The families, as they are, and mirrored where that differs: where the start angle is given."""
-        return self.places.families(elsewhere=self.elsewhere)
+        """The families, and whether they are mirror images of others."""
+        return self.stroke_kind.families(elsewhere=self.elsewhere)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """First the best members and a choice of the others; then, where places decide, members anywhere."""
@@ -104,24 +102,24 @@ class LimitPositions(WholeDesigns):
 
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
         """The members that miss the limits by least."""
-        return self._closest([(family, mirrored, stretches(family)) for family, mirrored in self.kinds])
+        return self._closest([(family, stretches(family)) for family, _ in self.kinds])
 
-    def closest_to(self, asked: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
-        """Of the members that keep these limits, those that miss by least what else is asked, or many."""
-        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(asked), rng)
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
+        """Of the members that keep these limits, those that miss the additional one by least, or many."""
+        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(required), rng)
 
-    def _closest_to(self, asked: LimitPositions, rng: np.random.Generator) -> list[Start]:
+    def _closest_to(self, required: LimitPositions, rng: np.random.Generator) -> list[Start]:
         starts = list[Start]()
-        if asked.elsewhere:
+        if required.elsewhere:
             starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
-        return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
+        return starts + required._closest(self._stretches) + required._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""
         starts = list[Start]()
-        for _, member, mirrored in _best(within, self._inside):
+        for _, member in _best(within, self.stroke_kind.inside):
             # where these limits, or those of another problem, allow it
-            starts += (placed or self)._starts(member, mirrored, self._factor(member, mirrored))
+            starts += (placed or self)._starts(member, self.stroke_kind.factor(member))
         return starts
 
     def follow(self, design: Candidate) -> list[Start]:
@@ -130,84 +128,64 @@ class LimitPositions(WholeDesigns):
         names = (*row.lengths, *(each.name for each in row.parameters if each.kind == "distance"))
         shape = np.abs([float(getattr(linkage, name)) for name in names])
 
-        def near(members: Members, mirrored: bool) -> FloatArray:
+        def near(members: StrokeLinkages) -> FloatArray:
             lengths = np.abs(members.lengths)
             size = np.linalg.norm(lengths, axis=1, keepdims=True)
             off = np.linalg.norm(lengths / size - shape / np.linalg.norm(shape), axis=1)
-            side = (members.mirrored if mirrored else members).assembly
-            apart: FloatArray = -off - 10.0 * (side != float(linkage.assembly))
+            apart: FloatArray = -off - 10.0 * (members.assembly != float(linkage.assembly))
             return apart
 
         found = _best(self._stretches, near)
         nearest = max(found, key=lambda each: each[0], default=None)
-        return [] if nearest is None else self._starts(*nearest[1:])
+        return [] if nearest is None else self._starts(nearest[1])
 
     def _round(self, starts: list[Start]) -> Round:
         return Round(starts, {"feasible finds": len(starts)})
 
-    def _inside(self, members: Members, mirrored: bool) -> FloatArray:
-        """How far members are inside the limits of lengths, places and transmission, (n,)."""
-        return self.places.inside(members.mirrored if mirrored else members)
-
     @cached_property
     def _stretches(self) -> _Stretches:
         """Where members of each family keep the limits."""
-        return [
-            (
-                family,
-                mirrored,
-                stretches(family, partial(self._inside, mirrored=mirrored)),
-            )
-            for family, mirrored in self.kinds
-        ]
+        return [(family, stretches(family, self.stroke_kind.inside)) for family, _ in self.kinds]
 
     def _chosen(self, enough: int) -> list[Start]:
         """The best of each stretch, then others spread over size and transmission."""
         starts, groups = [], []
-        for family, mirrored, within in self._stretches:
+        for family, within in self._stretches:
             if within:
-                members = family(np.array(best_of(family, within)))
-                starts += self._starts(members, mirrored)
+                starts += self._starts(family(np.array(best_of(family, within))))
                 shares = np.concatenate([np.linspace(low, high, _SAMPLES) for low, high in within])
-                groups.append((family(shares), mirrored))
-        best = sorted(starts, key=lambda start: -self.places.worst(start))
+                groups.append(family(shares))
+        best = sorted(starts, key=lambda start: -self.stroke_kind.worst(start))
         if self.elsewhere:  # rounds of members anywhere follow
             return [one for one in best + self._spread(groups, _FIRST) if self._in_boxes(one)]
         return best + self._spread(groups, round(_SPARE * enough))
 
-    def _spread(self, groups: list[tuple[Members, bool]], most: int) -> list[Start]:
-        """So many members at most: of those that no other beats in size and transmission, then of all."""
+    def _spread(self, groups: list[StrokeLinkages], most: int) -> list[Start]:
+        """At most `most` members: of those that no other beats in size and transmission, then of all."""
         if not groups or not most:
             return []
-        factor = [self._factor(*group) for group in groups]
-        whole = self.places.diagonals
-        size = np.concatenate([f * whole(found) for f, (found, _) in zip(factor, groups, strict=True)])
-        angle = np.concatenate([found.transmission for found, _ in groups])
-        lengths = [f[:, None] * found.lengths for f, (found, _) in zip(factor, groups, strict=True)]
-        front = unbeaten(angle, size)
+        factors, diagonals = [self.stroke_kind.factor(each) for each in groups], self.stroke_kind.diagonals
+        size = np.concatenate([f * diagonals(each) for f, each in zip(factors, groups, strict=True)])
+        angle = np.concatenate([each.transmission for each in groups])
+        lengths = [f[:, None] * each.lengths for f, each in zip(factors, groups, strict=True)]
+        front = _unbeaten(angle, size)
         score = np.where(front, np.pi + angle, np.where(angle > angle.max() / 2, angle, -np.inf))
-        picked = apart(np.concatenate(lengths), score, most)
-        number = np.concatenate([np.full(len(found.share), k) for k, (found, _) in enumerate(groups)])
-        begin = np.concatenate([[0], np.cumsum([len(found.share) for found, _ in groups])])
+        begin = np.concatenate([[0], np.cumsum([len(each) for each in groups])])
         starts = []
-        for index in picked.tolist():
-            found, mirrored = groups[k := int(number[index])]
+        for index in _apart(np.concatenate(lengths), score, most).tolist():
+            k = int(np.searchsorted(begin, index, side="right")) - 1
             at = index - int(begin[k])
-            starts += self._starts(found[at : at + 1], mirrored)
+            starts += self._starts(groups[k][at : at + 1])
         return starts
 
-    def _factor(self, members: Members, mirrored: bool) -> FloatArray:
-        """By which members are scaled, (n,)."""
-        return self.places.factor(members.mirrored if mirrored else members)
-
-    def _starts(self, members: Members, mirrored: bool, wish: float | FloatArray = 1.0) -> list[Start]:
-        """Members as the limits of lengths and places put them into the plane."""
-        members = members.mirrored if mirrored else members
-        points = self._inward(self.places.put(members, self.places.factor(members, wish)))
+    def _starts(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> list[Start]:
+        """Linkages as the limits of lengths and places put them into the plane."""
+        factor = self.stroke_kind.factor(members, preferred)
+        points = self._inward(self.stroke_kind.put(members, factor))
         return [self._start(members[k : k + 1], points[k : k + 1]) for k in range(len(members))]
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> list[Start]:
-        """Members of random scale, place and handedness: those that keep all limits, then some others."""
+        """Linkages of random scale, place and handedness: those that keep all limits, then some others."""
         places = [self._placed(members, rng) for members in self._drawn(rng)]
         if not places:
             return []
@@ -221,10 +199,10 @@ class LimitPositions(WholeDesigns):
         starts = [Start.of_screened(screened, int(k), self.scaled.objective) for k in chosen]
         return [start.under(settled=True) for start in starts]
 
-    def _placed(self, members: Members, rng: np.random.Generator) -> _Places:
+    def _placed(self, members: StrokeLinkages, rng: np.random.Generator) -> _Positions:
         """O2, O4, A and B in the limit positions (n, 2) and theta2 there, anywhere, in the frame."""
-        points = self._inward(self.places.put_anywhere(members, self._room, rng))
-        o4, a, b, theta2 = self.places.moving(members, points)
+        points = self._inward(self.stroke_kind.put_anywhere(members, self._room, rng))
+        o4, a, b, theta2 = self.stroke_kind.moving(members, points)
         return points[:, 0], o4, a, b, theta2
 
     def _inward(self, points: ComplexArray) -> ComplexArray:
@@ -234,7 +212,7 @@ class LimitPositions(WholeDesigns):
         self, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray, theta2: FloatArray
     ) -> Screened:
         """Linkages in the frame screened under all requirements, from the slow stroke alone; P is A."""
-        count, sense = len(o2), -1.0 if self.places.clockwise else 1.0
+        count, sense = len(o2), -1.0 if self.stroke_kind.clockwise else 1.0
         visit = np.tile(np.arange(2), (count, 1))
         found = Configurations(o2, o4, a, b, visit, theta2, np.full(count, sense), self.scaled.kind)
         wanted = self.scaled.wanted
@@ -243,7 +221,7 @@ class LimitPositions(WholeDesigns):
 
     @property
     def _room(self) -> Box:
-        """Where O2 is put that may be anywhere: about the places that are asked for."""
+        """Where an unbounded O2 is put: about the required places."""
         wanted = self.wanted
         boxes = [box for box in (wanted.a, wanted.b, wanted.o4) if box is not None]
         sides = []
@@ -254,24 +232,25 @@ class LimitPositions(WholeDesigns):
             sides.append((min(ends) - self.task.size, max(ends) + self.task.size))
         return Box(*sides)
 
-    def _drawn(self, rng: np.random.Generator) -> Iterator[Members]:
+    def _drawn(self, rng: np.random.Generator) -> Iterator[StrokeLinkages]:
         """Random members, half of them mirrored."""
-        ranges = [(family, within) for family, mirrored, within in self._stretches if within and not mirrored]
-        either = self.places.mirrored
+        plain = [not mirrored for _, mirrored in self.kinds]
+        ranges = [each for each, is_plain in zip(self._stretches, plain, strict=True) if each[1] and is_plain]
+        either = self.stroke_kind.mirrored
         for family, within in ranges:
             low, high = within[int(rng.integers(len(within)))]
             for mirrored in either:
                 members = family(rng.uniform(low, high, _DRAWS // (len(either) * len(ranges))))
-                inside = self._inside(members, mirrored) >= 0
-                yield (members.mirrored if mirrored else members)[inside]
+                members = members.mirrored if mirrored else members
+                yield members[self.stroke_kind.inside(members) >= 0]
 
     def _in_boxes(self, start: Start) -> bool:
         """Whether A and B are where they may be in both limit positions."""
-        return self.places.in_boxes(*map(self.scaled.frame.outward, start.track[:2]))
+        return self.stroke_kind.in_boxes(*map(self.scaled.frame.outward, start.track[:2]))
 
-    def _start(self, member: Members, points: ComplexArray) -> Start:
+    def _start(self, member: StrokeLinkages, points: ComplexArray) -> Start:
         """One member, (1,), where two points of the frame, (1, 2), put it; P is A, as it may be anything."""
-        o4, a, b, theta2 = (each[0] for each in self.places.moving(member, points))
+        o4, a, b, theta2 = (each[0] for each in self.stroke_kind.moving(member, points))
         return Start(
             o2=complex(points[0, 0]),
             o4=complex(o4),
@@ -281,7 +260,7 @@ class LimitPositions(WholeDesigns):
             visit=(0, 1),
             theta2=(float(theta2[0]), float(theta2[1])),
             theta3=tuple(np.unwrap(np.angle(b - a)).tolist()),
-            direction=-1 if self.places.clockwise else 1,
+            direction=-1 if self.stroke_kind.clockwise else 1,
             assembly=int(member.assembly[0]),
             terms=Terms(self.scaled.objective, settled=True),
             kind=self.scaled.kind,
@@ -289,13 +268,13 @@ class LimitPositions(WholeDesigns):
 
 
 def _best(
-    within: _Stretches, value: Callable[[Members, bool], FloatArray]
-) -> Iterator[tuple[float, Members, bool]]:
-    """In each of some stretches the member, (1,), of the greatest value, with that, and whether mirrored."""
-    for family, mirrored, ranges in within:
+    within: _Stretches, value: Callable[[StrokeLinkages], FloatArray]
+) -> Iterator[tuple[float, StrokeLinkages]]:
+    """In each of some stretches the member, (1,), of the greatest value, with that."""
+    for family, ranges in within:
 
-        def of_share(share: FloatArray, family: Family = family, mirrored: bool = mirrored) -> FloatArray:
-            return value(family(share), mirrored)
+        def of_share(share: FloatArray, family: Family = family) -> FloatArray:
+            return value(family(share))
 
         for low, high in ranges:
             shares = np.linspace(low, high, _SAMPLES)
@@ -304,4 +283,24 @@ def _best(
             tried = np.array([shares[k], highest(of_share, before, behind)])
             values = of_share(tried)
             best = int(np.argmax(values))
-            yield float(values[best]), family(tried[[best]]), mirrored
+            yield float(values[best]), family(tried[[best]])
+
+
+def _unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
+    """Which linkages (n,) no other one beats in transmission and size."""
+    order = np.lexsort((size, -angle))
+    least = np.minimum.accumulate(size[order])
+    best = np.zeros(len(angle), dtype=bool)
+    best[order] = size[order] <= least
+    return best
+
+
+def _apart(lengths: FloatArray, score: FloatArray, most: int) -> IntArray:
+    """Indices of at most `most` lengths (n, 4), as far apart as leaves that many, best first."""
+    worth = np.flatnonzero(np.isfinite(score))  # without those of score -inf
+    signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
+    for least in (0.1, 0.05, 0.025, DISTINCT):
+        picked = pick_apart(signatures, score[worth], least, most)
+        if len(picked) >= most:
+            break
+    return worth[picked]

@@ -15,24 +15,24 @@ from grashof.synth.theory.stopping import raise_if_overdue
 
 Limits: TypeAlias = Callable[[Generators], Dual]  # as `ShapeLimits.of`
 
-HALVES = ((6, 400), (12, 120), (20, 48))  # after so many steps so many of the best go on
+HALVES = ((6, 400), (12, 120), (20, 48))  # after these steps this number of the best continue
 STEPS = 60
-CELL = 0.1  # of those in one such cell, in logarithms of lengths and rad, only the best goes on
+CELL = 0.1  # in logarithms of lengths and rad: of generators in one cell only the best continues
 FLAT = 1e-15  # share of the square below which a step gains nothing
 _TINY = 1e-30
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
-    """What a generator has to put out."""
+class DesiredOutput:
+    """The desired output of a generator."""
 
     turned: FloatArray  # (N,), rad: driver rotations from the first, growing from zero
     output: FloatArray  # (N,): outputs there, but for a constant: angles in rad, or travel
     weights: FloatArray  # (N,), of the squared errors
 
-    def errors(self, made: Generators) -> FloatArray:
-        """Output less what is wanted, with the best zero of least squares, shape (M, N); NaN: open."""
-        errors: FloatArray = made.outputs(self.turned) - self.output
+    def errors(self, batch: Generators) -> FloatArray:
+        """Output less the desired one, with the best zero of least squares, shape (M, N); NaN: open."""
+        errors: FloatArray = batch.outputs(self.turned) - self.output
         return self.centred(errors)
 
     def centred(self, values: FloatArray) -> FloatArray:
@@ -48,7 +48,7 @@ class Wanted:
 
 
 def fitted(
-    wanted: Wanted,
+    desired: DesiredOutput,
     starts: Generators,
     limits: Limits | None = None,
     *,
@@ -58,49 +58,49 @@ def fitted(
 ) -> tuple[Generators, FloatArray]:
     """The best of many starts moved to least squares, best first, and their weighted sums of squares.
 
-    Those open somewhere are left out, and of very many only the most promising go on, for `steps` steps at
-    most. What is below zero of `limits` (as `ShapeLimits.of`) counts as an error of `pull` times as much, in
-    rad or in units of the travel, and in the sums. The first driver angle stays if `held`.
+    Those open somewhere are left out, and of very many only the most promising continue, for at most `steps`
+    steps. Negative `limits` (as `ShapeLimits.of`) count as errors of `pull` times as much, in rad or in units
+    of the travel, and in the sums. The first driver angle stays if `held`.
     Levenberg-Marquardt over the batch; the zero of the output is linear and eliminated (variable projection,
     Golub & Pereyra 1973).
     """
-    model = _Model(wanted, limits, pull, held)
-    made = starts.finite
-    square = model.square(made)
-    made, square = made[np.isfinite(square)], square[np.isfinite(square)]
-    damping = np.full(len(made), 1e-3)
-    done: BoolArray = np.zeros(len(made), dtype=bool)
+    model = _Model(desired, limits, pull, held)
+    batch = starts.finite
+    square = model.square(batch)
+    batch, square = batch[np.isfinite(square)], square[np.isfinite(square)]
+    damping = np.full(len(batch), 1e-3)
+    done: BoolArray = np.zeros(len(batch), dtype=bool)
     for step in range(steps):
         raise_if_overdue()
-        made, square, damping, done = _fewer(step, made, square, damping, done)
+        batch, square, damping, done = _fewer(step, batch, square, damping, done)
         active = np.flatnonzero(~done)
         if not active.size:
             break
-        moved, fresh, gain = model.step(made[active], square[active], damping[active])
+        moved, fresh, gain = model.step(batch[active], square[active], damping[active])
         better = gain > 0
-        shape = made.shape.copy()
+        shape = batch.shape.copy()
         shape[active[better]] = moved.shape[better]
         done[active] = better & (gain <= FLAT * square[active] + _TINY)
         square[active[better]] = fresh[better]
         damping[active] *= np.where(better, 0.2, 6.0)
         done[active] |= (damping[active] > 1e8) | (square[active] < _TINY)
         damping = np.clip(damping, 1e-14, 1e9)
-        made = made.changed(shape)
+        batch = batch.changed(shape)
     order = np.argsort(square, kind="stable")
-    return made[order], square[order]
+    return batch[order], square[order]
 
 
 def _fewer(
-    step: int, made: Generators, square: FloatArray, damping: FloatArray, done: BoolArray
+    step: int, batch: Generators, square: FloatArray, damping: FloatArray, done: BoolArray
 ) -> tuple[Generators, FloatArray, FloatArray, BoolArray]:
-    most = dict(HALVES).get(step, len(made))
-    if most >= len(made):
-        return made, square, damping, done
-    best = np.sort(best_apart(made, square, CELL)[:most])
-    return made[best], square[best], damping[best], done[best]
+    most = dict(HALVES).get(step, len(batch))
+    if most >= len(batch):
+        return batch, square, damping, done
+    best = np.sort(best_apart(batch, square, CELL)[:most])
+    return batch[best], square[best], damping[best], done[best]
 
 
-def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
+def best_apart(batch: Generators, square: FloatArray, cell: float) -> IntArray:
     """Indices (K,) of the best, those of least `square` (M,), among generators that are alike; best first.
 
     Those that share a cell of size `cell`, in logarithms of lengths and in rad, are alike.
@@ -111,9 +111,9 @@ def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
     [2, 1]
     """
     order = np.argsort(square, kind="stable")
-    shape = made.shape.copy()
+    shape = batch.shape.copy()
     shape[:, -1] %= 2 * np.pi
-    keys = np.column_stack([np.round(shape / cell), made.assembly])[order]
+    keys = np.column_stack([np.round(shape / cell), batch.assembly])[order]
     first = np.unique(keys, axis=0, return_index=True)[1]
     best: IntArray = order[np.sort(first)]
     return best
@@ -121,43 +121,43 @@ def best_apart(made: Generators, square: FloatArray, cell: float) -> IntArray:
 
 @dataclass(frozen=True, slots=True)
 class _Model:
-    wanted: Wanted
+    desired: DesiredOutput
     limits: Limits | None
     pull: float
     held: bool
 
-    def square(self, made: Generators) -> FloatArray:
+    def square(self, batch: Generators) -> FloatArray:
         """Sums of squares with pulls; infinite where the loop is open."""
-        total = self.wanted.square(self.wanted.errors(made))
+        total = self.desired.square(self.desired.errors(batch))
         if self.limits is not None:
-            short = np.minimum(self.limits(made).value, 0.0)
+            short = np.minimum(self.limits(batch).value, 0.0)
             total = total + self.pull**2 * (short**2).sum(axis=1)
         return np.where(np.isfinite(total), total, np.inf)
 
     def step(
-        self, made: Generators, square: FloatArray, damping: FloatArray
+        self, batch: Generators, square: FloatArray, damping: FloatArray
     ) -> tuple[Generators, FloatArray, FloatArray]:
         """One damped step each: where it leads, its square, and what it gains."""
-        normal, side = self._normal(made)
+        normal, side = self._normal(batch)
         scale = np.einsum("mii->mi", normal)
         floor = 1e-12 * scale.max(axis=1, keepdims=True) + 1e-300
-        normal = normal + np.eye(made.UNKNOWNS) * (damping[:, None] * np.maximum(scale, floor))[:, None]
+        normal = normal + np.eye(batch.UNKNOWNS) * (damping[:, None] * np.maximum(scale, floor))[:, None]
         moved = -np.linalg.solve(normal, side[..., None])[..., 0]
         moved /= np.maximum(1.0, np.abs(moved).max(axis=1, keepdims=True))
-        there = made.changed(made.shape + moved)
+        there = batch.changed(batch.shape + moved)
         fresh = self.square(there)
         return there, fresh, square - fresh
 
-    def _normal(self, made: Generators) -> tuple[FloatArray, FloatArray]:
-        wanted = self.wanted
-        output = made.outputs(wanted.turned)
-        errors = wanted.centred(output - wanted.output)
-        slopes = wanted.centred(made.slopes(wanted.turned))
-        weighed = slopes * wanted.weights[:, None]
+    def _normal(self, batch: Generators) -> tuple[FloatArray, FloatArray]:
+        desired = self.desired
+        output = batch.outputs(desired.turned)
+        errors = desired.centred(output - desired.output)
+        slopes = desired.centred(batch.slopes(desired.turned))
+        weighed = slopes * desired.weights[:, None]
         normal = weighed.swapaxes(1, 2) @ slopes
         side = (weighed.swapaxes(1, 2) @ errors[..., None])[..., 0]
         if self.limits is not None:
-            rows = self.limits(made)
+            rows = self.limits(batch)
             short = self.pull * np.minimum(rows.value, 0.0)
             pulled = self.pull * rows.slope * (rows.value < 0)[..., None]
             normal = normal + pulled.swapaxes(1, 2) @ pulled

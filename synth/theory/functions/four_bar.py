@@ -14,8 +14,7 @@ from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Bars, Closed
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
-from grashof.synth.theory.many_systems import solved, weighed
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
 
 _TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
 
@@ -132,13 +131,13 @@ class FourBars(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """Lengths from 0.05 to 20.
 
-        >>> made = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first)])
-        made = cls(shape, rng.choice([-1.0, 1.0], count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(shape, rng.choice([-1.0, 1.0], count))
+        return batch[batch.worst_cosine(span) < 1]
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
@@ -163,11 +162,5 @@ class FourBars(Generators):
         r2, r3, r4 = (r1 * shares[1:]).tolist()
         return FourBar(o2=o2, o4=o4, r2=r2, r3=r3, r4=r4, assembly=driver * self.assembly[0])
 
-    def extent(self, span: float, ground: float) -> FloatArray:
-        pivots = self.shape[:, 3:] + np.linspace(0.0, span, 13)
-        a = self.lengths[:, 1:2] * np.exp(1j * pivots)
-        b = 1 + self.lengths[:, 3:] * np.exp(1j * self.outputs(pivots[0] - pivots[0, 0]))
-        every = np.concatenate([a, b, np.zeros((len(self), 1)), np.ones((len(self), 1))], axis=1)
-        wide = np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        extent: FloatArray = ground * wide
-        return extent
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        return np.asarray(1 + self.lengths[:, 3:] * np.exp(1j * output))

@@ -13,10 +13,9 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, L
 from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Block, Closed
 from grashof.synth.loop.vector import Vector
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
-from grashof.synth.theory.many_systems import weighed
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, weighed
 
-_TRIVIAL = 1e-9  # share of a null vector: without O4 it is no linkage
+_TRIVIAL = 1e-9  # share of a null vector: without O4 it is not a linkage
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +77,11 @@ class InvertedSliderCranks(Generators):
             found = _solved_by_two(*weighed(rows, np.sin(theta3), rod))
         r2, offset = found.T
         c = np.exp(1j * place)
-        made = cls._of(r2 * np.exp(1j * (driver - place)), c, offset)
-        shape = made.shape.copy()
+        batch = cls._of(r2 * np.exp(1j * (driver - place)), c, offset)
+        shape = batch.shape.copy()
         shape[:, 2] = driver + np.pi * (r2 < 0)
         shape[~np.isfinite(shape).all(axis=1)] = np.nan
-        return made.changed(shape)
+        return batch.changed(shape)
 
     @classmethod
     def _of(cls, w: ComplexArray, c: ComplexArray, offset: FloatArray) -> Self:
@@ -99,8 +98,8 @@ class InvertedSliderCranks(Generators):
     ) -> Self:
         """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
 
-        >>> made = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        >>> batch = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
         True
         """
         crank = crank_ratios(rng, count)
@@ -113,14 +112,14 @@ class InvertedSliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 from 0.05 to 20, the offset up to the longer of r1 and r2.
 
-        >>> made = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         r2 = np.log(20) * rng.uniform(-1, 1, count)
         offset = np.maximum(1.0, np.exp(r2)) * rng.uniform(-1, 1, count)
-        made = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
+        return batch[batch.worst_cosine(span) < 1]
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
@@ -145,13 +144,8 @@ class InvertedSliderCranks(Generators):
         size = float(np.clip(r1 * offset, *(wanted.offset or (-np.inf, np.inf))))
         return InvertedSliderCrank(o2=o2, o4=o4, r2=r1 * share, offset=size, assembly=1)
 
-    def extent(self, span: float, ground: float) -> FloatArray:
-        turned = np.linspace(0.0, span, 13)
-        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 2:] + turned))
-        b = 1 + 1j * self.shape[:, 1:2] * np.exp(1j * self.outputs(turned))
-        every = np.concatenate([a, b, np.zeros((len(self), 1)), np.ones((len(self), 1))], axis=1)
-        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        return extent
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        return np.asarray(1 + 1j * self.shape[:, 1:2] * np.exp(1j * output))
 
 
 def _solved_by_two(rows: FloatArray, right: FloatArray) -> FloatArray:

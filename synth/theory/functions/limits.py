@@ -1,4 +1,4 @@
-"""What limits function generators, as smooth functions of their shape."""
+"""Limits of function generators, as smooth functions of their shape."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from grashof.problems.values.arrays import BoolArray, FloatArray, Limits
 from grashof.synth.loop.dual import Dual
 
-LEAST_ANGLE = float(np.radians(0.3))  # so near to a dead position no generator may come
+LEAST_ANGLE = float(np.radians(0.3))  # least distance from a dead position
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,17 +22,17 @@ class ShapeLimits:
     # (n, n): greatest logarithm of length j over length k, of `Generators.lengths`
     caps: FloatArray = field(default_factory=lambda: np.full((4, 4), np.log(20.0)))
     transmission: float = 0.0  # rad, least min(mu, pi - mu)
-    over_cycle: bool = False  # over the whole turn, not only over the rotation
-    # The driver turns fully, and the shares that `rotatability` tells are this or more
+    over_cycle: bool = False  # over the full turn, not only over the rotation
+    # The driver turns fully, and the shares of `rotatability` are this or more
     margin: float | None = None
     shortest: int = 0  # +1 where r1 has to be longer than r2, -1 where shorter, 0 for either
     # (k, n + 1): sums of the lengths and the offset that have to be zero or positive; see `offset_rows`
     offset: FloatArray | None = None
-    stroke: Limits = (-np.inf, np.inf)  # of the travel over a whole turn, in units of the lengths
+    stroke: Limits = (-np.inf, np.inf)  # of the travel over a full turn, in units of the lengths
 
-    def of(self, made: Limited) -> Dual:
+    def of(self, batch: Limited) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
-        return made.limited(self)
+        return batch.limited(self)
 
     @property
     def most_cosine(self) -> float:
@@ -41,7 +41,7 @@ class ShapeLimits:
 
 
 class Limited(Protocol):
-    """What knows its limits: `Generators`."""
+    """`Generators`, for their limits."""
 
     def limited(self, limits: ShapeLimits) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
@@ -96,7 +96,7 @@ def places_met(
 
 
 def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
-    """Whether a rotation from a first angle passes another one, whatever its whole turns."""
+    """Whether a rotation from a first angle passes another one, modulo full turns."""
     inside: BoolArray = (angle - first) % (2 * np.pi) <= span
     return inside
 

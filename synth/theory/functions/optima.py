@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.functions.fit import Limits, Wanted
+from grashof.synth.theory.functions.fit import DesiredOutput, Limits
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.stopping import raise_if_overdue
 
@@ -22,74 +22,74 @@ _HEAVY = 1e4  # of the slack in a step of least squares
 class Optimum:
     """Where the refinement of one generator ended."""
 
-    made: Generators
-    error: float  # what was made small: root mean square or greatest error at the samples
+    generator: Generators
+    error: float  # root mean square or greatest error at the samples
     missed: float  # by how much the worst limit is missed; zero where all are kept
     steps: int
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """What is made small, and under which limits."""
+    """The error to be made small, and the limits."""
 
-    wanted: Wanted  # for the greatest error, the samples
+    desired: DesiredOutput  # for the greatest error, the samples
     limits: Limits  # as `ShapeLimits.of`
     greatest: bool = False  # the greatest error is made small, or else the (weighted) mean square
     held: bool = False  # the first driver angle stays
     band: float = np.inf  # greatest error that is allowed at any sample
 
-    def errors(self, made: Generators) -> FloatArray:
-        """Output less what is wanted at the samples, about the best zero, shape (N,); NaN: open."""
-        off = (made.outputs(self.wanted.turned) - self.wanted.output)[0]
+    def errors(self, generator: Generators) -> FloatArray:
+        """Output less the desired one at the samples, about the best zero, shape (N,); NaN: open."""
+        off = (generator.outputs(self.desired.turned) - self.desired.output)[0]
         if self.greatest:
             middle = (off.max() + off.min()) / 2
         else:
-            middle = self.wanted.weights @ off / self.wanted.weights.sum()
+            middle = self.desired.weights @ off / self.desired.weights.sum()
         centred: FloatArray = off - middle
         return centred
 
-    def error(self, made: Generators) -> float:
+    def error(self, generator: Generators) -> float:
         """Greatest, or root mean square."""
-        errors = self.errors(made)
+        errors = self.errors(generator)
         if self.greatest:
             return float(np.abs(errors).max())
-        return float(np.sqrt(self.wanted.weights @ errors**2 / self.wanted.weights.sum()))
+        return float(np.sqrt(self.desired.weights @ errors**2 / self.desired.weights.sum()))
 
-    def missed(self, made: Generators) -> float:
+    def missed(self, generator: Generators) -> float:
         """By how much the worst limit is missed."""
-        short = float(-self.limits(made).value.min(initial=0.0))
+        short = float(-self.limits(generator).value.min(initial=0.0))
         if np.isfinite(self.band):
-            short = max(short, float(np.abs(self.errors(made)).max()) - self.band)
+            short = max(short, float(np.abs(self.errors(generator)).max()) - self.band)
         return short
 
-    def score(self, made: Generators) -> float:
-        """What falls from step to step; infinite where the loop is open."""
-        value = self.error(made) + PRICE * self.missed(made)
+    def score(self, generator: Generators) -> float:
+        """The number that falls from step to step; infinite where the loop is open."""
+        value = self.error(generator) + PRICE * self.missed(generator)
         return value if np.isfinite(value) else np.inf
 
 
 def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
     """The optimum near one start, closed at all samples; it may miss limits.
 
-    Errors and limits are linearised about the best shape so far; within a trust region, what is left is a
+    Errors and limits are linearised about the best shape so far; within a trust region, there remains a
     linear programme for the greatest error or linear least squares under inequalities for the mean square
     (Lawson & Hanson, *Solving Least Squares Problems*, ch. 23). A slack lets starts miss limits.
     """
-    made, score, radius = start, aim.score(start), _FIRST
+    generator, score, radius = start, aim.score(start), _FIRST
     if not np.isfinite(score):
-        return Optimum(made, np.inf, np.inf, 0)
-    linear = _Linear.of(aim, made)
+        return Optimum(generator, np.inf, np.inf, 0)
+    linear = _Linear.of(aim, generator)
     flat = 0
     taken = 0
     while taken < steps and linear.finite:
         raise_if_overdue()
         taken += 1
-        moved, hoped = linear.step(radius)
-        there, fresh = linear.best_along(made, moved)
-        gain, expected_gain = score - fresh, score - hoped
+        moved, predicted_score = linear.step(radius)
+        there, fresh = linear.best_along(generator, moved)
+        gain, expected_gain = score - fresh, score - predicted_score
         if gain > 0:
-            made, score = there, fresh
-            linear = _Linear.of(aim, made)
+            generator, score = there, fresh
+            linear = _Linear.of(aim, generator)
         share = gain / expected_gain if expected_gain > 0 else 0.0
         if share > 0.7:
             radius = min(_MOST, max(radius, 2.5 * float(np.abs(moved).max())))
@@ -98,7 +98,7 @@ def refined(aim: Aim, start: Generators, steps: int = STEPS) -> Optimum:
         flat = flat + 1 if abs(expected_gain) <= 1e-7 * score + 1e-16 else 0
         if radius < _LEAST or flat > 1:
             break
-    return Optimum(made, aim.error(made), max(0.0, aim.missed(made)), taken)
+    return Optimum(generator, aim.error(generator), max(0.0, aim.missed(generator)), taken)
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,11 +113,11 @@ class _Linear:
     free: FloatArray  # (K,), 0 for what stays
 
     @classmethod
-    def of(cls, aim: Aim, made: Generators) -> _Linear:
-        slopes = made.slopes(aim.wanted.turned)[0]
-        limits = aim.limits(made)
-        free = np.append(np.ones(made.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
-        return cls(aim, aim.errors(made), slopes, limits.value[0], limits.slope[0], free)
+    def of(cls, aim: Aim, generator: Generators) -> _Linear:
+        slopes = generator.slopes(aim.desired.turned)[0]
+        limits = aim.limits(generator)
+        free = np.append(np.ones(generator.UNKNOWNS - 1), 0.0 if aim.held else 1.0)
+        return cls(aim, aim.errors(generator), slopes, limits.value[0], limits.slope[0], free)
 
     @property
     def finite(self) -> bool:
@@ -125,38 +125,38 @@ class _Linear:
         return bool(np.isfinite(self.slopes).all())
 
     def step(self, radius: float) -> tuple[FloatArray, float]:
-        """The best step, shape (K,), and the score that it promises."""
+        """The best step, shape (K,), and the score predicted for it."""
         moved = self._greatest(radius) if self.aim.greatest else self._square(radius)
         off = self.errors + self.slopes @ moved
         short = max(0.0, float(-(self.limits + self.by_shape @ moved).min(initial=0.0)))
         if self.aim.greatest:
             error = (off.max() - off.min()) / 2
         else:
-            weights = self.aim.wanted.weights
+            weights = self.aim.desired.weights
             off = off - weights @ off / weights.sum()
             error = np.sqrt(weights @ off**2 / weights.sum())
         if np.isfinite(self.aim.band):
             short = max(short, float(np.abs(off).max()) - self.aim.band)
         return moved, float(error) + PRICE * short
 
-    def best_along(self, made: Generators, moved: FloatArray) -> tuple[Generators, float]:
-        """Where a step leads, or that step brought back to the errors that it promised, and the score there.
+    def best_along(self, generator: Generators, moved: FloatArray) -> tuple[Generators, float]:
+        """Where a step leads, or that step brought back to the errors that it predicted, and the score there.
 
         The valleys of these errors are narrow and curved: without the correction (of second order, Fletcher)
         steps along them would have to be tiny.
         """
-        there = made.changed(made.shape + moved)
+        there = generator.changed(generator.shape + moved)
         best = there, self.aim.score(there)
         centred = (self.slopes - self.slopes.mean(axis=0)) * self.free
-        promised = self.errors + self.slopes @ moved
+        predicted = self.errors + self.slopes @ moved
         scale = float(np.einsum("nk,nk->", centred, centred))
-        normal = centred.T @ centred + 1e-8 * scale * np.eye(made.UNKNOWNS)
+        normal = centred.T @ centred + 1e-8 * scale * np.eye(generator.UNKNOWNS)
         for _ in range(CORRECTIONS):
-            strayed = self.aim.errors(there) - promised
+            strayed = self.aim.errors(there) - predicted
             if not np.isfinite(strayed).all():
                 break
             back = np.linalg.solve(normal, centred.T @ (strayed - strayed.mean()))
-            there = made.changed(there.shape - back)
+            there = generator.changed(there.shape - back)
             score = self.aim.score(there)
             if not score < best[1]:
                 break
@@ -183,7 +183,7 @@ class _Linear:
     def _square(self, radius: float) -> FloatArray:
         """Least squares in the step and the slack, the zero eliminated, under inequalities."""
         unknowns = len(self.free)
-        weights = self.aim.wanted.weights / self.aim.wanted.weights.sum()
+        weights = self.aim.desired.weights / self.aim.desired.weights.sum()
         root = np.sqrt(weights)
         centred = self.slopes - weights @ self.slopes
         damp = 1e-9 * np.linalg.norm(centred * root[:, None]) * np.eye(unknowns)
@@ -243,12 +243,12 @@ def under_inequalities(
     return found
 
 
-def with_extremes(aim: Aim, made: Generators, turned: FloatArray, output: FloatArray) -> Aim:
+def with_extremes(aim: Aim, generator: Generators, turned: FloatArray, output: FloatArray) -> Aim:
     """The same aim with samples where a generator errs most on a dense grid, shape (K,) each."""
-    off = (made.outputs(turned) - output)[0]
+    off = (generator.outputs(turned) - output)[0]
     inner = np.flatnonzero((off[1:-1] - off[:-2]) * (off[2:] - off[1:-1]) <= 0) + 1
-    at = np.concatenate([aim.wanted.turned, turned[inner]])
-    wished = np.concatenate([aim.wanted.output, output[inner]])
+    at = np.concatenate([aim.desired.turned, turned[inner]])
+    desired = np.concatenate([aim.desired.output, output[inner]])
     order = np.unique(at, return_index=True)[1]
-    weights = np.concatenate([aim.wanted.weights, np.ones(len(inner))])
-    return replace(aim, wanted=Wanted(at[order], wished[order], weights[order]))
+    weights = np.concatenate([aim.desired.weights, np.ones(len(inner))])
+    return replace(aim, desired=DesiredOutput(at[order], desired[order], weights[order]))

@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from grashof.problems import Linkage, Requirements
-from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray, Limits
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, ClosingDyad, Sizes
 from grashof.synth.loop.vector import Vector
@@ -33,8 +33,8 @@ class Generators(ABC):
     """Linkages of one kind with the driver angle at which they begin."""
 
     UNKNOWNS: ClassVar[int]  # K
-    EXACT: ClassVar[int]  # through so many pairs go one or a few
-    LINEAR: ClassVar[int]  # through so many goes one, where both start angles are given
+    EXACT: ClassVar[int]  # number of pairs that one or a few go through
+    LINEAR: ClassVar[int]  # number of pairs that one goes through, where both start angles are given
     FIRST_IS_LINK: ClassVar[bool] = True  # of `lengths`; otherwise it is the unit
     ONE_SENSE: ClassVar[bool] = False  # the opposite output is the same linkage, turned by half a turn
 
@@ -56,7 +56,7 @@ class Generators(ABC):
     @classmethod
     @abstractmethod
     def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
-        """What `linkage` makes a linkage of, its driver at `theta2` (rad) when it begins."""
+        """The inverse of `linkage`, its driver at `theta2` (rad) when it begins."""
 
     @property
     def finite(self) -> Self:
@@ -219,12 +219,12 @@ class Generators(ABC):
 
     @staticmethod
     def place_of(angle: FloatArray) -> FloatArray:
-        """Output at the first pair, from what is tried evenly over half a turn."""
+        """Output at the first pair, from an angle that is tried evenly over half a turn."""
         return angle
 
     @staticmethod
     def angle_of(place: FloatArray) -> FloatArray:
-        """What stands for it there."""
+        """The inverse of `place_of`."""
         return place
 
     @staticmethod
@@ -249,9 +249,18 @@ class Generators(ABC):
         `unit` is the length of outputs that are travel; `driver` the driver's sense, -1 for the mirror image.
         """
 
-    @abstractmethod
     def extent(self, span: float, ground: float) -> FloatArray:
-        """Diagonal of the box around the pivots over a rotation, shape (M,), O2O4 having a length."""
+        """Diagonal of the box around the pivots over a rotation, shape (M,), where O2O4 is `ground`."""
+        turned = np.linspace(0.0, span, 13)
+        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, -1:] + turned))
+        pivots = np.broadcast_to([0.0, self.sizes_of(self.columns)[0]], (len(self), 2))
+        every = np.concatenate([a, self.at_b(self.outputs(turned)), pivots], axis=1)
+        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
+        return extent
+
+    @abstractmethod
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        """B at outputs, shape (M, N)."""
 
 
 def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
@@ -263,3 +272,26 @@ def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
 def beginnings(rng: np.random.Generator, count: int, first: float | None) -> FloatArray:
     """Driver angles at the first pair in rad: the given one, or random ones; shape (count,)."""
     return rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+
+
+def weighed(rows: FloatArray, right: FloatArray, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Equations over what their residual changes by with the output, so that its errors are made small."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        weight = 1.0 / np.maximum(slope, 0.05 * slope.max(axis=1, keepdims=True))
+    return rows * weight[..., None], right * weight
+
+
+def solved(rows: FloatArray, right: FloatArray) -> FloatArray:
+    """Least squares of many systems, (M, N, 3) and (M, N) to (M, 3); NaN where they are singular."""
+    normal = rows.swapaxes(1, 2) @ rows if rows.shape[1] > 3 else rows
+    side = (rows.swapaxes(1, 2) @ right[..., None])[..., 0] if rows.shape[1] > 3 else right
+    bad: BoolArray = ~np.isfinite(normal.sum(axis=(1, 2)))
+    normal = np.where(bad[:, None, None], np.nan, normal)
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        # Cramer's rule: a singular system of many must not spoil the others.
+        cross = np.cross(normal[:, 1], normal[:, 2])
+        determinant = (normal[:, 0] * cross).sum(axis=-1)
+        columns = [cross, np.cross(normal[:, 2], normal[:, 0]), np.cross(normal[:, 0], normal[:, 1])]
+        inverse = np.stack(columns, axis=-1) / determinant[:, None, None]
+        found: FloatArray = (inverse @ side[..., None])[..., 0]
+    return found

@@ -14,8 +14,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios
-from grashof.synth.theory.many_systems import solved, weighed
+from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
 
 _FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels
 _BETWEEN = 2.5  # travels from the first pair on that are tried between two others
@@ -24,7 +23,7 @@ _TRIVIAL = 1e-6  # travels
 
 @dataclass(frozen=True, slots=True)
 class SliderCranks(Generators):
-    """Slider-cranks with O2 = 0 and the slide along the real axis, in units of the travel that is asked.
+    """Slider-cranks with O2 = 0 and the slide along the real axis, in units of the required travel.
 
     The shape has the logarithms of r2 and r3, offset / r3, and the first driver angle; the assembly is +1
     where B lies ahead of A.
@@ -119,8 +118,8 @@ class SliderCranks(Generators):
     ) -> Self:
         """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
 
-        >>> made = SliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((made.worst_cosine(2 * np.pi) < 1).all())
+        >>> batch = SliderCranks.cranks(np.random.default_rng(0), 100)
+        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
         True
         """
         crank = crank_ratios(rng, count)
@@ -133,15 +132,15 @@ class SliderCranks(Generators):
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """r2 / r3 from 0.05 to 20, r3 = 1.
 
-        >>> made = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((made.worst_cosine(1.0) < 1).all() and (made.first == 0.5).all())
+        >>> batch = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
+        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
         True
         """
         crank = np.log(20) * rng.uniform(-1, 1, count)
         share = np.maximum(1.0, np.exp(crank)) * rng.uniform(-1.5, 1.5, count)
         shape = np.column_stack([crank, np.zeros(count), share, np.full(count, first)])
-        made = cls(shape, rng.choice([-1.0, 1.0], count))
-        return made[made.worst_cosine(span) < 1]
+        batch = cls(shape, rng.choice([-1.0, 1.0], count))
+        return batch[batch.worst_cosine(span) < 1]
 
     def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:
         """In the size of least squares; a negative one is the same linkage turned by half a turn."""
@@ -196,10 +195,5 @@ class SliderCranks(Generators):
             assembly=self.assembly[0],
         )  # fmt: skip
 
-    def extent(self, span: float, ground: float) -> FloatArray:
-        turned = np.linspace(0.0, span, 13)
-        a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, 3:] + turned))
-        b = self.outputs(turned) + 1j * (self.lengths[:, 2] * self.shape[:, 2])[:, None]
-        every = np.concatenate([a, b, np.zeros((len(self), 1))], axis=1)
-        extent: FloatArray = ground * np.hypot(np.ptp(every.real, axis=1), np.ptp(every.imag, axis=1))
-        return extent
+    def at_b(self, output: FloatArray) -> ComplexArray:
+        return np.asarray(output + 1j * (self.lengths[:, 2] * self.shape[:, 2])[:, None])

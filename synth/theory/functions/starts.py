@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
-from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.output import Generators
 
 GRID = 40  # starts of driver and output each
@@ -16,12 +16,12 @@ _SAME = 1e-9  # rad
 
 def function_starts(
     kind: type[Generators],
-    wanted: Wanted,
+    desired: DesiredOutput,
     rng: np.random.Generator,
     first_driver: float | None = None,
     subsets: int = SUBSETS,
 ) -> Generators:
-    """Linkages near what is wanted, from which least squares begins.
+    """Linkages near the desired output, from which least squares begins.
 
     Exact ones through some of the pairs, and those of a linear equation on a grid of starts. With a given
     first driver angle, rad, only the latter, on a finer grid of the output, and random ones.
@@ -30,58 +30,62 @@ def function_starts(
     --------
     >>> from grashof.synth.theory.functions.four_bar import FourBars
     >>> turned = np.linspace(0, 1, 9)
-    >>> wanted = Wanted(turned, np.sin(turned), np.ones(9))
-    >>> len(function_starts(FourBars, wanted, np.random.default_rng(0))) > 1600
+    >>> desired = DesiredOutput(turned, np.sin(turned), np.ones(9))
+    >>> len(function_starts(FourBars, desired, np.random.default_rng(0))) > 1600
     True
     """
     half = np.pi * (np.arange(GRID) + rng.random()) / GRID
     if first_driver is not None:
         fine = np.pi * (np.arange(GRID**2) + rng.random()) / GRID**2
         grid = kind.joined([
-            on_grid(kind, wanted, np.full(GRID**2, first), fine)
+            on_grid(kind, desired, np.full(GRID**2, first), fine)
             for first in (first_driver, first_driver + np.pi)
         ])  # fmt: skip
-        random = kind.anything(rng, ANYTHING, first_driver, float(wanted.turned[-1]))
-        found = kind.joined([grid, random.scaled_to(wanted.turned, wanted.output)])
+        random = kind.anything(rng, ANYTHING, first_driver, float(desired.turned[-1]))
+        found = kind.joined([grid, random.scaled_to(desired.turned, desired.output)])
         return _held(found, first_driver)
     driver, place = (
         each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID)
     )
-    return kind.joined([_of_subsets(kind, wanted, rng, subsets), on_grid(kind, wanted, driver, place)])
+    return kind.joined([_of_subsets(kind, desired, rng, subsets), on_grid(kind, desired, driver, place)])
 
 
-def on_grid(kind: type[Generators], wanted: Wanted, driver: FloatArray, angle: FloatArray) -> Generators:
+def on_grid(
+    kind: type[Generators], desired: DesiredOutput, driver: FloatArray, angle: FloatArray
+) -> Generators:
     """Least squares at starts, each of shape (M,), the output's as `Generators.place_of` has it."""
-    output = wanted.output - wanted.output[0]
-    return kind.at_starts(wanted.turned, output, driver, kind.place_of(angle)).finite
+    output = desired.output - desired.output[0]
+    return kind.at_starts(desired.turned, output, driver, kind.place_of(angle)).finite
 
 
 def crank_starts(
     kind: type[Generators],
-    wanted: Wanted,
+    desired: DesiredOutput,
     rng: np.random.Generator,
     count: int,
     first_driver: float | None = None,
     shortest: int = 0,
 ) -> Generators:
-    """Random linkages whose driver turns fully, in the size that suits what is wanted."""
-    made = kind.cranks(rng, count, first_driver, shortest)
-    made = made.scaled_to(wanted.turned, wanted.output).finite
-    return made if first_driver is None else _held(made, first_driver)
+    """Random linkages whose driver turns fully, in the size that suits the desired output."""
+    batch = kind.cranks(rng, count, first_driver, shortest)
+    batch = batch.scaled_to(desired.turned, desired.output).finite
+    return batch if first_driver is None else _held(batch, first_driver)
 
 
-def _held(made: Generators, first_driver: float) -> Generators:
+def _held(batch: Generators, first_driver: float) -> Generators:
     """Those that begin at a driver angle, and not half a turn from it."""
-    return made[np.abs(np.angle(np.exp(1j * (made.first - first_driver)))) < _SAME]
+    return batch[np.abs(np.angle(np.exp(1j * (batch.first - first_driver)))) < _SAME]
 
 
-def _of_subsets(kind: type[Generators], wanted: Wanted, rng: np.random.Generator, count: int) -> Generators:
-    total, exact = len(wanted.turned), kind.EXACT
+def _of_subsets(
+    kind: type[Generators], desired: DesiredOutput, rng: np.random.Generator, count: int
+) -> Generators:
+    total, exact = len(desired.turned), kind.EXACT
     if total < exact:
         return kind.joined([])
     chosen = np.sort(np.array([rng.choice(total, exact, replace=False) for _ in range(count)]), axis=1)
-    turned, output = wanted.turned[chosen], wanted.output[chosen]
-    made, which = kind.through(turned - turned[:, :1], output - output[:, :1])
-    made = made.begun(turned[which, 0])
+    turned, output = desired.turned[chosen], desired.output[chosen]
+    batch, which = kind.through(turned - turned[:, :1], output - output[:, :1])
+    batch = batch.begun(turned[which, 0])
     # With a defect the assembly at the first pair is not that at the others: both are tried.
-    return kind.joined([made, made.other_assembly])
+    return kind.joined([batch, batch.other_assembly])

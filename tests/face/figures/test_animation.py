@@ -42,33 +42,33 @@ ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 
 def frames_of(moving: FuncAnimation, axes: Axes) -> dict[str, Any]:
     """Ends of the links, the trace and the body in every frame."""
-    told: dict[str, list[Any]] = {"driver": [], "output": [], "coupler": [], "trace": [], "body": []}
+    shown: dict[str, list[Any]] = {"driver": [], "output": [], "coupler": [], "trace": [], "body": []}
     names = {DRIVER: "driver", OUTPUT: "output", COUPLER: "coupler"}
     for frame in moving.new_frame_seq():
         moving._draw_frame(frame)
         for line in axes.lines:
             name = names.get(to_hex(line.get_color()))
             if name:
-                told[name].append(line.get_xydata().copy())
+                shown[name].append(line.get_xydata().copy())
             elif to_hex(line.get_color()) == PATH and line.get_linewidth() == 1.8:
-                told["trace"].append(line.get_xydata().copy())
-        told["body"] += [patch.get_xy()[:-1].copy() for patch in axes.patches if patch.get_alpha() == 0.7]
+                shown["trace"].append(line.get_xydata().copy())
+        shown["body"] += [patch.get_xy()[:-1].copy() for patch in axes.patches if patch.get_alpha() == 0.7]
     moving._draw_was_started = True  # else matplotlib warns that it was never seen
-    return told
+    return shown
 
 
-def test_names_move_along_and_the_time_is_told() -> None:
+def test_names_move_along_and_the_time_is_shown() -> None:
     """Of a driver that turns steadily the time at its own speed, of one that swings the angle alone."""
     jack = load_linkage_spec("pumpjack")
     axes = Figure().subplots()
     moving = animate(jack, seconds=1, fps=8, annotated=True, ax=axes)
-    told = {text.get_text(): text for text in axes.texts}
+    shown = {text.get_text(): text for text in axes.texts}
     for frame in moving.new_frame_seq():
         moving._draw_frame(frame)
         state = solve_position(jack.linkage, 2 * np.pi * frame / 8)
         for name, place in (("A", state.a), ("B", state.b), ("P", state.p)):
-            np.testing.assert_allclose(told[name].xy, place, atol=1e-12)
-        assert told["t = 0.00 s, theta2 = 0 deg"].get_text() == (
+            np.testing.assert_allclose(shown[name].xy, place, atol=1e-12)
+        assert shown["t = 0.00 s, theta2 = 0 deg"].get_text() == (
             f"t = {3 * frame / 8:.2f} s, theta2 = {45 * frame} deg"
         )
     moving._draw_was_started = True
@@ -83,17 +83,17 @@ def test_names_move_along_and_the_time_is_told() -> None:
 
 def test_links_keep_their_lengths_and_p_draws_its_path() -> None:
     linkage, axes = load_linkage("pumpjack"), Figure().subplots()
-    told = frames_of(animate(linkage, seconds=1, fps=12, ax=axes), axes)
-    driver, coupler, output = (np.array(told[name]) for name in ("driver", "coupler", "output"))
+    shown = frames_of(animate(linkage, seconds=1, fps=12, ax=axes), axes)
+    driver, coupler, output = (np.array(shown[name]) for name in ("driver", "coupler", "output"))
     lengths = [np.hypot(*np.moveaxis(ends[:, 1] - ends[:, 0], -1, 0)) for ends in (driver, coupler, output)]
     expected = np.array([linkage.r2, linkage.r3, linkage.r4])[:, None]
     np.testing.assert_allclose(lengths, np.tile(expected, 12), rtol=1e-12)
     np.testing.assert_allclose(coupler[:, 1], output[:, 1], atol=1e-12)
     turn = np.degrees(np.arctan2(*(driver[:, 1] - linkage.o2).T[::-1])) % 360
     np.testing.assert_allclose(turn, np.arange(12) * 30, atol=1e-9)
-    for frame, trace in enumerate(told["trace"]):
+    for frame, trace in enumerate(shown["trace"]):
         np.testing.assert_allclose(trace[-1], coupler[frame, 2])
-        np.testing.assert_array_equal(trace, told["trace"][-1][: len(trace)])
+        np.testing.assert_array_equal(trace, shown["trace"][-1][: len(trace)])
 
 
 def test_a_driver_with_limits_swings_between_them_and_back() -> None:
@@ -112,12 +112,12 @@ def test_a_driver_with_limits_swings_between_them_and_back() -> None:
 def test_a_design_starts_at_its_first_target_in_its_sense_and_carries_the_body(few: Result) -> None:
     task, verdict, axes = few.problem.task, few.best.verdict, Figure().subplots()
     assert isinstance(task, MotionTask)
-    told = frames_of(animate(few.best, few.problem, seconds=3, fps=12, ax=axes), axes)
-    a = np.array(told["driver"])[:, 1] - few.best.linkage.o2
+    shown = frames_of(animate(few.best, few.problem, seconds=3, fps=12, ax=axes), axes)
+    a = np.array(shown["driver"])[:, 1] - few.best.linkage.o2
     step = np.angle((a[1:] @ [1, 1j]) / (a[:-1] @ [1, 1j]))
     np.testing.assert_allclose(step, verdict.direction * np.radians(10))
-    body = np.array(told["body"])
-    np.testing.assert_allclose(body[:, 0], np.array(told["coupler"])[:, 2])
+    body = np.array(shown["body"])
+    np.testing.assert_allclose(body[:, 0], np.array(shown["coupler"])[:, 2])
     first = task.body + task.positions[0]  # the first pose is not turned
     np.testing.assert_allclose(body[0], first, atol=1e-6)
     sides = np.hypot(*np.moveaxis(np.diff(body, axis=1), -1, 0))
@@ -144,9 +144,9 @@ def test_between_limits_a_task_starts_at_its_first_target_in_its_sense(sense: in
 def test_a_change_point_linkage_moves_between_its_dead_positions() -> None:
     axes = Figure().subplots()
     parallelogram = FourBar((0, 0), (4, 0), 1, 4, 1)
-    told = frames_of(animate(parallelogram, seconds=1, fps=20, ax=axes), axes)
-    assert np.isfinite(told["coupler"]).all()
-    output = np.diff(np.array(told["output"]), axis=1)[:, 0]
+    shown = frames_of(animate(parallelogram, seconds=1, fps=20, ax=axes), axes)
+    assert np.isfinite(shown["coupler"]).all()
+    output = np.diff(np.array(shown["output"]), axis=1)[:, 0]
     np.testing.assert_allclose(np.hypot(*output.T), 1)
 
 
@@ -187,7 +187,7 @@ def test_a_gif_has_the_frames_and_the_time_asked_for(tmp_path: Path) -> None:
         ("a.mp4", r"writing \.mp4 needs ffmpeg, which was not found; \.gif works without it"),
     ],
 )
-def test_what_cannot_be_written_is_said_before_any_work(
+def test_files_that_cannot_be_written_are_refused_before_any_work(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
 ) -> None:
     monkeypatch.setattr(matplotlib.animation.shutil, "which", lambda _: None)
@@ -203,7 +203,7 @@ def test_what_cannot_be_written_is_said_before_any_work(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a shell script stands for ffmpeg")
 @pytest.mark.parametrize(("code", "exit_code"), [(0, 0), (1, 3)])
-def test_mp4_goes_through_ffmpeg_whole_or_not_at_all(
+def test_mp4_goes_through_ffmpeg_completely_or_not_at_all(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, exit_code: int
 ) -> None:
     tool = tmp_path / "bin" / "ffmpeg"
@@ -234,7 +234,7 @@ def test_a_design_of_a_list_moves_as_in_its_problem(few: Result, tmp_path: Path)
     """The same picture in every frame as from the result itself: body, poses, scene and start."""
     write_run(tmp_path, few, {}, drawings=0)
     for rank in (1, 3):
-        told = []
+        shown = []
         design = few.candidates[rank - 1]
         for linkage, problem in (
             (design, few.problem),
@@ -242,12 +242,12 @@ def test_a_design_of_a_list_moves_as_in_its_problem(few: Result, tmp_path: Path)
         ):
             axes = Figure().subplots()
             frames = frames_of(animate(linkage, problem, seconds=1, fps=10, ax=axes), axes)
-            told.append((frames, [line.get_xydata() for line in axes.lines], len(axes.patches), axes.axis()))
-        assert len(told[0][0]["body"]) == 10
-        for one, other in zip(told[0][0].values(), told[1][0].values(), strict=True):
+            shown.append((frames, [line.get_xydata() for line in axes.lines], len(axes.patches), axes.axis()))
+        assert len(shown[0][0]["body"]) == 10
+        for one, other in zip(shown[0][0].values(), shown[1][0].values(), strict=True):
             for parts in zip(one, other, strict=True):
                 np.testing.assert_allclose(*parts, atol=1e-9)
-        assert told[0][2] == told[1][2]
-        for ends in zip(told[0][1], told[1][1], strict=True):
+        assert shown[0][2] == shown[1][2]
+        for ends in zip(shown[0][1], shown[1][1], strict=True):
             np.testing.assert_allclose(*ends, atol=1e-9)
-        np.testing.assert_allclose(told[0][3], told[1][3], rtol=1e-9)
+        np.testing.assert_allclose(shown[0][3], shown[1][3], rtol=1e-9)

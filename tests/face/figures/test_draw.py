@@ -16,7 +16,7 @@ from grashof.analysis.judge.planted import planted_path, random_full_crank
 from grashof.figures import draw_design, save, save_animation
 from grashof.figures.files import draw_motion
 from grashof.figures.parts import BODY, DRIVER, PATH, TARGET, missing_glyphs_unwarned
-from grashof.figures.survey_plots import plots
+from grashof.figures.section_plots import plots
 from grashof.problems import FourBar, LinkageSpec, MotionTask, PathTask, Problem, load
 from grashof.problems.files.published import published
 from grashof.survey import report_on
@@ -70,7 +70,7 @@ def test_names_legend_and_sense_of_the_driver(few: Result, axes: Axes) -> None:
 
 
 @pytest.mark.parametrize("circuit_ok", [True, False])
-def test_a_defect_is_told_and_no_motion_is_drawn(few: Result, axes: Axes, circuit_ok: bool) -> None:
+def test_a_defect_is_stated_and_no_motion_is_drawn(few: Result, axes: Axes, circuit_ok: bool) -> None:
     verdict = replace(few.candidates[0].verdict, branch_ok=False, circuit_ok=circuit_ok)
     wrong = draw_design(few.problem, replace(few.candidates[0], verdict=verdict), 1).axes[0]
     assert f"{'branch' if circuit_ok else 'circuit'} defect" in wrong.get_title()
@@ -203,7 +203,7 @@ def test_an_open_path_shows_the_part_used() -> None:
 
 
 @pytest.mark.study
-def test_least_squares_tells_its_error_in_the_heading(tmp_path: Path) -> None:
+def test_least_squares_states_its_error_in_the_heading(tmp_path: Path) -> None:
     problem, design = load("path-18-timed"), published("path-18-timed")[0]
     axes = drawn(design.linkage, problem)
     assert "error rms 0.0225" in axes.get_title()

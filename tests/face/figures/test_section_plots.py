@@ -1,4 +1,4 @@
-"""Figures of sections: what is drawn is what the plot says, in the axes given."""
+"""Figures of sections: the drawing agrees with the plot, in the given axes."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_a_pole_leaves_the_frame_on_both_sides_and_is_not_crossed() -> None:
     assert not (steps[np.isfinite(steps)] > 1000).any()
 
 
-def test_sixteen_lines_are_told_apart() -> None:
+def test_sixteen_lines_look_different() -> None:
     assert len(PENS) == 8
     axes = drawn(Plot("a", "many", "N", {f"{k}": np.sin(TURN + k) for k in range(16)}, THETA2))
     looks = [(line.get_color(), str(line._dash_pattern)) for line in axes.lines[:16]]

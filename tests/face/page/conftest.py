@@ -1,4 +1,4 @@
-"""Pages in a real browser, as a user has them, from the disk; one browser and one window for all of them."""
+"""Pages in a real browser, as a user has them, from the disk; all in one window."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
 Open = Callable[..., Page]
+PagePath = Callable[[str], Path]
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
 TITLE = "<script>document.title = 'caught'</script>"
 ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
-# Its driver just turns; in one degree P moves a fifth of its whole way.
+# Its driver just turns; within one degree P moves a fifth of its path.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
-# As long as a search may say it, and a word that is too long for any line.
+# A long note, with a word that is too long for any line.
 MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed: "
 MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed: up to 0"
 WAYS = "no design; each of these alone would do: order = false; transmission_min_deg 13 instead of 60"
@@ -51,8 +52,8 @@ def rocker() -> FourBar:
 HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 
 
-def told_sections() -> tuple[Section, ...]:
-    """Sections of everything that a section may have, and of what no section should have."""
+def example_sections() -> tuple[Section, ...]:
+    """Sections with all that a section may have, and with what none should have."""
     theta2 = np.arange(361.0)
     turn, time = np.radians(theta2), np.linspace(0, 12, 4001)
     round_trip = np.column_stack([3 * np.cos(turn), 2 * np.sin(turn)])
@@ -97,10 +98,10 @@ def told_sections() -> tuple[Section, ...]:
 
 
 @pytest.fixture(scope="package")
-def told() -> LinkageReport:
+def example() -> LinkageReport:
     report = report_on(load_linkage_spec("pumpjack"))
     own = [section for section in report.sections if section.key == "mass-centres"]
-    return replace(report, sections=(*own, *told_sections()))
+    return replace(report, sections=(*own, *example_sections()))
 
 
 @pytest.fixture(scope="package")
@@ -114,43 +115,52 @@ def swinging() -> LinkageReport:
 @pytest.fixture(scope="package")
 def inexact() -> Result:
     """Designs by least squares, whose errors differ."""
-    return synthesize(load("path-gait"), starts=40)
+    return synthesize(load("path-gait"), starts=5)
 
 
 @pytest.fixture(scope="package")
-def folder(
-    few: Result,
-    alike: Result,
-    inexact: Result,
-    told: LinkageReport,
-    swinging: LinkageReport,
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Path:
-    """The pages of searches, with families and without, in vain, and of analyses of several linkages."""
-    path = tmp_path_factory.mktemp("pages")
-    named = replace(few, problem=replace(few.problem, title=TITLE))
-    rows = rows_of(few.problem, few.candidates)
-    missing = [rows[0] | {"misses": MISSES}]
-    missed = replace(few, candidates=(), nearest=few.candidates[:1], note=f"no design: {MISSES}")
-    pages = {
-        "search": search_page(named, RECORD, "kind", rows=rows),
-        "alike": search_page(alike, RECORD),
-        "inexact": search_page(inexact, RECORD),
-        "missed": search_page(missed, RECORD, rows=missing),
-        "relaxed": search_page(replace(missed, note=WAYS), RECORD, rows=missing),
-        "nothing": search_page(replace(missed, nearest=()), RECORD),
-        "design": analysis_page(
-            report_on(LinkageSpec(few.candidates[0].linkage, "design", length_unit="m", problem=few.problem)),
-            RECORD,
-        ),
-        "rocker": analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
-        "swift": analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
-        "sections": analysis_page(told, RECORD),
-        "swinging": analysis_page(swinging, RECORD),
+def page_path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> PagePath:
+    """The file of a page by its name, made when it is first opened."""
+    folder, shared = tmp_path_factory.mktemp("pages"), request.getfixturevalue
+
+    def search(**changes: Any) -> str:
+        few: Result = shared("few")
+        missing = [rows_of(few.problem, few.candidates[:1])[0] | {"misses": MISSES}]
+        missed = replace(few, candidates=(), nearest=few.candidates[:1], note=f"no design: {MISSES}")
+        rows = None if "nearest" in changes else missing
+        return search_page(replace(missed, **changes), RECORD, rows=rows)
+
+    def named() -> str:
+        few: Result = shared("few")
+        rows = rows_of(few.problem, few.candidates)
+        return search_page(replace(few, problem=replace(few.problem, title=TITLE)), RECORD, "kind", rows=rows)
+
+    def design() -> str:
+        few: Result = shared("few")
+        spec = LinkageSpec(few.candidates[0].linkage, "design", length_unit="m", problem=few.problem)
+        return analysis_page(report_on(spec), RECORD)
+
+    makers: dict[str, Callable[[], str]] = {
+        "search": named,
+        "alike": lambda: search_page(shared("alike"), RECORD),
+        "inexact": lambda: search_page(shared("inexact"), RECORD),
+        "missed": search,
+        "relaxed": lambda: search(note=WAYS),
+        "nothing": lambda: search(nearest=()),
+        "design": design,
+        "rocker": lambda: analysis_page(report_on(LinkageSpec(ROCKER, "rocker", title=TITLE)), RECORD),
+        "swift": lambda: analysis_page(report_on(LinkageSpec(NEARLY_DEAD, "swift")), RECORD),
+        "sections": lambda: analysis_page(shared("example"), RECORD),
+        "swinging": lambda: analysis_page(shared("swinging"), RECORD),
     }
-    for name, page in pages.items():
-        (path / f"{name}.html").write_text(page, encoding="utf-8")
-    return path
+
+    def path_of(name: str) -> Path:
+        path = folder / f"{name}.html"
+        if not path.exists():
+            path.write_text(makers[name](), encoding="utf-8")
+        return path
+
+    return path_of
 
 
 @pytest.fixture(scope="package")
@@ -165,8 +175,8 @@ def telephone(browser: Browser) -> Page:
 
 
 @pytest.fixture
-def opened(window: Page, telephone: Page, folder: Path) -> Iterator[Open]:
-    """Opens a page; at the end nothing may have been complained of or asked for over a network."""
+def opened(window: Page, telephone: Page, page_path: PagePath) -> Iterator[Open]:
+    """Opens a page; at the end the console is empty and nothing was requested over a network."""
     complaints: list[str] = []
     asked: list[str] = []
     addresses: list[str] = []
@@ -185,7 +195,7 @@ def opened(window: Page, telephone: Page, folder: Path) -> Iterator[Open]:
             page.set_viewport_size({"width": size[0], "height": size[1]})
             page.mouse.move(0, 0)
             page.emulate_media(**AS_USUAL | media)
-        addresses.append((folder / f"{name}.html").as_uri())
+        addresses.append(page_path(name).as_uri())
         page.goto(addresses[-1])
         return page
 

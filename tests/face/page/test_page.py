@@ -1,4 +1,4 @@
-"""The pages as files: whole, escaped, small, and with the figures of the lists."""
+"""The pages as files: complete, escaped, small, and with the figures of the lists."""
 
 from __future__ import annotations
 
@@ -120,8 +120,8 @@ def test_the_best_of_each_family_is_shown_with_the_number_of_the_others(alike: R
     assert "8 distinct verified designs in 5 families." in parts.text
     rows = [attributes for tag, attributes in parts.tags if tag == "tr" and "data-index" in attributes]
     assert ["hidden" in row for row in rows] == [False] * 5 + [True] * 3
-    told = ["2", "1", "2", "2", "1"]  # in every row, most of them hidden
-    assert re.findall(r"(\d+) like this", parts.text) == told
+    example = ["2", "1", "2", "2", "1"]  # in every row, most of them hidden
+    assert re.findall(r"(\d+) like this", parts.text) == example
     assert "smallest within 1.5 times" in parts.text
     families = [each["figures"]["family"] for each in parts.data["designs"]]
     assert families == [each.family for each in alike.candidates]
@@ -226,10 +226,10 @@ def test_an_analysis_shows_every_curve_and_figure() -> None:
 @pytest.mark.slow
 def test_what_figures_are_taken_over_is_said(few: Result) -> None:
     parts = Parts(page_of(few))
-    told = {column["label"]: column["about"] for column in parts.data["columns"]}
-    assert told["size"].startswith("diagonal of the box around O2, O4")
-    assert told["peak torque, task"] == told["peak force, task"] == "from the first target to the last"
-    assert set(told.values()) - {""} <= {attributes.get("title") for _, attributes in parts.tags}
+    example = {column["label"]: column["about"] for column in parts.data["columns"]}
+    assert example["size"].startswith("diagonal of the box around O2, O4")
+    assert example["peak torque, task"] == example["peak force, task"] == "from the first target to the last"
+    assert set(example.values()) - {""} <= {attributes.get("title") for _, attributes in parts.tags}
     abouts = {value["key"]: value["about"] for value in parts.data["values"]}
     assert abouts["coupler_fit_r2"] == "from the first target to the last"
     for linkage, over in ((load_linkage_spec("pumpjack"), "turn"), (LinkageSpec(ROCKER, "rocker"), "travel")):

@@ -79,13 +79,13 @@ def test_the_keyboard_folds_and_unfolds(opened: Open) -> None:
     assert len(set(names)) == len(names) == 2 * (5 + 3)
 
 
-def test_marks_follow_the_linkage(opened: Open, told: LinkageReport) -> None:
+def test_marks_follow_the_linkage(opened: Open, example: LinkageReport) -> None:
     page = opened("sections", size=(1440, 900))
     page.locator("#stage").focus()
     for _ in range(7):
         page.keyboard.press("ArrowRight")
     assert np.degrees(state(page)["theta2"]) == pytest.approx(67)
-    row = told.tables["kinematics"].set_index("theta2_deg").loc[67]
+    row = example.tables["kinematics"].set_index("theta2_deg").loc[67]
     shown = [float(text) for text in readings(plot(page, "angles"))]
     assert shown == pytest.approx(row[["theta3_deg", "theta4_deg", "mu_deg"]].tolist(), rel=1e-3)
     open_group(page, "Other axes")
@@ -110,11 +110,7 @@ def test_in_a_gap_nothing_is_read_and_no_dot_is_seen(opened: Open) -> None:
     assert np.degrees(state(page)["theta2"]) == pytest.approx(100)
     assert readings(gaps) == ["–", "–"]
     assert dots(gaps) == []
-
-
-def test_angles_that_hardly_vary_have_numbers_at_their_axis(opened: Open) -> None:
-    page = opened("sections", size=(1440, 900))
-    open_group(page, "=1+1")
+    # Angles that hardly vary have numbers at their axis.
     numbers = [
         float(each) for each in texts(plot(page, "small angle").locator(".grid text[text-anchor=end]"))
     ]
@@ -123,19 +119,13 @@ def test_angles_that_hardly_vary_have_numbers_at_their_axis(opened: Open) -> Non
     assert len(set(numbers)) == len(numbers)
 
 
-def test_tracks_have_equal_scales(opened: Open) -> None:
+def test_tracks_have_equal_scales_and_a_click_turns_the_driver_to_its_place(opened: Open) -> None:
     page = opened("sections", size=(1440, 900))
     open_group(page, "Other axes")
     track = plot(page, "track")
     size = "node => [node.getBBox().width, node.getBBox().height]"
     width, height = track.locator("> svg > path.curve").evaluate(size)
     assert width / height == pytest.approx(3 / 2, abs=0.01)
-
-
-def test_a_click_in_a_plot_turns_the_driver_to_where_it_was(opened: Open) -> None:
-    page = opened("sections", size=(1440, 900))
-    open_group(page, "Other axes")
-    track = plot(page, "track")
     path = track.locator("> svg > path.curve").bounding_box()
     assert path is not None
     page.mouse.click(path["x"] + path["width"] / 2, path["y"])  # the highest point
@@ -148,7 +138,7 @@ def test_a_click_in_a_plot_turns_the_driver_to_where_it_was(opened: Open) -> Non
     )
 
 
-def test_over_time_the_mouse_reads_what_it_points_at(opened: Open) -> None:
+def test_over_time_the_mouse_reads_the_values_at_its_place(opened: Open) -> None:
     page = opened("sections", size=(1440, 900))
     open_group(page, "Other axes")
     run = plot(page, "run-out")
@@ -162,11 +152,7 @@ def test_over_time_the_mouse_reads_what_it_points_at(opened: Open) -> None:
     assert slow == pytest.approx(3, abs=0.05)
     assert fast == pytest.approx(10 * slow, rel=1e-3)
     assert state(page)["theta2"] == before
-
-
-def test_more_than_eight_lines_are_told_apart(opened: Open) -> None:
-    page = opened("sections", size=(1440, 900))
-    open_group(page, "Other axes")
+    # More than eight lines all look different.
     look = "({ stroke, strokeDasharray }) => `${stroke} ${strokeDasharray}`"
     lines = plot(page, "sag").locator("> svg > path.curve")
     looks = lines.evaluate_all(f"nodes => nodes.map((node) => getComputedStyle(node)).map({look})")

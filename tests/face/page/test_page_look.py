@@ -17,8 +17,7 @@ def open_all(page: Page) -> None:
         page.locator("#open-all").click()
 
 
-@pytest.mark.parametrize("width", [360, 1400])
-@pytest.mark.parametrize("name", ["search", "missed", "rocker", "swift"])
+@pytest.mark.parametrize(("name", "width"), [("search", 360), ("swift", 1400)])
 def test_numbers_of_the_axes_stand_apart(opened: Open, name: str, width: int) -> None:
     page = opened(name, size=(width, 900))
     boxes = [each.bounding_box() for each in page.locator("#stage .numbers text").all()]
@@ -38,7 +37,7 @@ def test_a_title_with_a_script_is_only_text(opened: Open, title: str) -> None:
         assert page.title() == title
 
 
-@pytest.mark.parametrize("name", ["search", "missed", "nothing", "rocker", "sections"])
+@pytest.mark.parametrize("name", ["search", "missed", "sections"])
 def test_a_phone_has_no_sideways_scroll(opened: Open, name: str) -> None:
     page = opened(name, touch=True)
     open_all(page)
@@ -46,12 +45,13 @@ def test_a_phone_has_no_sideways_scroll(opened: Open, name: str) -> None:
     assert page.locator("#stage .grid").count() == 1
 
 
-@pytest.mark.parametrize("width", [800, 1400])
-@pytest.mark.parametrize("name", ["search", "missed", "nothing", "sections"])
-def test_no_window_has_sideways_scroll(opened: Open, name: str, width: int) -> None:
-    page = opened(name, size=(width, 900))
+@pytest.mark.parametrize("name", ["search", "missed", "sections"])
+def test_no_window_has_sideways_scroll(opened: Open, name: str) -> None:
+    page = opened(name, size=(800, 900))
     open_all(page)
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for width in (800, 1400):
+        page.set_viewport_size({"width": width, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def test_dark_and_printed(opened: Open) -> None:
@@ -90,9 +90,9 @@ OVERLAPS = """
 def test_names_of_joints_and_targets_do_not_cover_each_other(opened: Open, name: str) -> None:
     page = opened(name, size=(1440, 900))
     page.locator("#stage").focus()
-    for _ in range(8):
+    for _ in range(4):
         assert page.evaluate(OVERLAPS) == []
-        for _ in range(5):
+        for _ in range(10):
             page.keyboard.press("PageUp")
 
 
@@ -131,7 +131,7 @@ def test_what_would_do_is_listed_at_the_top(opened: Open) -> None:
     assert box["y"] + box["height"] < 200
 
 
-@pytest.mark.parametrize("name", ["rocker", "swinging", "missed", "nothing"])
+@pytest.mark.parametrize("name", ["swinging", "missed"])
 def test_no_box_scrolls_within_the_page(opened: Open, name: str) -> None:
     page = opened(name, size=(1440, 900))
     inner = "[...document.querySelectorAll('main *')].filter((node) => "

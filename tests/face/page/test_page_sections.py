@@ -66,8 +66,8 @@ class Groups(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def page(told: LinkageReport) -> Groups:
-    return Groups(analysis_page(told, RECORD))
+def page(example: LinkageReport) -> Groups:
+    return Groups(analysis_page(example, RECORD))
 
 
 def test_groups_stand_in_order_and_an_empty_section_in_none(page: Groups) -> None:
@@ -149,7 +149,7 @@ def test_columns_are_kept_once(page: Groups) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_long_history_keeps_its_shape(told: LinkageReport, seed: int) -> None:
+def test_a_long_history_keeps_its_shape(example: LinkageReport, seed: int) -> None:
     """Between the rows that the page has, no value leaves those at its ends by more than can be seen."""
     random = np.random.default_rng(seed)
     time = np.linspace(0, 20, 20001)
@@ -158,7 +158,7 @@ def test_a_long_history_keeps_its_shape(told: LinkageReport, seed: int) -> None:
     spiked = np.where(np.arange(20001) == random.integers(20001), 5.0, np.sin(time))
     plot = Plot("long", "long", "m", {"smooth": smooth, "spiked": spiked}, time, "time (s)")
     section = Section("long", "Long", plots=(plot,))
-    page = Groups(analysis_page(replace(told, sections=(section,)), RECORD))
+    page = Groups(analysis_page(replace(example, sections=(section,)), RECORD))
     shown = page.plot("long")
     assert any("only some of their samples" in text for text in page.groups[-1])
     places = page.column(shown["places"])
@@ -173,14 +173,14 @@ def test_a_long_history_keeps_its_shape(told: LinkageReport, seed: int) -> None:
     assert np.abs(drawn - smooth)[known].max() < 0.01 * np.ptp(smooth[known])
 
 
-def test_a_page_with_a_hundred_plots_is_below_a_megabyte(told: LinkageReport) -> None:
+def test_a_page_with_a_hundred_plots_is_below_a_megabyte(example: LinkageReport) -> None:
     theta2 = np.arange(361.0)
     turn = np.radians(theta2)
     plots = [
         Plot(f"p-{k}", f"plot {k}", "N", {f"{n}": np.sin(turn * (k + n)) for n in range(3)}, theta2)
         for k in range(1, 101)
     ]
-    page = analysis_page(replace(told, sections=(Section("s", "S", plots=tuple(plots)),)), RECORD)
+    page = analysis_page(replace(example, sections=(Section("s", "S", plots=tuple(plots)),)), RECORD)
     assert len(page.encode()) < 1_500_000
 
 
@@ -200,9 +200,9 @@ def test_pens_are_those_of_the_figures() -> None:
         assert (colours[name[1]], dashes.get(f"pen-{number}", ())) == (colour, dash)
 
 
-def test_tables_of_numpy_values_are_written(told: LinkageReport) -> None:
+def test_tables_of_numpy_values_are_written(example: LinkageReport) -> None:
     table = pd.DataFrame(
         {"flag": np.array([True, False]), "count": np.array([3, 12345678]), "x": [np.nan, 1e-9]}
     )
-    page = Groups(analysis_page(replace(told, sections=(Section("t", "T", tables={"t": table}),)), RECORD))
+    page = Groups(analysis_page(replace(example, sections=(Section("t", "T", tables={"t": table}),)), RECORD))
     assert page.groups[-1][-6:] == ["yes", "3", "-", "no", "12345678", "1e-09"]

@@ -131,10 +131,10 @@ def test_sorted_and_filtered(shown: Page, done: tuple[Sweep, Path]) -> None:
     assert sorted(state(shown)["listed"]) == [1, 3, 5]
 
 
-@pytest.mark.parametrize("width", [360, 800])
-def test_no_sideways_scroll(shown: Page, width: int) -> None:
-    shown.set_viewport_size({"width": width, "height": 800})
-    assert shown.evaluate("document.documentElement.scrollWidth") <= width
+def test_no_sideways_scroll(shown: Page) -> None:
+    for width in (360, 800):
+        shown.set_viewport_size({"width": width, "height": 800})
+        assert shown.evaluate("document.documentElement.scrollWidth") <= width
 
 
 def test_one_that_was_interrupted_before_it_varied_a_key_is_shown(

@@ -57,7 +57,7 @@ def full(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def analysed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[Path, bytes]]:
     """Files of an older analysis, which must stay."""
-    monkeypatch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
+    monkeypatch.setattr("grashof.figures.section_plots.plots", lambda _: [])
     folder = tmp_path / "pumpjack-analysis"
     write_report(folder, report_on(load_linkage_spec("pumpjack")))
     before = {path: path.read_bytes() for path in folder.iterdir()}

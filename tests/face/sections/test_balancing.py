@@ -1,4 +1,4 @@
-"""Balancing and flywheel as sections: before and after, in every unit, and what is refused."""
+"""Balancing and flywheel as sections: before and after, in every unit, and input that is refused."""
 
 from __future__ import annotations
 
@@ -145,5 +145,5 @@ def test_the_flywheel_is_that_of_the_analysis(sections: Sections) -> None:
 )
 def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str, Any], message: str) -> None:
     with pytest.raises(ProblemError) as error:
-        sections(spec, **asked)
+        dict(sections(spec, **asked))
     assert str(error.value) == message

@@ -46,7 +46,7 @@ def test_over_the_driver_angle_each_degree_has_its_neighbours(sections: Any) -> 
 
 
 def test_errors_fall_as_the_step_to_the_order(sections: Any) -> None:
-    """Over a history of whole turns of a clockwise driver, in steps of 2 and of 1 deg."""
+    """Over a history of full turns of a clockwise driver, in steps of 2 and of 1 deg."""
     coarse, fine = (
         largest(sections("pumpjack", sections=ONLY, seconds=6, step=step, speed_rpm=-10)["differences"])
         for step in (2 / 60, 1 / 60)

@@ -1,4 +1,4 @@
-"""What friction takes in a turn, and the efficiency that follows, against sums over dense samples."""
+"""Work of friction in a turn, and the efficiency, compared with sums over dense samples."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from grashof.problems import FourBar, LinkageSpec
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import FrictionSpec, LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.sections.loads.energies import energy_section
+from grashof.sections.drive import energy_section
 from grashof.study.study import Asked, LinkageStudy
 
 CRANK_ROCKER = FourBar((0, 0), (4, 0), 1, 4, 3, (1, 1))

@@ -1,4 +1,4 @@
-"""Fits of paths as a section: over which motion, what is said of them, what they cost nobody."""
+"""Fits of paths as a section: their motion, their notes, and that they are made only on request."""
 
 from __future__ import annotations
 
@@ -109,9 +109,9 @@ def test_bad_requests_are_refused(given: dict[str, Any], message: str) -> None:
 
 def test_no_dead_position_lies_between(sections: Any) -> None:
     with pytest.raises(ProblemError, match=r"fit_to_deg is 0; the driver moves from 28.955"):
-        sections(SWINGING, fit_from_deg=30, fit_to_deg=0)
+        dict(sections(SWINGING, fit_from_deg=30, fit_to_deg=0))
     with pytest.raises(ProblemError, match="with a dead position between them"):
-        sections(SWINGING, fit_from_deg=30, fit_to_deg=-30)
+        dict(sections(SWINGING, fit_from_deg=30, fit_to_deg=-30))
     assert "from theta2 = 60 to 30 deg" in sections(SWINGING, fit_from_deg=60, fit_to_deg=30)["fits"].notes[0]
 
 

@@ -1,4 +1,4 @@
-"""Equilibrium and free motion as sections, and what is refused."""
+"""Equilibrium and free motion as sections, and input that is refused."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_it_swings_about_its_equilibrium_with_its_frequency(sections: Sections) 
 
 
 @pytest.mark.slow
-def test_the_way_of_a_swinging_driver_is_told_beside_its_net_turn(sections: Sections) -> None:
+def test_the_way_of_a_swinging_driver_is_reported_besides_its_net_turn(sections: Sections) -> None:
     moved = sections(SMALL, release_deg=30.0, seconds=5.0)["release"]
     given, table = facts(moved), moved.tables["release"]
     time = np.linspace(0, table["time"].iloc[-1], 400_001)
@@ -128,7 +128,7 @@ def test_a_driver_that_swings_ends_in_a_dead_position(sections: Sections) -> Non
 )
 def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str, Any], message: str) -> None:
     with pytest.raises(ProblemError) as error:
-        sections(spec, **asked)
+        dict(sections(spec, **asked))
     assert message in str(error.value)
     assert "\n" not in str(error.value)
 
@@ -147,5 +147,5 @@ def test_options_of_the_command(grashof: Callable[..., Any], tmp_path: Path) -> 
     assert (tmp_path / "pumpjack-analysis" / "table-tolerance.csv").exists()
     refused = grashof("analyse", "pumpjack", "--release-rpm", "3")
     assert refused.exit_code == 2
-    told = "grashof: release_rpm does not go without release; it is the speed at that angle"
-    assert refused.stderr.strip() == told
+    stated = "grashof: release_rpm does not go without release; it is the speed at that angle"
+    assert refused.stderr.strip() == stated

@@ -1,4 +1,4 @@
-"""What the links weigh: bars of a density and a section, of every kind of linkage."""
+"""Masses of links: bars of a density and a section, of every kind of linkage."""
 
 from __future__ import annotations
 

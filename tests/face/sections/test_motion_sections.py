@@ -68,7 +68,7 @@ def test_circles_at_the_angles_asked_for(sections: Sections) -> None:
         np.testing.assert_allclose(radius, row["inflection_diameter"] / 2, rtol=1e-9)
     rocker = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), "rocker")
     with pytest.raises(ProblemError, match="at_deg is 180; the driver moves from"):
-        sections(rocker, at_deg=(0.5, 180.0))
+        dict(sections(rocker, at_deg=(0.5, 180.0)))
 
 
 @pytest.mark.slow
@@ -117,14 +117,14 @@ def test_the_dwell_keeps_to_its_band(sections: Sections, linkage: FourBar) -> No
     assert np.ptp(np.unwrap(state.theta4)) <= np.radians(3.0) * (1 + 1e-9)
     assert given[f"dwell{mark}_seconds"] == pytest.approx((end - start) / 60)
     if linkage is JACK.linkage:
-        whole = dwell(linkage, lambda each: each.theta4, np.radians(3.0), period=2 * np.pi)
-        assert given["dwell_deg"] == pytest.approx(np.degrees(whole.duration))
+        full = dwell(linkage, lambda each: each.theta4, np.radians(3.0), period=2 * np.pi)
+        assert given["dwell_deg"] == pytest.approx(np.degrees(full.duration))
 
 
 def test_a_band_that_is_none_is_refused(sections: Sections) -> None:
     for band in (0.0, -1.0, 400.0, np.nan):
         with pytest.raises(ProblemError, match="dwell_deg is"):
-            sections(JACK, dwell_deg=band)
+            dict(sections(JACK, dwell_deg=band))
 
 
 def test_what_is_constant_is_largest_nowhere(sections: Sections) -> None:

@@ -11,7 +11,7 @@ from grashof.analysis import Loads, inverse_dynamics, solve_kinematics, stated_m
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, ProblemError, load_linkage_spec
 from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
-from grashof.sections.loads.over_time import sawtooth
+from grashof.sections.over_time import sawtooth
 from grashof.study.asked import Asked
 
 ONE_RANGE = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), "swinging")
@@ -61,7 +61,7 @@ def test_the_fifteen_seconds_of_the_pumpjack(sections: Any) -> None:
     assert np.nanmax(drawn) == 360
 
 
-def test_a_history_is_made_only_where_one_is_asked_for(sections: Any) -> None:
+def test_a_history_is_made_only_on_request(sections: Any) -> None:
     found = sections("pumpjack")
     assert "over-time" not in found
     assert set(found["mass-centres"].tables) == {"masses", "mass-centres"}
@@ -90,7 +90,7 @@ def test_a_start_lies_in_the_range_that_it_names(sections: Any) -> None:
     with pytest.raises(
         ProblemError, match=r"start_deg is 20; the driver moves from 28.955 to 67.9757 and from"
     ):
-        sections(TWO_RANGES, seconds=3, start_deg=20)
+        dict(sections(TWO_RANGES, seconds=3, start_deg=20))
 
 
 @pytest.mark.parametrize(("speed", "first", "last"), [(1.0, 0.0, 180.0), (-1.0, 0.0, -180.0)])

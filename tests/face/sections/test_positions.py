@@ -46,8 +46,8 @@ def test_none_without_being_asked(sections: Any) -> None:
 def test_an_angle_that_the_driver_does_not_reach_is_refused(sections: Any) -> None:
     assert len(sections(ONE_RANGE, at_deg=(-100, 0, 360))["positions"].tables["positions"]) == 3
     with pytest.raises(ProblemError, match=r"at_deg is 120; the driver moves from -108.21 to 108.21 deg"):
-        sections(ONE_RANGE, at_deg=(0, 120))
+        dict(sections(ONE_RANGE, at_deg=(0, 120)))
     with pytest.raises(ProblemError, match="at_deg has 37 driver angles; it may have up to 36"):
-        sections(ONE_RANGE, at_deg=(0,) * 37)
+        dict(sections(ONE_RANGE, at_deg=(0,) * 37))
     with pytest.raises(ProblemError, match=r"at_deg\[1\] is nan"):
-        sections(ONE_RANGE, at_deg=(0, np.nan))
+        dict(sections(ONE_RANGE, at_deg=(0, np.nan)))

@@ -11,7 +11,7 @@ from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.load_specs import LoadSpec
 from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
-from grashof.sections.loads.strength import strength
+from grashof.sections.strength import strength
 from grashof.study.section import Section
 from grashof.study.study import Asked, LinkageStudy
 

@@ -1,4 +1,4 @@
-"""Inexact dimensions of a linkage alone: its peaks, and what is refused."""
+"""Inexact dimensions of a linkage: peaks of the displacements, and input that is refused."""
 
 from __future__ import annotations
 
@@ -44,4 +44,4 @@ def test_a_driver_that_swings_has_no_limit(sections: Sections) -> None:
 @pytest.mark.parametrize("given", [0.0, -1.0, np.nan, 1e30])
 def test_what_is_refused(sections: Sections, given: float) -> None:
     with pytest.raises(ProblemError, match="tolerance is"):
-        sections(LUFKIN, tolerance=given)
+        dict(sections(LUFKIN, tolerance=given))

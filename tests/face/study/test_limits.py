@@ -1,4 +1,4 @@
-"""What grows without bound is cut off in plots, and no peak that is only high."""
+"""Values that grow without bound are cut off in plots, mere peaks are not."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_pole_that_is_met_is_cut(unknown: float) -> None:
 
 
 @given(st.floats(3, 60), st.floats(0, 360), st.floats(-1e3, 1e3))
-def test_a_smooth_peak_is_drawn_whole(width: float, place: float, size: float) -> None:
+def test_a_smooth_peak_is_drawn_completely(width: float, place: float, size: float) -> None:
     """However high above the rest, as an inertia torque near a bad transmission angle."""
     away = (THETA2 - place + 180) % 360 - 180
     peak = np.sin(TURN) + 1e3 * size / (1 + (away / width) ** 2) ** 2
@@ -47,7 +47,7 @@ def test_a_smooth_peak_is_drawn_whole(width: float, place: float, size: float) -
 
 @pytest.mark.parametrize("first", [20, 300])
 @pytest.mark.parametrize("last", [30, 90])
-def test_a_load_over_a_short_part_of_the_turn_is_drawn_whole(first: int, last: int) -> None:
+def test_a_load_over_a_short_part_of_the_turn_is_drawn_completely(first: int, last: int) -> None:
     noise = 1e-13 * np.random.default_rng(0).normal(size=361)
     pressed = np.isin(THETA2, np.arange(first, first + last))
     assert greatest_drawn(over_turn(np.where(pressed, 1e5, noise))) == np.inf
@@ -57,7 +57,7 @@ def test_a_load_over_a_short_part_of_the_turn_is_drawn_whole(first: int, last: i
     "values",
     [np.zeros(361), np.full(361, np.nan), np.full(361, -7.0), np.full(361, np.inf), 1e300 * np.sin(TURN)],
 )
-def test_what_has_no_typical_size_is_drawn_whole(values: np.ndarray) -> None:
+def test_values_without_a_typical_size_are_drawn_completely(values: np.ndarray) -> None:
     assert greatest_drawn(over_turn(values)) == np.inf
 
 
@@ -90,7 +90,7 @@ def test_rates_between_dead_positions_are_cut() -> None:
         (np.zeros(0), False),
     ],
 )
-def test_a_driver_swings_where_its_angles_are_no_whole_turn(places: np.ndarray, swings: bool) -> None:
+def test_a_driver_swings_where_its_angles_are_not_a_full_turn(places: np.ndarray, swings: bool) -> None:
     assert Plot("p", "p", "", {"a": np.zeros_like(places)}, places, DRIVER_ANGLE).swings is swings
 
 
@@ -111,8 +111,8 @@ def test_lines_break_where_they_jump_through_infinity() -> None:
     np.testing.assert_array_equal(broken_beyond(values, np.inf), values)
 
 
-def test_what_is_known_to_be_bounded_is_drawn_whole_however_few_its_samples_are() -> None:
-    """A peak between samples 5 deg apart stands alone, as a pole does."""
+def test_bounded_values_are_drawn_completely_however_few_their_samples_are() -> None:
+    """A peak between samples 5 deg apart is isolated like a pole."""
     place = np.arange(0.0, 481.0, 5.0)
     peak = 1 / (1 + ((place - 208) / 3) ** 2)
     coarse = Plot("p", "p", "N", {"a": peak}, place, "time (s)")

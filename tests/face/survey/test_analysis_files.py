@@ -14,12 +14,12 @@ import pytest
 
 import grashof.figures.files
 from grashof.figures.files import save
-from grashof.figures.survey_plots import section_pictures
+from grashof.figures.section_plots import section_pictures
 from grashof.output.analysis_files import print_report, write_report
 from grashof.output.folder import ANALYSIS_RECORD, is_own_name
 from grashof.output.run_files import write_run
 from grashof.problems import FourBar, load_linkage_spec
-from grashof.sections.mass_centres import mass_centres
+from grashof.sections.places import mass_centres
 from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 from grashof.synth import Result
 
@@ -50,16 +50,16 @@ def jack() -> LinkageReport:
 
 
 @pytest.fixture(scope="module")
-def told(jack: LinkageReport) -> LinkageReport:
+def report(jack: LinkageReport) -> LinkageReport:
     return replace(jack, sections=(STRENGTH, QUIET, MOTOR, MORE))
 
 
 @pytest.fixture(scope="module")
-def folder(told: LinkageReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("told") / "out"
+def folder(report: LinkageReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("grashof.figures.survey_plots.plots", lambda _: [])
-        write_report(path, told)
+        patch.setattr("grashof.figures.section_plots.plots", lambda _: [])
+        write_report(path, report)
     return path
 
 
@@ -96,9 +96,9 @@ def test_the_summary_is_json_that_every_reader_knows(folder: Path, jack: Linkage
 
 
 def test_the_terminal_lists_facts_under_titles(
-    told: LinkageReport, capsys: pytest.CaptureFixture[str]
+    report: LinkageReport, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    print_report(told)
+    print_report(report)
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     begin = lines.index(["Strength", "of", "the", "bars", "value", "unit"])
     assert lines[begin + 2 :] == [

@@ -134,10 +134,10 @@ def checked_path(linkage: FourBar, found: dict[str, Any], low: float, high: floa
         terms = np.polynomial.legendre.legvander((2 * theta2 - low - high) / (high - low), 8).T
         return np.concatenate([terms * x, terms * y, [x * x + y * y]])
 
-    *sums, whole = integral(linkage, products, low, high) / (high - low)
+    *sums, total = integral(linkage, products, low, high) / (high - low)
     power = (np.reshape(sums, (2, 9)) ** 2).sum(axis=0) * (2 * np.arange(9) + 1)
     for degree in (4, 8):
-        expected = 1 - (whole - power[: degree + 1].sum()) / (whole - power[0])
+        expected = 1 - (total - power[: degree + 1].sum()) / (total - power[0])
         assert found[f"coupler_fit_r2_degree_{degree}"] == pytest.approx(expected, abs=1e-11)
     if "fourier_share_1" in found:
         checked_harmonics(linkage, found)
@@ -150,11 +150,11 @@ def checked_harmonics(linkage: FourBar, found: dict[str, Any]) -> None:
         z = (solve_position(linkage, theta2).p - linkage.o2) @ np.array([1, 1j])
         return np.concatenate([z * np.exp(-1j * np.outer(harmonics, theta2)), [np.abs(z) ** 2]])
 
-    *parts, whole = (integral(linkage, lambda at: waves(at).real, 0.0, TURN)
+    *parts, total = (integral(linkage, lambda at: waves(at).real, 0.0, TURN)
                      + 1j * integral(linkage, lambda at: waves(at).imag, 0.0, TURN)) / TURN  # fmt: skip
     power = np.abs(parts) ** 2
     for number in range(1, 6):
-        share = (power[5 + number] + power[5 - number]) / (whole.real - power[5])
+        share = (power[5 + number] + power[5 - number]) / (total.real - power[5])
         assert found[f"fourier_share_{number}"] == pytest.approx(share, rel=1e-8, abs=1e-20)
 
     def miss(theta2: Floats) -> Floats:
@@ -224,7 +224,7 @@ def checked_row(study: LinkageStudy, quantity: Quantity, row: dict[str, Any], at
             assert not study.sweep.turns
             continue
         expected = sign * outermost(curve, at, sign)
-        if np.isfinite(stated := row[f"theta2_{name}_deg"]):  # a value there is no less one that is met
+        if np.isfinite(stated := row[f"theta2_{name}_deg"]):  # a value there is met as well
             place = np.clip(np.radians(stated) + np.linspace(-1e-9, 1e-9, 65), at[0], at[-1])
             expected = sign * max(sign * expected, outermost(curve, place, sign))
         turns = 0.0 if quantity.period is None else 360 * np.round((row[name] - expected) / 360)

@@ -22,7 +22,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import Work
-from grashof.synth.starts.whole_designs import WholeDesigns
+from grashof.synth.starts.design_finder import DesignFinder
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -250,7 +250,7 @@ def test_linkages_of_every_kind_judged_again_miss_the_same(mechanism: str) -> No
     points = [[0, 0], [1, 0.4], [2, 0.5], [3, 0.1], [3.5, -0.4]]
     scaled = ScaledProblem.of(Problem(task=PathTask(points), mechanism=mechanism))
     finder = finder_for(scaled)
-    assert not isinstance(finder, WholeDesigns)
+    assert not isinstance(finder, DesignFinder)
     linkages = finder.near(np.random.default_rng(0))
     again = rejudged(scaled, linkages)
     np.testing.assert_allclose(again.violations, linkages.violations, atol=1e-12)

@@ -1,4 +1,4 @@
-"""Linkages of every mechanism through planted points, poses and pairs, without a word about any of them."""
+"""Linkages of every mechanism through planted points, poses and pairs, by one program for all."""
 
 from typing import Any
 
@@ -49,10 +49,10 @@ def p_of(linkage: Linkage, theta2: FloatArray) -> ComplexArray:
     return np.asarray(xy[..., 0] + 1j * xy[..., 1])
 
 
-@pytest.mark.quick("stephenson-3", "inverted-slider-crank", "press of a watt-2")
+@pytest.mark.quick("press of a watt-2")
 @pytest.mark.parametrize("name", EVERY)
 def test_nine_planted_points(name: str) -> None:
-    """Some turn fully, and the judge follows the whole curve: it comes to every point."""
+    """Some turn fully, and the judge follows the full curve through every point."""
     count = 5 if name in ONE_LOOP else 6 if name in FOUR_BAR_CURVES else 9
     linkage, theta2 = planted(name, count)
     p = p_of(linkage, theta2)
@@ -100,7 +100,7 @@ def test_a_function_of_a_six_bar() -> None:
     assert made
     for one in made:
         least = np.inf
-        for start in ROUND[::9]:
+        for start in ROUND[::18]:
             for sense in (1, -1):
                 state = solve_position(one, start + sense * turned, int(one.assembly))
                 off = sense * np.unwrap(np.asarray(state.theta6)) - outputs

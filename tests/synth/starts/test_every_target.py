@@ -2,6 +2,7 @@
 
 import tracemalloc
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +13,6 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import draw, fitting, improve, place, standing, with_places
-from grashof.synth.starts.search_targets import search_targets
 from grashof.synth.starts.thinning import refined, thinned
 
 
@@ -23,10 +23,12 @@ def planted(seed: int, count: int, noise: float, *, path: bool) -> Task:
     return PathTask(places) if path else MotionTask(places, task.angles + rng.normal(0, noise, count))
 
 
-def begun(task: Task, few: int = 24) -> tuple[SearchTargets, Batch]:
+@cache
+def begun(seed: int, count: int, noise: float, *, path: bool) -> tuple[SearchTargets, Batch]:
     """Linkages fitted to some of the targets, the best first, with driver angles at all."""
-    target = search_targets(ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=False))))
-    some, index = thinned(target, few)
+    task = planted(seed, count, noise, path=path)
+    target = SearchTargets.of(ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=False))))
+    some, index = thinned(target, 24)
     batch = draw(some, 600, np.random.default_rng(0))
     with np.errstate(all="ignore"):
         error = place(some, batch).error
@@ -36,7 +38,7 @@ def begun(task: Task, few: int = 24) -> tuple[SearchTargets, Batch]:
 
 @pytest.mark.parametrize("path", [False, True])
 def test_a_task_without_noise_is_met(path: bool) -> None:
-    target, batch = begun(planted(1, 80, 0.0, path=path))
+    target, batch = begun(1, 80, 0.0, path=path)
     with np.errstate(all="ignore"):
         fitted = fitted_to_all(target, batch, 200)
         error = place(target, fitted).error.min()
@@ -45,7 +47,7 @@ def test_a_task_without_noise_is_met(path: bool) -> None:
 
 @pytest.mark.parametrize("path", [False, True])
 def test_a_task_in_any_order_is_met(path: bool) -> None:
-    ordered, batch = begun(planted(1, 80, 0.0, path=path))
+    ordered, batch = begun(1, 80, 0.0, path=path)
     mixed = np.random.default_rng(0).permutation(80)
     names = ("points", "weights", "turns", "turn_weights")
     target = replace(
@@ -68,7 +70,7 @@ def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
     """On average: where points have to share driver angles, the valleys found may be others."""
     gained = []
     for seed in range(4):
-        target, batch = begun(planted(seed, 60, 0.01, path=path))
+        target, batch = begun(seed, 60, 0.01, path=path)
         with np.errstate(all="ignore"):
             placed = place(target, fitted_to_all(target, batch, 200))
             _, dense = improve(fitting(target), batch, 200, 0.0)
@@ -82,8 +84,8 @@ def test_it_comes_as_low_as_steps_in_all_angles_at_once(path: bool) -> None:
 def test_limits_are_kept_where_they_weigh_much() -> None:
     task = planted(0, 60, 0.01, path=False)
     problem = Problem(task=task, requirements=Requirements(exact=False, link_ratio_max=1.7))
-    target = search_targets(ScaledProblem.of(problem))
-    _, batch = begun(task)
+    target = SearchTargets.of(ScaledProblem.of(problem))
+    _, batch = begun(0, 60, 0.01, path=False)
     with np.errstate(all="ignore"):
         batch = with_places(target, batch)
         for weight in (5.0, 300.0):
@@ -96,7 +98,7 @@ def test_limits_are_kept_where_they_weigh_much() -> None:
 
 
 def test_no_small_move_of_what_all_targets_share_gains() -> None:
-    target, batch = begun(planted(2, 60, 0.01, path=False))
+    target, batch = begun(2, 60, 0.01, path=False)
     with np.errstate(all="ignore"):
         fitted = fitted_to_all(target, batch, 400)
         error = place(target, fitted).error
@@ -113,7 +115,7 @@ def test_no_small_move_of_what_all_targets_share_gains() -> None:
 def test_memory_grows_with_the_targets_not_with_their_square() -> None:
     peaks = []
     for count in (200, 800):
-        target, batch = begun(planted(0, count, 0.01, path=False))
+        target, batch = begun(0, count, 0.01, path=False)
         tracemalloc.start()
         fitted_to_all(target, batch, 3)
         peaks.append(tracemalloc.get_traced_memory()[1])

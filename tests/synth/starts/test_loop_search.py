@@ -19,10 +19,15 @@ from grashof.synth.starts.loop_search import place as place_batch
 
 # Rotatability, order, same_branch, timed.
 KINDS = [
-    (rotatability, order, branch, timed)
-    for rotatability in ("full-crank", "crank-rocker", "double-crank", "any")
-    for order, branch in ((True, True), (True, False), (False, True), (False, False))
-    for timed in (False, True)
+    ("full-crank", True, True, False),
+    ("full-crank", False, False, True),
+    ("crank-rocker", True, False, False),
+    ("crank-rocker", False, True, True),
+    ("double-crank", False, True, False),
+    ("double-crank", True, True, True),
+    ("any", False, True, False),
+    ("any", True, True, True),
+    ("any", True, False, False),
 ]
 CRANKS = [kind for kind in KINDS if kind[0] != "any"]
 
@@ -147,11 +152,10 @@ def test_no_other_place_or_coupler_point_fits_better(kind: tuple[str, bool, bool
         np.testing.assert_allclose(placed.p[i], fit, atol=1e-6)
 
 
-@pytest.mark.parametrize("margin", [0.0, 0.05])
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_gradient_is_that_of_differences(kind: tuple[str, bool, bool, bool], margin: float) -> None:
+def test_the_gradient_is_that_of_differences(kind: tuple[str, bool, bool, bool]) -> None:
     """Kaufman's Jacobian leaves a term out that is orthogonal to the residual."""
-    target = target_of(kind, rotatability_margin=margin)
+    target = target_of(kind, rotatability_margin=0.05)
     batch = draws(target, 160)
     _, residual, _ = fitting(target)(batch)
     batch = batch[(residual[:, 2 * len(target.points) :] == 0).all(axis=1)]  # on which no pull acts
@@ -172,13 +176,12 @@ TIGHT: dict[str, Any] = {
 }  # fmt: skip
 
 
-@pytest.mark.quick("kind0", "kind3", "kind5", "kind11")
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind[2]])
+@pytest.mark.parametrize("kind", [KINDS[0], KINDS[4], KINDS[7]])
 def test_pulls_have_the_derivatives_of_differences_where_the_fit_is_exact(
     kind: tuple[str, bool, bool, bool],
 ) -> None:
     checked = 0
-    for seed in range(12):
+    for seed in range(8):
         wide, tight = target_of(kind, seed=seed), target_of(kind, seed=seed, **TIGHT)
         batch = draws(wide, 10, seed)[np.array([0])]
         mine = replace(tight, points=place(wide, batch).p[0])
@@ -191,7 +194,7 @@ def test_pulls_have_the_derivatives_of_differences_where_the_fit_is_exact(
         if np.abs(expected).max() < 100:
             np.testing.assert_allclose(jacobian, expected, atol=1e-5 * np.abs(expected).max())
             checked += 1
-    assert checked >= 6
+    assert checked >= 4
 
 
 def test_pulls_count_what_oversteps() -> None:
@@ -241,10 +244,9 @@ def test_it_stops_when_as_many_as_wanted_are_good_enough() -> None:
     assert np.count_nonzero(many <= 1e-3) >= 20
 
 
-@pytest.mark.parametrize(("points", "timed"), [(9, False), (6, True), (12, True), (24, True)])
-@pytest.mark.parametrize("seed", range(5))
-def test_planted_curves_are_found_within_a_few_rounds(points: int, timed: bool, seed: int) -> None:
-    task, _ = planted_path(np.random.default_rng([11, seed]), points, timed=timed)
+@pytest.mark.parametrize(("points", "timed"), [(9, False), (6, True), (24, True)])
+def test_planted_curves_are_found_within_a_few_rounds(points: int, timed: bool) -> None:
+    task, _ = planted_path(np.random.default_rng([11, 0]), points, timed=timed)
     scaled = ScaledProblem.of(Problem(task=task, requirements=Requirements(link_ratio_max=50.0)))
     rng = np.random.default_rng(0)
     least = np.inf
@@ -254,10 +256,3 @@ def test_planted_curves_are_found_within_a_few_rounds(points: int, timed: bool, 
         if least < 1e-6:
             break
     assert least < 1e-6
-
-
-def test_a_rounds_draws_follow_the_generator() -> None:
-    target = target_of(KINDS[0])
-    one, other = (draw(target, 20, np.random.default_rng(seed)) for seed in (3, 3))
-    assert one.unknowns.tobytes() == other.unknowns.tobytes()
-    assert draw(target, 20, np.random.default_rng(4)).unknowns.tobytes() != one.unknowns.tobytes()

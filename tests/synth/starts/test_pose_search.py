@@ -17,11 +17,7 @@ from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_tu
 from grashof.synth.starts.coupler_search import FOUND
 from grashof.synth.starts.loop_search import draw, fitting, improve, place
 
-KINDS = [
-    (rotatability, order, branch)
-    for rotatability in ("full-crank", "double-crank", "any")
-    for order, branch in ((True, True), (True, False), (False, True))
-]
+KINDS = [("full-crank", True, True), ("double-crank", True, False), ("any", False, True)]
 N = 7
 
 
@@ -137,7 +133,7 @@ def test_the_weighted_mean_is_taken_across_the_half_turn() -> None:
 @pytest.mark.parametrize("free", FREE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_angles_have_the_derivatives_of_differences(kind: tuple[str, bool, bool], free: str) -> None:
-    """The rows of the angles have no approximation in them; the gradient is that of the whole cost."""
+    """The rows of the angles have no approximation in them; the gradient is that of the full cost."""
     target = target_of(kind, free)
     batch = draws(target, 40)
     cost, residual, jacobian = fitting(target)(batch)
@@ -190,16 +186,14 @@ def freed(task: MotionTask, places: list[int], angles: list[int]) -> MotionTask:
 
 
 @pytest.mark.parametrize(
-    ("poses", "places", "angles"),
-    [(6, [], []), (12, [], []), (7, [], [1, 2, 4, 5]), (6, [], [1, 3]), (5, [2], []), (9, [2, 5], [1, 4])],
+    ("poses", "places", "angles"), [(12, [], []), (7, [], [1, 2, 4, 5]), (5, [2], []), (9, [2, 5], [1, 4])]
 )
-@pytest.mark.parametrize("seed", range(3))
 def test_planted_motions_are_found_within_a_few_rounds(
-    poses: int, places: list[int], angles: list[int], seed: int
+    poses: int, places: list[int], angles: list[int]
 ) -> None:
-    whole, _ = planted_motion(np.random.default_rng([52, seed]), poses)
+    task, _ = planted_motion(np.random.default_rng([52, 0]), poses)
     wanted = Requirements(exact=False, link_ratio_max=50.0)
-    scaled = ScaledProblem.of(Problem(task=freed(whole, places, angles), requirements=wanted))
+    scaled = ScaledProblem.of(Problem(task=freed(task, places, angles), requirements=wanted))
     rng = np.random.default_rng(0)
     least = np.inf
     for _ in range(4):

@@ -38,7 +38,7 @@ STATED: dict[str, Any] = {
 }
 
 
-@pytest.mark.quick("4, o2-0", "4, o4-1", "4, joints-1", "3, joints-1", "2, joints and direction-2")
+@pytest.mark.quick("4, o2-0", "3, joints-1", "2, joints and direction-2")
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("stated", STATED)
 def test_what_is_stated_is_met_by_theory_before_any_solve(stated: str, seed: int) -> None:
@@ -72,7 +72,7 @@ def test_what_is_stated_is_met_by_theory_before_any_solve(stated: str, seed: int
 
 
 def test_joints_that_no_dyad_has_leave_near_misses_and_a_true_reason() -> None:
-    """Far from the body there is no circle point; O2 beside its curve is as far away as without them."""
+    """Far from the body circle points are missing; O2 beside its curve is as far away as without them."""
     task, linkage = planted_motion(np.random.default_rng([0, 7]), 4)
     far = Box((50 * task.size, 51 * task.size), (0.0, 1.0))
     beside = {"o2": point(linkage.o2 + 0.3)}

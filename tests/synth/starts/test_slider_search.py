@@ -11,10 +11,18 @@ from grashof.analysis.mechanism.mobility import rotatability
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.closed_loop import Batch
+from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
-from grashof.synth.starts.loop_search import Model, draw, fitting, improve, place, with_places, within_limits
-from grashof.synth.starts.search_targets import judged, search_targets
+from grashof.synth.starts.loop_search import (
+    Model,
+    draw,
+    fitting,
+    improve,
+    judged,
+    place,
+    with_places,
+    within_limits,
+)
 
 SLIDERS = ("slider-crank", "inverted-slider-crank")
 LIMITS: dict[str, Any] = {
@@ -58,8 +66,8 @@ def differences(model: Model, batch: Batch, step: float = 1e-6) -> FloatArray:
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_derivatives_under_limits(mechanism: str, poses: bool, timed: bool, rotatability: str) -> None:
     own = {"stroke": (0.2, 0.5)} if mechanism == "slider-crank" else {"output_swing_deg": (10, 30)}
-    asked = {"poses": poses, "timed": timed, "rotatability": rotatability}
-    target = search_targets(scaled_of(mechanism, **asked, **LIMITS, **own))
+    stated = {"poses": poses, "timed": timed, "rotatability": rotatability}
+    target = SearchTargets.of(scaled_of(mechanism, **stated, **LIMITS, **own))
     batch = with_places(target, draw(target, 300, np.random.default_rng(3)))
     model = within_limits(target, 0.7)
     cost, residual, jacobian = model(batch)
@@ -77,7 +85,7 @@ def test_derivatives_under_limits(mechanism: str, poses: bool, timed: bool, rota
 
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_the_search_ends_at_a_minimum_over_all_its_unknowns(mechanism: str) -> None:
-    target = search_targets(scaled_of(mechanism))
+    target = SearchTargets.of(scaled_of(mechanism))
     with np.errstate(all="ignore"):
         batch, error = improve(fitting(target), draw(target, 400, np.random.default_rng(1)), 60, 0.0)
         best = batch[np.argsort(error)[:5]]
@@ -93,7 +101,7 @@ def test_the_search_ends_at_a_minimum_over_all_its_unknowns(mechanism: str) -> N
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_placed_linkages_are_where_the_analysis_has_them(mechanism: str, rotatability: str) -> None:
     scaled = scaled_of(mechanism, rotatability=rotatability)
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     with np.errstate(all="ignore"):
         batch = draw(target, 400, np.random.default_rng(2))
         placed = place(target, batch)
@@ -109,7 +117,7 @@ def test_placed_linkages_are_where_the_analysis_has_them(mechanism: str, rotatab
 @pytest.mark.parametrize("mechanism", SLIDERS)
 def test_full_cranks_keep_their_margin_by_construction(mechanism: str) -> None:
     scaled = scaled_of(mechanism, rotatability_margin=0.02)
-    target = search_targets(scaled)
+    target = SearchTargets.of(scaled)
     batch = draw(target, 3000, np.random.default_rng(7))
     with np.errstate(all="ignore"):
         placed = place(target, batch)
@@ -132,7 +140,7 @@ def test_many_targets_are_fitted_one_driver_angle_each(mechanism: str) -> None:
     along = np.linspace(0, 5, 60)
     points = np.column_stack([np.cos(along) * (1 + 0.1 * along), 0.6 * np.sin(along)])
     problem = Problem(task=PathTask(points), mechanism=mechanism)
-    target = search_targets(ScaledProblem.of(problem))
+    target = SearchTargets.of(ScaledProblem.of(problem))
     with np.errstate(all="ignore"):
         batch, error = improve(fitting(target), draw(target, 200, np.random.default_rng(0)), 25, 0.0)
         few = batch[np.argsort(error)[:4]]

@@ -24,15 +24,6 @@ def target_of(count: int, timed: bool = False, **wanted: object) -> SearchTarget
     )
 
 
-def test_short_paths_stay_whole() -> None:
-    target = target_of(20)
-    some, index = thinned(target, 30)
-    assert some is target
-    assert index.tolist() == list(range(len(target.points)))
-    batch = draw(target, 5, np.random.default_rng(0))
-    assert refined(target, index, batch) is batch
-
-
 def test_targets_in_any_order_are_refined_where_each_is_nearest() -> None:
     """Targets on the curve of a linkage: none is missed by more than from the nearest angle of the grid."""
     free = target_of(90, order=False)
@@ -69,11 +60,3 @@ def test_refined_angles_pass_the_kept_points_and_stay_in_order() -> None:
     steps = batch.direction[:, None] * np.diff(after, axis=1)
     assert (steps > 0).all()
     assert (steps.sum(axis=1) < 2 * np.pi).all()
-
-
-def test_timing_is_thinned_with_its_points() -> None:
-    target = target_of(90, timed=True)
-    some, index = thinned(target, 30)
-    np.testing.assert_array_equal(some.timing, target.timing[index])
-    batch = refined(target, index, draw(some, 5, np.random.default_rng(0)))
-    assert place(target, batch).theta2.shape == (5, 90)

@@ -28,22 +28,13 @@ def positions(linkage: FourBar, theta2: FloatArray) -> ComplexArray:
     return np.stack([np.full_like(a, o2), np.full_like(a, o4), a, b, p], axis=1)
 
 
-def swept(points: ComplexArray, count: int) -> ComplexArray:
-    """P of the linkage with pivots `points` on both assemblies over its whole driver turn, shape (2, n)."""
-    o2, o4, a, b, p = points
-    places = o2 + abs(a - o2) * np.exp(1j * np.linspace(0, 2 * np.pi, count))
-    both = meeting_points(places, complex(o4), abs(b - a), abs(b - o4))
-    traced: ComplexArray = places + (p - a) / (b - a) * (both - places)
-    return traced
-
-
 def linkages(count: int) -> list[tuple[FourBar, FloatArray]]:
     rng = np.random.default_rng(17)
     turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     return [(random_full_crank(rng), rng.uniform(-3, 3) + turn) for _ in range(count)]
 
 
-CASES = linkages(12)
+CASES = linkages(6)
 
 
 def same(one: ComplexArray, other: ComplexArray) -> bool:
@@ -63,19 +54,6 @@ def test_a_cognate_is_one_linkage_all_the_way_and_carries_the_same_point(case: i
         for constant in (o2, o4, np.abs(a - o2), np.abs(b - a), np.abs(b - o4), (p - a) / (b - a)):
             assert np.abs(constant - constant[0]).max() < 1e-9 * scale
         np.testing.assert_array_equal(p, way[:, 4])
-
-
-@pytest.mark.quick("0", "2", "4", "7", "9", "11")
-@pytest.mark.parametrize("case", range(len(CASES)))
-def test_a_cognate_traces_the_whole_curve(case: int) -> None:
-    """From its numbers at one position alone, turned by itself, on either assembly where it rocks."""
-    way = positions(*CASES[case])
-    length = np.abs(np.diff(np.append(way[:, 4], way[0, 4]))).sum()
-    for cognate in cognate_points(way[0], timed=False):
-        curve = swept(cognate, 40_001).ravel()
-        gap = np.abs(way[:, 4, None] - curve[np.isfinite(curve)]).min(axis=1)
-        assert np.median(gap) < 1e-4 * length
-        assert gap.max() < 0.01 * length  # sparse where a rocker turns back
 
 
 @pytest.mark.parametrize("case", range(len(CASES)))
@@ -145,7 +123,7 @@ def test_a_linkage_with_p_on_a_joint_has_fewer_of_its_curve(u: float, count: int
     assert len(found) <= count
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_cognate_of_a_slider_crank(seed: int) -> None:
     """Its B keeps to the line, its links keep their lengths, and its own cognate is the first again."""
     linkage = random_slider_crank(np.random.default_rng(seed))

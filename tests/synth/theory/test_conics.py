@@ -33,7 +33,7 @@ def test_random_conics_meet_in_four_different_points() -> None:
 
 
 def test_points_that_meet_the_axes_are_found() -> None:
-    """Two and two with one abscissa and one ordinate: the elimination alone could not tell them apart."""
+    """Two and two with one abscissa and one ordinate: the elimination alone could not distinguish them."""
     found = plane(conic_intersections(CIRCLE[None], ellipse(2, 0.5)[None])[0])
     x, y = np.sqrt(0.8), np.sqrt(0.2)  # x^2 + y^2 = 1 and x^2 / 4 + 4 y^2 = 1
     assert {(round(a * 1e9), round(b * 1e9)) for a, b in found.real} == {

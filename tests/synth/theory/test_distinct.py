@@ -63,16 +63,6 @@ def test_numbers_that_change_their_sign_in_a_mirror(linkage: Linkage, image: Lin
 
 @pytest.mark.slow
 @bounded
-@given(signatures)
-def test_apart_is_the_definition_and_symmetric(rows: FloatArray) -> None:
-    expected = [share_apart(rows[0], other) for other in rows]
-    np.testing.assert_allclose(apart(rows[0], rows), expected, rtol=1e-12)
-    assert [apart(other, rows[:1])[0] for other in rows] == apart(rows[0], rows).tolist()
-    np.testing.assert_allclose(apart(1e3 * rows[0], 1e3 * rows), expected, rtol=1e-12)  # any unit
-
-
-@pytest.mark.slow
-@bounded
 @given(signatures, st.randoms(use_true_random=False), st.floats(0.01, 0.8))
 def test_picked_are_apart_best_first_and_nobody_else_fits(
     rows: FloatArray, random: Random, least: float
@@ -89,7 +79,7 @@ def test_picked_are_apart_best_first_and_nobody_else_fits(
         assert any(share_apart(rows[i], rows[j]) <= least * (1 + 1e-12) for j in better)
 
 
-def test_no_more_than_asked_for_and_of_equals_the_first() -> None:
+def test_no_more_than_required_and_of_equals_the_first() -> None:
     rows = np.eye(9)
     assert pick_apart(rows, np.zeros(9), 0.01, 4).tolist() == [0, 1, 2, 3]
     assert pick_apart(rows[[2, 2, 2]], np.zeros(3), 0.01, 9).tolist() == [0]

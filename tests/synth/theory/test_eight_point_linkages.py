@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grashof.synth.theory import eight_points
 from grashof.synth.theory.eight_point_linkages import inverted_slider_cranks_through, slider_cranks_through
-from grashof.synth.theory.eight_points import FAMILIES, Family
+from grashof.synth.theory.point_families import FAMILIES, Family
 
 pytestmark = pytest.mark.slow
 
@@ -37,7 +36,7 @@ def few_inverted(monkeypatch):
         displacements, solutions = known(family)
         return displacements, solutions[:150]
 
-    monkeypatch.setattr(eight_points.Family, "known", part)
+    monkeypatch.setattr(Family, "known", part)
 
 
 def z(pairs):

@@ -75,7 +75,7 @@ def dyads_of(scaled: ScaledProblem) -> Dyads:
 
 @pytest.mark.parametrize("poses", [2, 3])
 @pytest.mark.parametrize("kind", BOXES)
-def test_sampled_dyads_are_exact_and_half_have_their_pivot_where_it_is_wished(poses: int, kind: str) -> None:
+def test_sampled_dyads_are_exact_and_half_have_their_pivot_in_its_box(poses: int, kind: str) -> None:
     for seed in range(3):
         scaled, _, _ = planted(seed, poses, **BOXES[kind])
         dyads = dyads_of(scaled)
@@ -252,15 +252,15 @@ def test_one_dyad_of_six_poses_is_not_enough() -> None:
 
 
 @pytest.mark.parametrize("poses", [3, 5, 7])
-def test_translations_and_rotations_of_any_number_are_told(poses: int) -> None:
+def test_translations_and_rotations_of_any_number_are_reported(poses: int) -> None:
     draw = np.random.default_rng(poses)
     places = draw.normal(size=(poses, 2))
     still = MotionTask(places, np.full(poses, 0.3))
-    told = finder_for(ScaledProblem.of(Problem(task=still, requirements=Requirements(exact=True)))).obstacle(
-        rng(), {}
-    )
-    assert "pure translations" in told
-    assert ("off any one circle" in told) == (poses > 3)
+    reason = finder_for(
+        ScaledProblem.of(Problem(task=still, requirements=Requirements(exact=True)))
+    ).obstacle(rng(), {})
+    assert "pure translations" in reason
+    assert ("off any one circle" in reason) == (poses > 3)
     turns = draw.uniform(-np.pi, np.pi, poses)
     arm = 2 * np.exp(1j * turns)
     about = MotionTask(np.stack([3 + arm.real, arm.imag - 1], axis=1), turns)

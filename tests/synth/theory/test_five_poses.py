@@ -89,7 +89,7 @@ def missing(found: Dyads, moving: ComplexArray, ground: ComplexArray, wanted: Bo
     gap = np.abs(found.moving[:, None] - moving[..., None])
     gap += np.abs(found.ground[:, None] - ground[..., None])
     nearest = np.where(np.isnan(gap), np.inf, gap).min(axis=-1)
-    return np.asarray(nearest[wanted] / scale[wanted])  # what is not may be infinite
+    return np.asarray(nearest[wanted] / scale[wanted])  # the others may be infinite
 
 
 @pytest.mark.parametrize(("seed", "turn"), [(1, np.pi), (2, 0.4)])
@@ -237,7 +237,7 @@ def crank_and_guide(offset: float) -> tuple[Displacements, Dyads]:
 
 @pytest.mark.parametrize("offset", [0.0, 0.4, -1.2])
 @pytest.mark.parametrize("turn", [0.0, 0.7])
-def test_a_guide_in_the_ground_is_told_apart(offset: float, turn: float) -> None:
+def test_a_guide_in_the_ground_is_distinguished(offset: float, turn: float) -> None:
     motion, known = crank_and_guide(offset)
     motion = Displacements(motion.rotation, motion.shift * np.exp(1j * turn))
     moving = known.moving * np.exp(1j * turn)
@@ -250,7 +250,7 @@ def test_a_guide_in_the_ground_is_told_apart(offset: float, turn: float) -> None
     assert len(dyads) in (1, 3)
 
 
-def test_a_guide_in_the_body_is_told_apart() -> None:
+def test_a_guide_in_the_body_is_distinguished() -> None:
     motion, known = crank_and_guide(0.4)
     back = motion.inverse()
     guides = five_pose_guides(back)
@@ -330,12 +330,12 @@ def test_equal_angles_among_others_are_nothing_special(equal: list[int]) -> None
 def test_dyads_of_nearly_a_rotation(off: float) -> None:
     """Displacements grow with `off` about the pole, and so do the dyads."""
     positions, angles = one_set(8)
-    whole = in_order(five_pose_dyads(Displacements.from_poses(positions, angles)))
+    expected = in_order(five_pose_dyads(Displacements.from_poses(positions, angles)))
     pole = 0.4 - 0.3j
     near = Displacements.from_poses(pole + np.exp(1j * angles) + off * positions, angles)
-    # About the pole z -> r z + off s: similar to the whole.
+    # About the pole z -> r z + off s: similar to the first.
     found = in_order(five_pose_dyads(near))
-    np.testing.assert_allclose((found - pole) / off, whole, atol=1e-12 / off)
+    np.testing.assert_allclose((found - pole) / off, expected, atol=1e-12 / off)
 
 
 def test_other_numbers_of_poses_are_refused_and_no_sets_have_no_dyads() -> None:

@@ -67,18 +67,12 @@ def test_without_a_limit_it_comes_as_near_as_you_like_to_its_supremum(swing) -> 
     assert np.isnan(best_transmission(np.radians(80), 10 / 9, ratio_of_links(1.5)))  # none fits
 
 
-@pytest.mark.parametrize("lag", [12, 36, 60])
-@pytest.mark.parametrize("beside", [3, 11])
+@pytest.mark.parametrize(("lag", "beside"), [(12, 11), (60, 3)])
 def test_the_optimum_is_symmetric_about_a_swing_that_equals_the_lag(lag, beside) -> None:
     ratio = (180 + lag) / (180 - lag)
     less, equal, more = (optimum(swing, ratio)[1] for swing in (lag - beside, lag, lag + beside))
     assert less == pytest.approx(more, abs=1e-8)
     assert equal > more
-
-
-@pytest.mark.slow
-def test_a_time_ratio_of_one_and_a_half_leaves_32_deg() -> None:
-    assert max(optimum(swing, 1.5)[1] for swing in range(2, 178, 2)) == pytest.approx(31.861, abs=1e-3)
 
 
 @pytest.mark.parametrize(("ratio", "angle", "r2", "r3", "offset"), SLIDES)
@@ -100,7 +94,7 @@ def test_without_an_offset_both_strokes_of_a_slide_take_as_long() -> None:
     assert members.usable.all()
 
 
-@pytest.mark.parametrize("swing", [2, 30, 80, 150, 178])
+@pytest.mark.parametrize("swing", [2, 80, 178])
 def test_the_greatest_time_ratio_is_just_out_of_reach(swing) -> None:
     most = greatest_time_ratio(np.radians(swing))
     assert best_transmission(np.radians(swing), 0.9999 * most) > 0
@@ -131,8 +125,7 @@ def strokes(position):
     return abs(way), max(there, TURN - there) / min(there, TURN - there)
 
 
-@pytest.mark.parametrize("swing", [15, 80, 140])
-@pytest.mark.parametrize("ratio", [1.0, 10 / 9, 1.6])
+@pytest.mark.parametrize(("swing", "ratio"), [(15, 1.6), (80, 10 / 9), (140, 1.0)])
 def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio) -> None:
     sampled = []
     for family in families_of(np.radians(swing), ratio):
@@ -157,22 +150,6 @@ def test_sampled_motion_has_the_swing_and_the_ratio(swing, ratio) -> None:
             assert float(worst_transmission_cycle(linkage)) == pytest.approx(worst, abs=1e-12)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.2, 1.75, 2.5])
-def test_a_sampled_slide_has_the_stroke_and_the_ratio(ratio) -> None:
-    (family,) = families_of(None, ratio)
-    (low, high), *_ = stretches(family)
-    for r2, r3, offset in family(np.linspace(low, high, 6)[1:-1]).lengths:
-
-        def position(theta2, r2=r2, r3=r3, offset=offset):
-            rise = offset - r2 * np.sin(theta2)
-            assert (np.abs(rise) < r3).all()  # the crank turns fully
-            return r2 * np.cos(theta2) + np.sqrt(r3**2 - rise**2)
-
-        found = strokes(position)
-        assert found[0] == pytest.approx(1.0, abs=1e-9)
-        assert found[1] == pytest.approx(ratio, abs=1e-9)
-
-
 def random_crank_rockers(count, seed):
     rng = np.random.default_rng(seed)
     r2 = rng.uniform(0.05, 0.9, count)
@@ -181,32 +158,14 @@ def random_crank_rockers(count, seed):
     return np.stack([np.ones(count), r2, r3, r4], axis=-1)[usable]
 
 
-@pytest.mark.study
-def test_no_random_crank_rocker_beats_the_optimum_for_its_own_swing_and_ratio() -> None:
-    for lengths in random_crank_rockers(6000, seed=1)[:150]:
-        linkage = linkage_of(lengths)
-        stroke = output_stroke(linkage)
-        best = best_transmission(float(stroke.swing), float(stroke.time_ratio))
-        assert float(worst_transmission_cycle(linkage)) <= best + 1e-9
-
-
 def test_every_crank_rocker_is_a_member_of_its_family() -> None:
-    for lengths in random_crank_rockers(6000, seed=2)[:300]:
+    for lengths in random_crank_rockers(2000, seed=2)[:60]:
         stroke = output_stroke(linkage_of(lengths))
         share = np.array([lengths[1] / lengths[2]])
         families = families_of(float(stroke.swing), float(stroke.time_ratio))
         apart = [np.abs(family(share).lengths - lengths).max() for family in families]
         assert min(apart) < 1e-9
         assert families[int(np.argmin(apart))](share).usable.all()
-
-
-@given(st.floats(1.0, 2.6), st.integers(0, 2**32 - 1))
-def test_no_random_slide_beats_the_optimum(ratio, seed) -> None:
-    """Twelve thousand members, ten times the search."""
-    best = best_transmission(None, ratio)
-    members = slider_cranks(lag_of(ratio), np.random.default_rng(seed).uniform(0, 1, 12_000))
-    if ratio > 1.0001:  # at 1 longer rods are always better
-        assert members.transmission[members.usable].max(initial=0.0) <= best + 1e-12
 
 
 @pytest.mark.slow
@@ -241,9 +200,10 @@ def test_a_window_narrower_than_the_grid_is_found() -> None:
     assert high - low < 1e-6
 
 
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize(("swing", "ratio"), [(80, 10 / 9), (40, 1.0), (30, 1.5)])
+@pytest.mark.parametrize(
+    ("swing", "ratio", "mirrored", "sense"),
+    [(80, 10 / 9, False, 1), (40, 1.0, True, 1), (30, 1.5, True, -1), (80, 10 / 9, False, -1)],
+)
 def test_the_slow_stroke_begins_and_ends_where_the_judge_finds_it(swing, ratio, mirrored, sense) -> None:
     task = StrokeTask.from_degrees(swing_deg=swing, time_ratio=ratio)
     wanted = Requirements(driver_sense="ccw" if sense > 0 else "cw")
@@ -278,16 +238,3 @@ def test_slides_of_a_stroke_stand_at_its_ends_where_the_slow_stroke_begins_and_e
     np.testing.assert_allclose((b[0] - b[1]).real, 100, atol=1e-9)
     np.testing.assert_allclose((b * a.conj()).imag / np.abs(a), 0, atol=1e-9)  # driver and rod in line
     np.testing.assert_allclose(np.diff(theta2, axis=0)[0], task.driver_rotation, atol=1e-12)
-
-
-def test_crank_rockers_of_a_swing_as_a_batch() -> None:
-    task = StrokeTask.from_degrees(swing_deg=80, time_ratio=10 / 9)
-    family = families_of(task.swing, task.time_ratio)[0]
-    (low, high), *_ = stretches(family)
-    members = family(np.linspace(low, high, 9)[1:-1])
-    assert members.lengths.shape == (7, 4)
-    assert members.margin.shape == members.transmission.shape == (7,)
-    batch = linkages_of(task, members)
-    stroke = output_stroke(batch)
-    np.testing.assert_allclose(np.degrees(stroke.swing), 80, atol=1e-9)
-    np.testing.assert_allclose(stroke.time_ratio, 10 / 9, atol=1e-9)

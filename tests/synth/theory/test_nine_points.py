@@ -1,4 +1,4 @@
-"""All linkages through nine points: against finite differences, planted linkages and the published count."""
+"""All four-bars through nine points: planted linkages, and the published count near a circle."""
 
 import doctest
 import re
@@ -12,85 +12,43 @@ from grashof.analysis import verify
 from grashof.analysis.judge.planted import planted_path
 from grashof.problems import Requirements
 from grashof.synth.starts import precision_points
-from grashof.synth.theory import nine_points
-from grashof.synth.theory.monodromy import collect, general_problem
-from grashof.synth.theory.nine_points import (
-    TRIPLETS,
-    coupler_turns,
-    distinct,
-    known,
-    linkages_through,
-    system,
-    triplet_invariants,
-)
+from grashof.synth.theory import nine_points, solutions
+from grashof.synth.theory.nine_points import linkages_through
+from grashof.synth.theory.point_families import FOUR_BARS
+from grashof.synth.theory.solutions import solutions_at
 from grashof.synth.theory.stopping import StopRequested
 
 
-def test_system_vanishes_on_a_planted_linkage_and_its_slopes_are_right():
+def test_system_vanishes_on_a_planted_linkage():
     task, linkage = planted_path(np.random.default_rng(0), 9)
     verdict = verify(linkage, task, load("nine-points").requirements)
     points = task.points @ [1, 1j]
     o2, o4 = linkage.o2 @ [1, 1j], linkage.o4 @ [1, 1j]
     a = o2 + linkage.r2 * np.exp(1j * verdict.theta2[0])
-    arm = complex(*linkage.coupler_point)
-    turned = (points[0] - a) / arm
+    turned = (points[0] - a) / complex(*linkage.coupler_point)
     b = a + linkage.r3 * turned
-    pivots = np.array([a, o2, b, o4]) - points[0]
-    unknowns = np.stack([pivots, pivots.conj()], axis=1).ravel()[None]
+    vectors = np.array([a - o2, o2 - points[0], b - o4, o4 - points[0]])
+    unknowns = np.stack([vectors, vectors.conj()], axis=1).ravel()[None]
     steps = points[1:] - points[0]
     parameters = np.concatenate([steps, steps.conj()])[None]
-    residual, jacobian, _ = system(unknowns, parameters, np.zeros_like(parameters))
+    residual, jacobian, _ = FOUR_BARS.system(unknowns, parameters, np.zeros_like(parameters))
     assert np.abs(residual).max() < 1e-9 * np.abs(jacobian).max()
-    for k in range(8):
-        moved = unknowns.copy()
-        moved[0, k] += 1e-6
-        ahead, _, _ = system(moved, parameters, np.zeros_like(parameters))
-        assert np.abs((ahead - residual) / 1e-6 - jacobian[:, :, k]).max() < 1e-4 * np.abs(jacobian).max()
-    change = np.random.default_rng(1).normal(size=(1, 16)) + 0j
-    ahead, _, _ = system(unknowns, parameters + 1e-6 * change, change)
-    _, _, slope = system(unknowns, parameters, change)
-    assert np.abs((ahead - residual) / 1e-6 - slope).max() < 1e-4 * np.abs(slope).max()
-
-
-def test_known_solutions_are_1442_distinct_ones():
-    displacements, solutions = known()
-    parameters = np.broadcast_to(displacements, (len(solutions), 16))
-    residual, jacobian, _ = system(solutions, parameters, np.zeros_like(parameters))
-    correction = np.linalg.solve(jacobian, residual[..., None])[..., 0]
-    assert (np.abs(correction).max(axis=1) < 1e-8 * np.abs(solutions).max(axis=1)).all()
-    assert len(distinct(solutions)) == len(solutions) == TRIPLETS
-
-
-@pytest.mark.slow
-def test_loops_from_one_solution_lead_to_known_ones():
-    displacements, solutions = known()
-    found = collect(displacements, solutions[:1], np.random.default_rng(5), most=8)
-    assert len(found) >= 8
-    every = triplet_invariants(solutions)
-    for invariant in triplet_invariants(found):
-        assert np.abs(every - invariant).max(axis=1).min() < 1e-5 * (1 + np.abs(invariant).max())
-
-
-def test_general_problem_has_its_solution():
-    displacements, solutions = general_problem(np.random.default_rng(3))
-    residual, jacobian, _ = system(solutions, displacements[None], np.zeros((1, 16), dtype=complex))
-    assert np.abs(np.linalg.solve(jacobian[0], residual[0])).max() < 1e-10
 
 
 def test_what_one_run_has_lost_another_finds_and_a_stop_loses_nothing(monkeypatch):
-    _, solutions = known()
-    runs = [solutions[1:], solutions[:9]]
+    _, known = FOUR_BARS.known()
+    runs = [known[1:], known[:9]]
 
-    def run(_target, _rng):
+    def run(*_args):
         if not runs:
             raise StopRequested
         return runs.pop(0)
 
-    monkeypatch.setattr(nine_points, "_run", run)
-    found = nine_points._all_solutions(np.zeros(16, complex), np.random.default_rng(0))
-    assert (len(found), runs) == (TRIPLETS, [])
-    runs = [solutions[:9]]
-    assert len(nine_points._all_solutions(np.zeros(16, complex), np.random.default_rng(0))) == 9
+    monkeypatch.setattr(solutions, "_run", run)
+    found = solutions_at(FOUR_BARS, np.zeros(16, complex), np.random.default_rng(0))
+    assert (len(found), runs) == (FOUR_BARS.count, [])
+    runs = [known[:9]]
+    assert len(solutions_at(FOUR_BARS, np.zeros(16, complex), np.random.default_rng(0))) == 9
 
 
 @pytest.fixture(scope="module")
@@ -110,18 +68,6 @@ def test_planted_linkage_is_among_all_of_them(planted):
     assert gap.min() < 1e-6
 
 
-@pytest.mark.study
-def test_all_linkages_keep_their_lengths_at_every_point(planted):
-    task, _, found = planted
-    points = task.points @ [1, 1j]
-    o2, o4, a, b, p = found.T[..., None]
-    turn = coupler_turns(found, points)
-    assert np.abs(np.abs(turn) - 1).max() < 1e-6
-    for ground, joint in ((o2, a), (o4, b)):
-        length = np.abs(points + (joint - p) * turn - ground)
-        assert np.ptp(length, axis=1).max() < 1e-6 * np.abs(found).max()
-
-
 @pytest.fixture(scope="module")
 def computed_once():
     """All linkages through the same points are computed but once, wherever the points stand."""
@@ -133,8 +79,8 @@ def computed_once():
         key = np.round(standing, 6).tobytes()
         if key not in computed:
             computed[key] = linkages_through(standing, rng)
-        found, solutions = computed[key]
-        return points[0] + along * found, solutions
+        found, count = computed[key]
+        return points[0] + along * found, count
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(precision_points, "linkages_through", linkages)

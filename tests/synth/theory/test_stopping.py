@@ -1,4 +1,4 @@
-"""Computations that end when asked: at once, or when they have had time to come to something."""
+"""Computations that end on request: at once, or after some time for results."""
 
 import pytest
 
@@ -12,14 +12,14 @@ from grashof.synth.theory.stopping import (
 )
 
 
-def test_nobody_asks() -> None:
+def test_without_a_request_nothing_stops() -> None:
     assert not stop_requested()
     assert not overdue()
     raise_if_stopped()
     raise_if_overdue()
 
 
-def test_what_soon_comes_to_something_has_time_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_computations_with_results_soon_have_time_for_them(monkeypatch: pytest.MonkeyPatch) -> None:
     now = 10.0
     monkeypatch.setattr(stopping, "perf_counter", lambda: now)
     with stopping.stopping(lambda: now >= 20):

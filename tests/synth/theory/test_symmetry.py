@@ -85,7 +85,7 @@ def test_a_mirrored_linkage_does_the_mirrored_task(seed: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", [1, 2, 3, 12])
 def test_symmetries_of_long_closed_paths_take_no_square_of_their_points(sides: int) -> None:
-    """A star with so many points has as many rotations, each with a reflection; 2.3 GB of orders else."""
+    """A star with n points has n rotations, each with a reflection; 2.3 GB of orders else."""
     count = 12_000
     angle = np.linspace(0, 2 * np.pi, count, endpoint=False)
     radius = 1 + 0.3 * np.cos(sides * angle)

@@ -6,11 +6,13 @@ import pytest
 from grashof import load
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Problem
-from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.proof.curve.asked import Asked
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.proof.curve.centres import centres_of, of_rows
-from grashof.synth.proof.curve.curve import Curve
+from grashof.synth.proof.curve.curve import Curve, Taylor
+from grashof.synth.proof.curve.dyads import possible_radii
 from grashof.synth.proof.curve.pieces import Tubes, contracted
+from grashof.synth.proof.curve.required import Required
+from grashof.synth.proof.forms.forms import Span
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
 
@@ -20,8 +22,8 @@ PROBLEMS = [
 ]
 
 
-def asked(problem: Problem) -> Asked:
-    return Asked.of(ScaledProblem.of(problem))
+def required(problem: Problem) -> Required:
+    return Required.of(ScaledProblem.of(problem))
 
 
 def motion_of(curve: Curve) -> Displacements:
@@ -44,7 +46,7 @@ def on_curve(curve: Curve, reach: float, lines: int) -> Dyads:
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_polynomial_vanishes_where_four_places_are_on_a_circle(problem: Problem) -> None:
-    curve = asked(problem).curve
+    curve = required(problem).curve
     dyads = on_curve(curve, 4.0, 60)
     taylor = curve.about(dyads.moving)
     assert len(dyads) > 50
@@ -54,7 +56,7 @@ def test_polynomial_vanishes_where_four_places_are_on_a_circle(problem: Problem)
 
 @pytest.mark.parametrize("problem", PROBLEMS[:2], ids=lambda one: one.name)
 def test_taylor_series_is_exact(problem: Problem) -> None:
-    curve, rng = asked(problem).curve, np.random.default_rng(0)
+    curve, rng = required(problem).curve, np.random.default_rng(0)
     q, w = (rng.normal(size=200) + 1j * rng.normal(size=200) for _ in range(2))
     turn = np.exp(1j * rng.uniform(0, 2 * np.pi, 200))
     taylor = curve.about(q).turned(turn)
@@ -75,7 +77,7 @@ def inside(tubes: Tubes, k: int, points: ComplexArray) -> tuple[np.ndarray, np.n
 @pytest.mark.parametrize("size", [0.4, 0.1, 0.02])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem, size: float) -> None:
-    about = asked(problem)
+    about = required(problem)
     curve, rng = about.curve, np.random.default_rng(1)
     dyads = on_curve(curve, 4.0, 400)
     picked = rng.choice(len(dyads), 40)
@@ -106,7 +108,7 @@ def test_tubes_and_centres_hold_the_points_of_their_rectangles(problem: Problem,
 @pytest.mark.parametrize("scale", [1.0, 0.1, 0.01])
 def test_centres_hold_every_solution_of_two_equations(rows: tuple[int, int], scale: float) -> None:
     # Wide tubes that are on no curve: every term of the remainder has its turn.
-    curve, rng, count = asked(PROBLEMS[1]).curve, np.random.default_rng(3), 4000
+    curve, rng, count = required(PROBLEMS[1]).curve, np.random.default_rng(3), 4000
     middle = rng.normal(size=count) + 1j * rng.normal(size=count)
     direction = np.exp(1j * rng.uniform(0, 7, count))
     half, tilt, bow, rest = scale * rng.uniform(0, 0.2, (4, count)) * rng.choice([0.01, 1.0], (4, count))
@@ -136,7 +138,7 @@ def test_centres_hold_every_solution_of_two_equations(rows: tuple[int, int], sca
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda one: one.name)
 def test_halves_hold_what_a_tube_holds(problem: Problem) -> None:
-    about, rng = asked(problem), np.random.default_rng(2)
+    about, rng = required(problem), np.random.default_rng(2)
     dyads = on_curve(about.curve, 3.0, 100)
     middle = dyads.moving[rng.choice(len(dyads), 60)]
     size = np.full(60, 0.2)
@@ -152,14 +154,14 @@ def test_halves_hold_what_a_tube_holds(problem: Problem) -> None:
 
 
 def test_contracted_tubes_shrink_with_the_square_of_their_length() -> None:
-    about = asked(PROBLEMS[0])
+    about = required(PROBLEMS[0])
     dyads = on_curve(about.curve, 3.0, 40)
     dyads = dyads[np.abs(dyads.moving - dyads.ground) < 3]
     rest = []
     for size in (0.04, 0.02, 0.01):
         count = len(dyads)
-        whole = np.full(count, size)
-        around = Tubes.rectangles(dyads.moving, np.ones(count, complex), whole, whole)
+        side = np.full(count, size)
+        around = Tubes.rectangles(dyads.moving, np.ones(count, complex), side, side)
         tubes, _ = contracted(about.curve, around)
         rest.append((np.median(tubes.rest), np.median(centres_of(about.curve, tubes, about.longest).rest)))
     (first, first_centre), (second, second_centre), (third, third_centre) = rest
@@ -167,3 +169,78 @@ def test_contracted_tubes_shrink_with_the_square_of_their_length() -> None:
     assert second / third > 3  # without the parabola, of third order
     assert 3 < second_centre / third_centre < 9
     assert first_centre > second_centre
+
+
+def radius(places: ComplexArray) -> FloatArray:
+    """Circumradius by Heron's formula, shape (n,)."""
+    a, b, c = (np.abs(places[:, i] - places[:, j]) for i, j in ((0, 1), (1, 2), (2, 0)))
+    half = (a + b + c) / 2
+    found: FloatArray = a * b * c / (4 * np.sqrt(half * (half - a) * (half - b) * (half - c)))
+    return found
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_radii_within_limits_are_kept_and_those_just_outside_are_not(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    motion = Displacements.from_poses(
+        rng.normal(size=3) + 1j * rng.normal(size=3), np.concatenate([[0.0], rng.uniform(0.3, 1.5, 2)])
+    )
+    z = 2 * (rng.normal(size=200) + 1j * rng.normal(size=200))
+    real = radius(motion.apply(z))
+    z, real = z[real < 30], real[real < 30]
+    for half in (1e-9, 0.01):
+        steps = half * np.stack([np.ones_like(z), 1j * np.ones_like(z)])
+        for s, t in ((0, 0), (1, -1), (-1, 1)):
+            square = Span(z - s * steps[0] - t * steps[1], steps, np.zeros(len(z)))
+            for k, r in enumerate(real):
+                one = square[np.array([k])]
+                assert possible_radii(motion, one, (r * (1 - 1e-9), r * (1 + 1e-9)))[0]
+                if half < 1e-6:
+                    assert not possible_radii(motion, one, (0.0, 0.99 * r))[0]
+                    assert not possible_radii(motion, one, (1.01 * r, np.inf))[0]
+
+
+X, Y = 0.7, 0.4
+
+
+def taylor(cubic: complex = 0, square: complex = 0, both: float = 0) -> Taylor:
+    nothing = np.zeros(1)
+    complexes = np.array([[cubic], [square], [0]], dtype=np.complex128)
+    return Taylor(complexes[0], complexes[1], nothing + both, complexes[2], nothing, nothing)
+
+
+def greatest(one: Taylor, *, parabola: bool) -> FloatArray:
+    """Of the terms on a grid with its corners, with or without that of x^2."""
+    x, y = np.meshgrid(np.linspace(-X, X, 41), np.linspace(-Y, Y, 41))
+    w = x + 1j * y
+    f = 2 * (one.cubic * w).real * np.abs(w) ** 2 + 2 * (one.square * w**2).real + one.both * np.abs(w) ** 2
+    if not parabola:
+        f = f - (one.both + 2 * one.square.real) * x**2
+    most: FloatArray = np.abs(f).max()
+    return most
+
+
+@pytest.mark.parametrize(
+    "one",
+    [
+        taylor(cubic=1),
+        taylor(cubic=1j),
+        taylor(square=1j),
+        taylor(square=0.5, both=1),
+        taylor(square=-0.5, both=1),
+    ],
+)
+def test_bounds_of_single_terms_are_reached(one: Taylor) -> None:
+    x, y = np.array([X]), np.array([Y])
+    assert one.beyond_linear(x, y) == pytest.approx(greatest(one, parabola=True), rel=1e-12)
+    assert one.beyond_parabola(x, y) == pytest.approx(greatest(one, parabola=False), rel=1e-12)
+
+
+def test_bounds_hold_all_terms_together() -> None:
+    rng = np.random.default_rng(0)
+    x, y = np.array([X]), np.array([Y])
+    for _ in range(200):
+        cubic, square = (complex(*rng.normal(size=2)) for _ in range(2))
+        one = taylor(cubic, square, float(rng.normal()))
+        assert one.beyond_linear(x, y) >= greatest(one, parabola=True) * (1 - 1e-12)
+        assert one.beyond_parabola(x, y) >= greatest(one, parabola=False) * (1 - 1e-12)

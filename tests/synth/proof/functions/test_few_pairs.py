@@ -51,7 +51,7 @@ def off(span: Span, s: float, t: float, points: ComplexArray) -> FloatArray:
 
 
 @pytest.mark.parametrize("half", [0.3, 0.03, 0.003])
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", [0, 2])
 def test_forms_hold_the_ground_pivot_of_every_point(seed: int, half: float) -> None:
     motion, rng, count = motion_of(random_function(seed, 3)), np.random.default_rng(seed), 4000
     middle = 3 * (rng.normal(size=count) + 1j * rng.normal(size=count))
@@ -71,20 +71,16 @@ def test_forms_hold_the_ground_pivot_of_every_point(seed: int, half: float) -> N
     assert half > 0.003 or not far.any() or patches.bounded[far].mean() < 0.5
 
 
-def test_quarters_cover_a_square() -> None:
-    motion, rng = motion_of(random_function(0, 3)), np.random.default_rng(0)
-    one = Patches(motion, 20.0, np.array([1.3 - 0.4j]), np.array([0.25]))
-    points = one.middle + 0.25 * (rng.uniform(-1, 1, 200) + 1j * rng.uniform(-1, 1, 200))
-    step = points[:, None] - one.quarters.middle
-    assert np.all(np.any(np.maximum(np.abs(step.real), np.abs(step.imag)) <= one.quarters.half, axis=1))
-
-
+@pytest.mark.quick("task-any-3", "cycle-full-crank-4")
 @pytest.mark.parametrize("count", [3, 4])
-@pytest.mark.parametrize("over", ["task", "cycle"])
-@pytest.mark.parametrize("rotatability", ["any", "full-crank", "crank-rocker"])
+@pytest.mark.parametrize(
+    ("over", "rotatability"),
+    [
+        ("task", "any"),
+        *((over, name) for over in ("task", "cycle") for name in ("full-crank", "crank-rocker")),
+    ],
+)
 def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: str) -> None:
-    if (over, rotatability) == ("cycle", "any"):
-        return
     for seed in (0,) if count == 3 else (0, 6):
         problem = random_function(seed, count, rotatability=rotatability, transmission_over=over)
         aims = FunctionAims.of(ScaledProblem.of(problem))
@@ -96,7 +92,7 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
                 judged.append(
                     verdict.transmission_min_cycle if over == "cycle" else verdict.transmission_min_task
                 )
-        # The worse ones as what is known: better ones must not be excluded.
+        # Given the worst one as known, better ones must not be excluded.
         known = min(judged, default=0.0)
         proving = Proving(gap=0.5, most_pairs=100_000 if count == 3 else 300_000)
         bounds = bounds_of_pairs(ScaledProblem.of(problem), proving, known)
@@ -104,26 +100,15 @@ def test_no_generator_is_above_its_bound(count: int, over: str, rotatability: st
         assert max(judged, default=0.0) <= bounds.upper + 1e-8
 
 
-@pytest.mark.parametrize(("count", "seed"), [(3, 10), (4, 0), (4, 1)])
+@pytest.mark.quick("4-0")
+@pytest.mark.parametrize(
+    ("count", "seed"), [(3, 10), (4, 0), *((n, k) for n in (3, 4) for k in range(20, 60))]
+)
 def test_the_best_of_few_pairs_or_none_is_proven(count: int, seed: int) -> None:
     found = synthesize(random_function(seed, count))
     assert found.proof is not None
     assert found.proof.claim in (Claim.BEST, Claim.NONE)
     assert (found.proof.claim is Claim.NONE) == (not found.candidates)
-    more = synthesize(random_function(seed, count), effort=2, seed=1)
-    best = max((one.values["transmission_min_task"] for one in more.candidates), default=0.0)
-    assert found.proof.upper is not None
-    assert np.degrees(best) <= found.proof.upper + 1e-6
-
-
-@pytest.mark.study
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [3, 4])
-@pytest.mark.parametrize("seed", range(20, 60))
-def test_the_best_of_many_or_none_is_proven(count: int, seed: int) -> None:
-    found = synthesize(random_function(seed, count))
-    assert found.proof is not None
-    assert found.proof.claim in (Claim.BEST, Claim.NONE)
 
 
 def test_coinciding_poles_are_said_to_be_open() -> None:
@@ -162,7 +147,7 @@ def holding(plane: PlaneOfCouplers, a: ComplexArray, b: ComplexArray) -> BoolArr
     return np.concatenate(found)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_squares_hold_every_coupler_however_near_to_poles(seed: int) -> None:
     motion, rng, count = motion_of(random_function(seed, 3)), np.random.default_rng(seed), 60
     plane = PlaneOfCouplers.of(motion, 20.0)
@@ -200,6 +185,7 @@ def couplers_of(made: FourBars, turned: float) -> tuple[ComplexArray, ComplexArr
     return a, a + d / np.abs(d) * (along + 1j * across)
 
 
+@pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 1, 6, 12])
 def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
     problem = random_function(seed, 3)

@@ -1,4 +1,4 @@
-"""Linkages through as many points as leave no freedom: boxes with one exact linkage, and what is claimed."""
+"""Linkages through as many points as leave no freedom: boxes with one exact linkage, and claims."""
 
 from dataclasses import replace
 
@@ -12,11 +12,12 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.points.boxes import boxes, holds_one, inverses
-from grashof.synth.proof.points.equations import Passing
+from grashof.synth.proof.points.equations import PointEquations
 from grashof.synth.proof.points.followed import enclosed_designs, proof_of_points, unknowns_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.precision_points import FOLLOWED, THROUGH
-from grashof.synth.theory.nine_points import TRIPLETS, coupler_turns, linkages_through
+from grashof.synth.theory.nine_points import coupler_turns, linkages_through
+from grashof.synth.theory.point_families import FOUR_BARS
 
 KINDS = [("four-bar", 9), ("slider-crank", 8), ("inverted-slider-crank", 8)]
 
@@ -28,17 +29,17 @@ def planted(kind: str, count: int, seed: int) -> tuple[ScaledProblem, Candidate]
     return ScaledProblem.of(problem), Candidate(linkage, verdict, problem, 0, 0)
 
 
-def passing(kind: str, count: int, seed: int) -> tuple[Passing, FloatArray]:
+def passing(kind: str, count: int, seed: int) -> tuple[PointEquations, FloatArray]:
     """The equations of a planted linkage, and where it is, shape (1, K)."""
     scaled, design = planted(kind, count, seed)
     points: ComplexArray = scaled.problem.task.positions @ np.array([1, 1j])
     size = scaled.problem.task.size
     exact = np.asarray(points, np.clongdouble)
-    return Passing((exact - exact[0]) / size, kind), unknowns_of(design, points, size)[None]  # type: ignore[arg-type]
+    return PointEquations((exact - exact[0]) / size, kind), unknowns_of(design, points, size)[None]  # type: ignore[arg-type]
 
 
 def residual(kind: str, points: ComplexArray, x: FloatArray) -> FloatArray:
-    """What a linkage with unknowns x (K,) misses, by lengths as they are: written anew, as precise as x."""
+    """Misses of a linkage with unknowns x (K,), by its lengths: written anew, as precise as x."""
     turn = np.exp(1j * np.concatenate([[0 * x[0]], x[-(len(points) - 1) :]]))
     z = x[0:-1:2] + 1j * x[1::2] if kind == "four-bar" else x[0:6:2] + 1j * x[1:6:2]
     ways = [np.abs(points + turn * z[1] - z[0])]
@@ -147,13 +148,13 @@ def test_different_zeros_have_boxes_apart_and_no_box_of_both_is_accepted() -> No
 def test_all_linkages_through_the_nine_points_of_the_catalogue_are_enclosed() -> None:
     points = load("nine-points").task.positions @ np.array([1, 1j])
     found, solutions = linkages_through(points, np.random.default_rng(0))
-    assert solutions == TRIPLETS
+    assert solutions == FOUR_BARS.count
     o2, o4, a, b, p = found.T
     joints = np.stack([o2 - points[0], a - p, o4 - points[0], b - p], axis=1)
     turns = np.angle(coupler_turns(found, points)[:, 1:])
     unknowns = np.concatenate([joints.view(np.float64), turns], axis=1)
     exact = np.asarray(points, np.clongdouble)
-    equations = Passing(exact - exact[0], "four-bar")  # type: ignore[arg-type]
+    equations = PointEquations(exact - exact[0], "four-bar")  # type: ignore[arg-type]
     middle, radius = boxes(equations, unknowns)
     assert len(found) == 21
     assert np.isfinite(radius).all()
@@ -169,14 +170,14 @@ def test_all_linkages_through_the_nine_points_of_the_catalogue_are_enclosed() ->
 def test_wrong_slopes_prove_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     equations, x = passing("four-bar", 9, 1)
     assert np.isfinite(boxes(equations, x)[1]).all()
-    right = Passing.rows
+    right = PointEquations.rows
 
-    def rows(self: Passing, unknowns: FloatArray, radius: FloatArray) -> object:
+    def rows(self: PointEquations, unknowns: FloatArray, radius: FloatArray) -> object:
         at = right(self, unknowns, radius)
         sign = np.where(np.arange(at.slopes.shape[1]) == 3, -1.0, 1.0)[:, None]
         return replace(at, slopes=at.slopes * sign) if radius.any() else at
 
-    monkeypatch.setattr(Passing, "rows", rows)
+    monkeypatch.setattr(PointEquations, "rows", rows)
     assert np.isnan(boxes(equations, x)[1]).all()
 
 
@@ -189,7 +190,7 @@ def said_of(
     enough: bool = False,
     **counts: int,
 ) -> tuple[Claim, str]:
-    """What is claimed of a list of one design, and why, without what is enclosed."""
+    """The claim about a list of one design, and the reason, without the enclosures."""
     named = {{"through": THROUGH, "followed": FOLLOWED}[name]: value for name, value in counts.items()}
     made = proof_of_points(scaled, [design], named, stopped=stopped, whole=whole, enough=enough)
     assert made is not None
@@ -201,7 +202,7 @@ def said_of(
 def test_only_a_whole_search_without_losses_is_followed() -> None:
     one = planted("four-bar", 9, 1)
     assert said_of(*one, through=9, followed=1442) == (Claim.FOLLOWED, "1442 of 1442 known solutions")
-    short = "1442 of 1442 known solutions; as many designs as were asked for are listed, not all"
+    short = "1442 of 1442 known solutions; as many designs as requested are listed, not all"
     assert said_of(*one, through=9, followed=1442, whole=False, enough=True) == (Claim.FOLLOWED, short)
     assert said_of(*one, whole=False, enough=True)[0] is Claim.REFUSED
     lost = (Claim.REFUSED, "of 1442 known solutions 2 were lost on the way")

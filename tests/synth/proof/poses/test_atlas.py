@@ -1,6 +1,7 @@
 """Regions: every linkage that transmits enough is in one of them, and each has its best in the list."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,14 +19,17 @@ from grashof.synth.starts.dyad_pairs import screen
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
 OVER_TURN = Requirements(transmission_over="cycle")  # type: ignore[arg-type]
-PLANTED = [
-    Problem(task=planted_motion(np.random.default_rng(seed), poses=4)[0], requirements=OVER_TURN)
+PROBLEMS = {"luggage": load("luggage")} | {
+    f"planted {seed}": Problem(
+        task=planted_motion(np.random.default_rng(seed), poses=4)[0], requirements=OVER_TURN
+    )
     for seed in (0, 3, 7)
-]
+}
 
 
-def atlas(problem: Problem) -> Atlas:
-    scaled = ScaledProblem.of(problem)
+@cache
+def atlas(name: str) -> Atlas:
+    scaled = ScaledProblem.of(PROBLEMS[name])
     bounds = bounds_of(scaled, Proving())
     assert bounds is not None
     made = atlas_of(scaled, bounds)
@@ -33,9 +37,11 @@ def atlas(problem: Problem) -> Atlas:
     return made
 
 
-@pytest.mark.parametrize("problem", [load("luggage"), *PLANTED], ids=["luggage", "0", "3", "7"])
-def test_linkages_of_another_search_lie_in_regions(problem: Problem) -> None:
-    scaled, made = ScaledProblem.of(problem), atlas(problem)
+@pytest.mark.quick("luggage", "planted 7")
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_linkages_of_another_search_lie_in_regions(name: str) -> None:
+    problem, made = PROBLEMS[name], atlas(name)
+    scaled = ScaledProblem.of(problem)
     assert scaled.motion is not None
     traced = trace_four_pose_curves(scaled.motion, 30.0, 400, 0.02)
     found = screen(scaled.motion, complex(scaled.targets[0]), traced, scaled.wanted, 400_000)
@@ -51,19 +57,15 @@ def test_linkages_of_another_search_lie_in_regions(problem: Problem) -> None:
 
 
 def test_linkages_of_regions_meet_the_requirements() -> None:
-    made = atlas(PLANTED[0])
+    made = atlas("planted 7")
     assert made.linkages.feasible.all()
     best = [made.linkages.transmission[made.region == number].max() for number in range(1, made.count + 1)]
     assert best == sorted(best, reverse=True)
 
 
-def test_the_luggage_task_has_a_single_region() -> None:
-    assert atlas(load("luggage")).count == 1
-
-
 @pytest.fixture(scope="module")
 def several() -> Result:
-    return synthesize(PLANTED[2])
+    return synthesize(PROBLEMS["planted 7"])
 
 
 def test_the_list_has_the_best_of_every_region(several: Result) -> None:
@@ -71,7 +73,7 @@ def test_the_list_has_the_best_of_every_region(several: Result) -> None:
     assert several.proof.claim is Claim.BEST
     listed = {one.region for one in several.candidates} - {0}
     assert listed == set(range(1, several.proof.regions + 1))
-    made = atlas(PLANTED[2])
+    made = atlas("planted 7")
     for number in listed:
         seen = made.linkages.transmission[made.region == number].max()
         best = max(one.values["transmission_min_cycle"] for one in several.candidates if one.region == number)
@@ -98,8 +100,8 @@ def test_the_joints_of_listed_designs_lie_on_the_curves_that_are_drawn(several: 
     assert loci.transmission.max() <= several.best.values["transmission_min_cycle"] + 1e-3
 
 
-def test_seed_and_workers_change_nothing(several: Result) -> None:
-    again = synthesize(PLANTED[2], seed=7, workers=2)
+def test_the_seed_changes_nothing(several: Result) -> None:
+    again = synthesize(PROBLEMS["planted 7"], seed=7)
     assert [one.id for one in again.candidates] == [one.id for one in several.candidates]
 
 

@@ -1,9 +1,12 @@
 """Bounds of families: against published figures, cranks that are turned in steps, and planted linkages."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 from stroke_figures import SLIDES
 
@@ -19,7 +22,7 @@ from grashof.synth.proof.strokes.members import (
     crank_shapers,
     slider_cranks,
 )
-from grashof.synth.proof.strokes.ranges import Range
+from grashof.synth.proof.strokes.ranges import HALF_TURN, Range, hypotenuse
 from grashof.synth.theory.limit_positions import best_transmission
 
 Floats = NDArray[np.float64]
@@ -137,17 +140,9 @@ def agree(swing: float, ratio: float, ways: int) -> None:
     assert best >= found.lower - np.radians(0.005)
 
 
-@pytest.mark.parametrize("ratio", [1.0, 1.02, 1.25, 1.5])
-@pytest.mark.parametrize("swing", [20.0, 55.0, 90.0, 120.0])
+@pytest.mark.parametrize(("swing", "ratio"), [(20.0, 1.25), (55.0, 1.0), (90.0, 1.5), (120.0, 1.02)])
 def test_no_crank_that_is_turned_exceeds_the_bound_and_one_reaches_it(swing: float, ratio: float) -> None:
     agree(swing, ratio, ways=4000)
-
-
-@pytest.mark.study
-def test_neither_does_any_of_a_finer_grid_with_ten_times_the_effort() -> None:
-    for swing in range(20, 121, 10):
-        for ratio in np.linspace(1, 1.5, 11):
-            agree(float(swing), float(ratio), ways=40_000)
 
 
 def test_the_ratio_of_links_decides_where_both_strokes_take_as_long() -> None:
@@ -205,7 +200,7 @@ def test_a_cover_that_stays_open_is_bounded_by_what_is_left() -> None:
 
 
 @KINDS
-@pytest.mark.parametrize("count", [8, pytest.param(300, marks=[pytest.mark.slow, pytest.mark.study])])
+@pytest.mark.parametrize("count", [4, pytest.param(300, marks=[pytest.mark.slow, pytest.mark.study])])
 def test_no_linkage_is_lost(kind: type[Linkage], count: int) -> None:
     """Under limits that just hold it, and with its own transmission angle as what counts."""
     for seed in range(count):
@@ -220,7 +215,7 @@ def test_no_linkage_is_lost(kind: type[Linkage], count: int) -> None:
 @KINDS
 def test_limits_that_a_linkage_misses_by_little_leave_it_out(kind: type[Linkage]) -> None:
     """Its longest link just too long for the others, or it turns with just too little margin."""
-    for seed in range(8):
+    for seed in range(3):
         linkage = planted(kind, seed)
         lengths = linkage.lengths
         number = float(lengths.max() / lengths.min())
@@ -238,9 +233,9 @@ def test_limits_that_a_linkage_misses_by_little_leave_it_out(kind: type[Linkage]
 
 
 @pytest.mark.parametrize("swing", [None, 15.0, 80.0, 140.0])
-def test_a_best_that_is_asked_for_exists_and_a_little_more_does_not(swing: float | None) -> None:
+def test_the_best_exists_and_a_little_more_does_not(swing: float | None) -> None:
     turned = None if swing is None else float(np.radians(swing))
-    for ratio in (1.07, 1.4, 2.2):
+    for ratio in (1.07, 2.2):
         best = best_transmission(turned, ratio)
         limits = StrokeLimits(ANY, 1e6, 0.0)
         families = [slider_cranks(1.0, ratio, limits)] if turned is None else rockers(turned, ratio, limits)
@@ -252,7 +247,7 @@ def test_a_best_that_is_asked_for_exists_and_a_little_more_does_not(swing: float
 
 @KINDS
 def test_pieces_hold_what_their_members_transmit_and_how_that_changes(kind: type[Linkage]) -> None:
-    for seed in range(40):
+    for seed in range(12):
         linkage = planted(kind, seed)
         own = float(np.cos(worst_transmission_cycle(linkage)))
         r2 = float(linkage.r2)
@@ -281,7 +276,54 @@ def test_pieces_hold_what_their_members_transmit_and_how_that_changes(kind: type
         assert min(near) < 1e-9
 
 
-def test_a_finer_gap_closes_as_well() -> None:
-    for ratio in (1.0, 1.5, 2.9):
-        found = proven([slider_cranks(1.0, ratio, TWENTY)], gap=np.radians(1e-4))
-        assert found.upper - found.lower <= np.radians(1e-4) * 1.01
+PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+ENDS = st.tuples(*(st.floats(-1e6, 1e6).filter(lambda x: x == 0 or abs(x) > 1e-100),) * 2).map(sorted)
+SHARE = st.fractions(0, 1)
+
+
+def inside(found: Range, exact: Fraction) -> bool:
+    return Fraction(float(found.low)) <= exact <= Fraction(float(found.high))
+
+
+def at(ends: list[float], share: Fraction) -> tuple[Range, Fraction]:
+    """An interval, and a number in it."""
+    low, high = (Fraction(end) for end in ends)
+    return Range(np.array(ends[0]), np.array(ends[1])), low + share * (high - low)
+
+
+@given(ENDS, ENDS, SHARE, SHARE)
+def test_sums_products_and_quotients_are_enclosed(one, other, first, second) -> None:
+    (a, x), (b, y) = at(one, first), at(other, second)
+    assert inside(a + b, x + y)
+    assert inside(a - b, x - y)
+    assert inside(a * b, x * y)
+    assert inside(a.size, abs(x))
+    if other[0] > 0:
+        assert inside(a / b, x / y)
+    else:
+        assert np.isinf([(a / b).low, (a / b).high]).all()
+
+
+@given(ENDS, ENDS, SHARE, SHARE)
+def test_roots_are_enclosed(one, other, first, second) -> None:
+    (a, x), (b, y) = at(one, first), at(other, second)
+    long = hypotenuse(a, b)
+    assert Fraction(float(long.low)) ** 2 <= x * x + y * y <= Fraction(float(long.high)) ** 2
+
+
+def test_half_a_turn_and_sines_of_its_parts_are_enclosed() -> None:
+    assert inside(HALF_TURN, PI)
+    assert (HALF_TURN / Range.of(6.0)).sine.holds(0.5)
+    assert (HALF_TURN / Range.of(3.0)).cosine.holds(0.5)
+    eighth = (HALF_TURN / Range.of(4.0)).cosine
+    assert inside(eighth * eighth, Fraction(1, 2))
+    assert HALF_TURN.sine.holds(0.0)
+    assert eighth.high - eighth.low < 1e-14
+
+
+def test_wide_angles_are_enclosed() -> None:
+    angle = Range(np.linspace(-3, 3, 50), np.linspace(-3, 3, 50) + 0.3)
+    for share in np.linspace(0, 1, 9):
+        inner = angle.low + share * (angle.high - angle.low)
+        assert angle.sine.holds(np.sin(inner))
+        assert angle.cosine.holds(np.cos(inner))

@@ -1,4 +1,4 @@
-"""What the rounds of a function propose, and what designs lead to at last."""
+"""Proposals of the rounds for a function, and of the last round from designs."""
 
 import numpy as np
 import pytest

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grashof.problems import Box, Requirements
-from grashof.synth.starts.strokes.placing import Ground, scales
+from grashof.synth.starts.strokes.rocker_kind import Ground, scales
 
 INF = np.inf
 sides = st.tuples(st.floats(-50, 50), st.floats(0, 40)).map(lambda side: (side[0], side[0] + side[1]))
@@ -36,14 +36,14 @@ def test_without_boxes_it_lies_along_x_from_the_origin() -> None:
 
 @given(boxes, boxes, st.floats(0, 1), st.floats(-np.pi, np.pi))
 def test_pivots_lie_in_their_boxes_at_every_length_that_is_possible(
-    o2: Box, o4: Box, share: float, wish: float
+    o2: Box, o4: Box, share: float, preferred: float
 ) -> None:
     ground = ground_of(o2=o2, o4=o4)
     low, high = (float(each[0]) for each in ground.lengths(np.array([np.nan])))
     r1 = low + share * (high - low)
     if r1 < 1e-6:
         return
-    pivots = ground.pivots(r1, ground.direction(r1, wish))
+    pivots = ground.pivots(r1, ground.direction(r1, preferred))
     assert inside(o2, pivots[0])
     assert inside(o4, pivots[1])
     assert abs(pivots[1] - pivots[0]) == pytest.approx(r1)

@@ -3,7 +3,7 @@ import pytest
 
 from grashof.analysis.judge.planted import planted_function
 from grashof.synth.quantities.kinds import KINDS
-from grashof.synth.theory.functions.fit import Wanted, fitted
+from grashof.synth.theory.functions.fit import DesiredOutput, fitted
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.starts import crank_starts, function_starts
@@ -14,7 +14,7 @@ EVERY = pytest.mark.parametrize("mechanism", list(KINDS))
 def solved(rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool) -> bool:
     task, _, _ = planted_function(rng, pairs, full=full, mechanism=mechanism)
     kind = KINDS[mechanism].generators
-    wanted = Wanted(task.inputs, task.outputs / task.output_unit, np.ones(pairs))
+    wanted = DesiredOutput(task.inputs, task.outputs / task.output_unit, np.ones(pairs))
     count = kind.joined([]).lengths.shape[1]
     caps = np.full((count, count), np.log(20.0 if mechanism == "four-bar" else 1e3))
     limits = ShapeLimits(float(task.inputs[-1]), caps=caps, margin=1e-3 if full else None)
@@ -34,17 +34,6 @@ def solved(rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool) 
 def test_planted_functions_are_found(mechanism: str, pairs: int, full: bool) -> None:
     rng = np.random.default_rng([pairs, full])
     assert sum(solved(rng, pairs, mechanism, full=full) for _ in range(8)) == 8
-
-
-@pytest.mark.study
-@EVERY
-@pytest.mark.parametrize("full", [False, True])
-@pytest.mark.parametrize("pairs", [6, 8, 12, 24])
-def test_99_of_100_planted_functions_are_found(mechanism: str, pairs: int, full: bool) -> None:
-    if (mechanism, pairs, full) == ("inverted-slider-crank", 6, True):
-        pytest.xfail("98 are found")
-    rng = np.random.default_rng([7, pairs, full])
-    assert sum(solved(rng, pairs, mechanism, full=full) for _ in range(100)) >= 99
 
 
 @pytest.mark.parametrize(
@@ -71,7 +60,7 @@ def test_a_held_start_stays(mechanism: str) -> None:
     rng = np.random.default_rng(3)
     task, _, first = planted_function(rng, 8, mechanism=mechanism)
     kind = KINDS[mechanism].generators
-    wanted = Wanted(task.inputs, task.outputs / task.output_unit, np.ones(8))
+    wanted = DesiredOutput(task.inputs, task.outputs / task.output_unit, np.ones(8))
     made, square = fitted(wanted, function_starts(kind, wanted, rng, first), held=True)
     assert np.abs(np.exp(1j * (made.first - first)) - 1).max() < 1e-9
     assert square[0] < 1e-14

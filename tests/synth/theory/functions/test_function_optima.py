@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from grashof.synth.theory.functions.fit import Wanted
+from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import Aim, refined, under_inequalities
@@ -49,14 +49,14 @@ def test_it_does_not_depend_on_the_scale(scale: float) -> None:
 def test_a_start_in_a_dead_position_ends_well(start: Generators, lengths: int, greatest: bool) -> None:
     """Its output has no rate there, or an enormous one: it is left as it is, or improved."""
     turned = np.linspace(0.0, 1.0, 8)
-    wanted = Wanted(turned, 0.9 * start.outputs(turned)[0], np.ones(8))
+    wanted = DesiredOutput(turned, 0.9 * start.outputs(turned)[0], np.ones(8))
     limits = ShapeLimits(1.0, caps=np.full((lengths, lengths), 5.0))
     aim = Aim(wanted, limits.of, greatest=greatest)
     slopes = start.slopes(turned)[0, 0]
     assert not np.abs(slopes).max() < 1e12
     found = refined(aim, start)
     assert np.isfinite(found.error)
-    assert aim.score(found.made) <= aim.score(start)
+    assert aim.score(found.generator) <= aim.score(start)
     if np.isnan(slopes).any():
         assert found.steps == 0
         assert found.missed > 0

@@ -1,1 +1,0 @@
-"""Sections of forces and torques, and of what carries or balances them."""
