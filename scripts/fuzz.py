@@ -42,10 +42,10 @@ from grashof.survey import report_on
 from grashof.synth import Result
 from grashof.synth.search.finder import refuse_unsearchable
 from grashof.wording.problem import summary
+from grashof.workshop.formats import svg
 from grashof.workshop.plan import plan_parts
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.sheet import sheet
-from grashof.workshop.svg import svg
 from grashof.workshop.workbook import workbook
 
 LOADING, WORKING = 5, 180  # s of processor time, after which it counts as a hang

@@ -22,7 +22,7 @@ from grashof.synth.results.lists import one_list
 from grashof.synth.results.result import Result
 from grashof.synth.search.chunks import solve
 from grashof.synth.search.finder import finder_for, search_of
-from grashof.synth.search.history import Ending, StopCondition
+from grashof.synth.search.history import StopCondition, StopReason
 from grashof.synth.search.journal import journal_of
 from grashof.synth.search.run import Progress, Run
 from grashof.synth.search.searches import nothing_to_search, searches
@@ -132,7 +132,7 @@ def synthesize(
             with stopping(part):
                 run = replace(run, stop_requested=part)
                 found.append(_one_kind(scaled, run, part))
-            if part.ending not in (Ending.COMPLETE, Ending.TIME_LIMIT):
+            if part.ending not in (StopReason.COMPLETE, StopReason.TIME_LIMIT):
                 break
     return one_list(problem, found)
 

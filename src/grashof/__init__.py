@@ -29,7 +29,9 @@ __all__ = [
     "track",
 ]
 
-logging.getLogger(__name__).addHandler(logging.NullHandler())  # who uses the library decides what is logged
+logging.getLogger(__name__).addHandler(
+    logging.NullHandler()
+)  # the program that imports it decides about logging
 
 # Loaded on first use: `import grashof.analysis` must not pay for, or depend on, CasADi.
 _HOMES = {

@@ -1,4 +1,4 @@
-"""What notebooks show of linkages, designs and results: a table and a small drawing, as HTML."""
+"""Linkages, designs and results in notebooks: a table and a small drawing, as HTML."""
 
 from __future__ import annotations
 
@@ -80,23 +80,18 @@ def _judged(candidate: Candidate) -> dict[str, str]:
     verdict = candidate.verdict
     task, turn = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     over_turn = f", {turn:.1f} deg over the turn" if verdict.full_rotation else ""
+    problem, error = candidate.problem, {"largest position error": f"{verdict.error_max:.2g}"}
+    if problem.task.has_output.any():
+        worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
+        error = {"greatest structural error": worst}
     return {
         "design": candidate.id,
         **_linkage(candidate.linkage),
-        **_error(candidate),
+        **error,
         "worst transmission angle": f"{task:.1f} deg over the task{over_turn}",
         "size": f"{verdict.size:.4g}",
         "defects": "; ".join(str(defect) for defect in verdict.defects) or "none",
     }
-
-
-def _error(candidate: Candidate) -> dict[str, str]:
-    verdict = candidate.verdict
-    problem = candidate.problem
-    if problem.task.has_output.any():
-        worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
-        return {"greatest structural error": worst}
-    return {"largest position error": f"{verdict.error_max:.2g}"}
 
 
 def _batch(linkages: AnyKind) -> str:

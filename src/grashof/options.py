@@ -17,12 +17,20 @@ from grashof.study.asked import FIT_POINTS, ON_REQUEST, STEP, Asked
 TOP = 50  # families in a list by default
 
 
-def _option(text: str, *names: str, **stated: Any) -> Any:
-    return typer.Option(*names, help=text, **stated)
+def _option(text: str, *names: str, **details: Any) -> Any:
+    return typer.Option(*names, help=text, **details)
 
 
 _unset = partial(_option, show_default=False)
 
+ProblemName = Annotated[str, typer.Argument(metavar="PROBLEM", help="Name in the catalogue, or a TOML file.")]
+LinkageName = Annotated[
+    str,
+    typer.Argument(
+        metavar="LINKAGE",
+        help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3 (rank or id).",
+    ),
+]
 _Workers = Annotated[int, _option("Processes; they change the time, not the result.", min=1)]
 _Top = Annotated[
     int | None,
@@ -37,7 +45,7 @@ _Drawings = Annotated[int, _option("Designs to draw.", min=0)]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolveOptions:
-    """How to search and what to write; None where the problem, or its default, states it."""
+    """How to search, and files to write; None where the problem, or its default, states it."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-designs by default.")] = None
     starts: Annotated[int | None, _unset("Most Ipopt solves.", min=1)] = None
@@ -45,30 +53,28 @@ class SolveOptions:
     workers: _Workers = 1
     time_limit: Annotated[float | None, _unset("Seconds after which no new solves begin.")] = None
     gap: _Gap = 0.01
-    prove: Annotated[
-        bool,
-        _option("Give proofs minutes where they need them, not seconds.", "--prove"),
-    ] = False
+    prove: Annotated[bool, _option("Give proofs minutes where they need them, not seconds.", "--prove")] = (
+        False
+    )
     top: _Top = None
     drawings: _Drawings = 3
     effort: Annotated[
         float | None,
         _unset("How long to look for better designs; 1 is usual.", min=EFFORTS[0], max=EFFORTS[1]),
     ] = None
-    resume: Annotated[bool, _option("Go on with the unfinished search in --out.", "--resume")] = False
+    resume: Annotated[bool, _option("Continue the unfinished search in --out.", "--resume")] = False
     scheduler: _Scheduler = None
     shard: Annotated[
-        str | None,
-        _unset("Part I of N of the whole search; grashof merge follows.", metavar="I/N"),
+        str | None, _unset("Part I of N of the search; grashof merge follows.", metavar="I/N")
     ] = None
-    log: Annotated[Path | None, _unset("File to append a log to: rounds, every start, what was lost.")] = None
+    log: Annotated[Path | None, _unset("File to append a log to: rounds, starts, lost processes.")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MergeOptions:
-    """Of which shards a list is made, and what is written."""
+    """Shards of the list, and files to write."""
 
-    partial: Annotated[bool, _option("Be content with the shards that are done.", "--partial")] = False
+    partial: Annotated[bool, _option("Accept the shards that are done.", "--partial")] = False
     workers: _Workers = 1
     top: _Top = None
     drawings: _Drawings = 3
@@ -76,21 +82,21 @@ class MergeOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SweepOptions:
-    """Where a study is solved and what is listed of it."""
+    """Where a study is solved, and how many designs are listed."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-sweep by default.")] = None
     workers: _Workers = 1
-    resume: Annotated[bool, _option("Go on with what the folder holds.", "--resume")] = False
+    resume: Annotated[bool, _option("Continue the sweep that the folder holds.", "--resume")] = False
     top: Annotated[int | None, _unset("Best designs listed of each combination.", min=1)] = None
     scheduler: _Scheduler = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProveOptions:
-    """What is to be proven, and for how long."""
+    """The claim to prove, and the time for it."""
 
     at_least: Annotated[
-        float | None, _unset("Only decide whether a design has so many deg.", min=0, max=90)
+        float | None, _unset("Only decide whether a design has this many deg.", min=0, max=90)
     ] = None
     gap: _Gap = 0.01
     time_limit: Annotated[float | None, _unset("Seconds after which the bound so far counts.")] = None
@@ -102,13 +108,12 @@ class ProveOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnalyseOptions:
-    """What an analysis is asked for, and what is written of it."""
+    """Contents of an analysis, and its files."""
 
     out: Annotated[Path | None, _unset("Folder for the results; NAME-analysis by default.")] = None
-    speed_rpm: Annotated[
-        float | None,
-        _unset("Of the driver, clockwise below 0; the file's by default."),
-    ] = None
+    speed_rpm: Annotated[float | None, _unset("Of the driver, clockwise below 0; the file's by default.")] = (
+        None
+    )
     pictures: Annotated[
         bool, _option("Plots of all sections as PNG and SVG, not in the page alone.", "--pictures")
     ] = False
@@ -137,16 +142,15 @@ class AnalyseOptions:
     fit_to_deg: Annotated[float | None, _unset("Driver angle up to which they are.")] = None
     fit_points: Annotated[int, _option("Points through which they are.")] = FIT_POINTS
     dwell_deg: Annotated[
-        float | None, _unset("Report how long link 4 (link 6) dwells in a band so wide.")
+        float | None, _unset("Report how long link 4 (link 6) dwells in a band of this width.")
     ] = None
     balance: Annotated[bool, _option("Report counterweights, before and after.", "--balance")] = False
-    flywheel: Annotated[
-        float | None,
-        _unset("Report the flywheel for this fluctuation of speed: 0.05."),
-    ] = None
+    flywheel: Annotated[float | None, _unset("Report the flywheel for this fluctuation of speed: 0.05.")] = (
+        None
+    )
     tolerance: Annotated[
         float | None,
-        _unset("Report how far P and link 4 (6) move where dimensions are off by so much (length unit)."),
+        _unset("Report how far P and link 4 (6) move for this deviation of dimensions (length unit)."),
     ] = None
     release: Annotated[
         float | None,
@@ -155,7 +159,7 @@ class AnalyseOptions:
     release_rpm: Annotated[float | None, _unset("Speed of the driver at the release.")] = None
 
     def asked(self) -> dict[str, Any]:
-        """What is given to `Asked`; ProblemError for angles that are no numbers."""
+        """The arguments of `Asked`; ProblemError for angles that are not numbers."""
         given = {each.name: getattr(self, each.name) for each in fields(Asked) if hasattr(self, each.name)}
         return {
             **given,

@@ -12,7 +12,7 @@ from grashof.problems import Problem
 from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.designs.families import listed
 from grashof.synth.results.result import Result
-from grashof.synth.search.history import Ending, RunHistory, now
+from grashof.synth.search.history import RunHistory, StopReason, now
 from grashof.synth.search.ledger import LISTED, Tally
 from grashof.synth.search.run import Progress
 
@@ -63,8 +63,8 @@ def _by_kind(found: Sequence[Result], name: str) -> str:
 def _history(parts: Sequence[RunHistory]) -> RunHistory | None:
     if not parts:
         return None
-    endings = [part.ending for part in parts if part.ending is not Ending.COMPLETE]
-    ending = endings[0] if endings else Ending.COMPLETE
+    endings = [part.ending for part in parts if part.ending is not StopReason.COMPLETE]
+    ending = endings[0] if endings else StopReason.COMPLETE
     return replace(parts[-1], begun=parts[0].begun, ending=ending)
 
 
@@ -90,7 +90,7 @@ class ReportedDesigns:
             listed(self._problem, within_factor(self._problem, judged, least)),
             complete=False,
             note="the search failed; listed is what was verified until then",
-            history=RunHistory(begun=self._begun, ended=now(), ending=Ending.FAILED),
+            history=RunHistory(begun=self._begun, ended=now(), ending=StopReason.FAILED),
         )
 
     def _judged(self, one: Candidate) -> Candidate:

@@ -15,7 +15,7 @@ from grashof.problems.values.errors import wrong_value
 _LOG = logging.getLogger(__name__)
 
 
-class Ending(StrEnum):
+class StopReason(StrEnum):
     """The reason that a run ended."""
 
     COMPLETE = "complete"
@@ -32,7 +32,7 @@ class RunHistory:
 
     begun: datetime  # of the search, in ``run.json`` of the run with its files, as `ended`
     ended: datetime
-    ending: Ending
+    ending: StopReason
     resumed: int = 0  # how often it was resumed from its record
     steps_recorded: int = 0  # screenings, solves and chunks taken from the record
     record_lost: str = ""  # why the record ended before the search; empty where it did not
@@ -53,7 +53,7 @@ class StopCondition:
 
     time_limit: float | None  # s, from now on
     stop: Callable[[], bool] | None  # ends it by True
-    ending: Ending = Ending.COMPLETE
+    ending: StopReason = StopReason.COMPLETE
     begun: datetime = field(default_factory=now)  # UTC
     _since: float = field(default_factory=perf_counter)
 
@@ -66,18 +66,18 @@ class StopCondition:
 
     def __call__(self) -> bool:
         """Whether the search has to end."""
-        if self.ending is Ending.COMPLETE:
+        if self.ending is StopReason.COMPLETE:
             self.ending = self._reason()
-            if self.ending is not Ending.COMPLETE:
+            if self.ending is not StopReason.COMPLETE:
                 _LOG.info("asked to end after %.1f s: %s", perf_counter() - self._since, self.ending)
-        return self.ending is not Ending.COMPLETE
+        return self.ending is not StopReason.COMPLETE
 
     def part(self, number: int, of: int) -> StopCondition:
         """The condition for the first `number` of `of` parts of a search, with their share of the time."""
         limit = None if self.time_limit is None else self.time_limit * number / of
         return replace(self, time_limit=limit)
 
-    def _reason(self) -> Ending:
+    def _reason(self) -> StopReason:
         if self.time_limit is not None and perf_counter() - self._since > self.time_limit:
-            return Ending.TIME_LIMIT
-        return Ending.STOPPED if self.stop is not None and self.stop() else Ending.COMPLETE
+            return StopReason.TIME_LIMIT
+        return StopReason.STOPPED if self.stop is not None and self.stop() else StopReason.COMPLETE

@@ -45,12 +45,24 @@ def few() -> Result:
     return replace(found, candidates=each, proof=None)
 
 
+@pytest.fixture
+def found_at_once(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Any search of `grashof solve` finds `few` without solving."""
+    monkeypatch.setattr("grashof.synth.synthesize", lambda *_, **__: few)
+
+
+@pytest.fixture(scope="session")
+def proven() -> Result:
+    """Three designs or so for the luggage problem, with the proof that the first is the best."""
+    return synthesize(load("luggage"), enough=3)
+
+
 @pytest.fixture(scope="session")
 def alike(few: Result) -> Result:
-    """Eight designs in five families, and what the first two are best at."""
-    told = ["least error", "smallest within 1.5 times", *[""] * 6]
+    """Eight designs in five families; the first two are the best in something."""
+    bests = ["least error", "smallest within 1.5 times", *[""] * 6]
     heads = [few.candidates[number].id for number in (0, 1, 2, 3, 4, 0, 0, 1)]
-    designs = zip(few.candidates[:8], heads, told, strict=True)
+    designs = zip(few.candidates[:8], heads, bests, strict=True)
     made = tuple(replace(each, family=name, best_at=best) for each, name, best in designs)
     return replace(few, candidates=made)
 

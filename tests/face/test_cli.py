@@ -1,8 +1,9 @@
-"""The command line: usage, exit codes, one line for what is wrong."""
+"""The command line: usage, exit codes, one line for each error."""
 
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Callable
@@ -23,7 +24,6 @@ BAD = {
         "two or more",
     ),
     "not a number": ("[3.5, 4, -5]", "[nan, 4, -5]", "finite"),
-    "infinite": ("[3.5, 4, -5]", "[inf, 4, -5]", "finite"),
     "two numbers": ("[3.5, 4, -5]", "[3.5, 4]", "motion.poses[1]"),
     "repeated poses": ("[1, 0, 0]]", "[5, 4, 0]]", "equal"),
     "equal poses": ("[3.5, 4, -5]", "[5, 4, 360]", "equal"),
@@ -71,12 +71,9 @@ def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
         ("solve luggage --starts 0", "--starts"),
         ("solve luggage --workers none", "--workers"),
         ("solve luggage --time-limit -1", "time_limit is -1.0"),
-        ("solve luggage --time-limit inf", "time_limit is inf"),
         ("solve luggage --time-limit nan", "time_limit is nan"),
         ("solve luggage --sed 1", "--seed"),
-        ("solve luggage --effort 0.1", "--effort"),
         ("solve luggage --effort 10001", "--effort"),
-        ("solve luggage --effort much", "--effort"),
         ("solve luggage --effort nan", "--effort"),
         ("solve", "PROBLEM"),
         ("solv luggage", "solve"),
@@ -126,7 +123,7 @@ def test_linkages_of_the_catalogue(grashof: Grashof) -> None:
 
 
 @pytest.mark.parametrize("case", ["half a position", "equal poses", "repeated poses"])
-def test_check_refuses_what_solve_refuses(grashof: Grashof, tmp_path: Path, case: str) -> None:
+def test_check_and_solve_refuse_the_same(grashof: Grashof, tmp_path: Path, case: str) -> None:
     old, new, said = BAD[case]
     (tmp_path / "mine.toml").write_text(problem_text("luggage").replace(old, new), encoding="utf-8")
     done = grashof("check", "mine.toml")
@@ -151,7 +148,7 @@ def test_control_characters_of_names_do_not_reach_the_terminal(grashof: Grashof,
     assert grashof("check", path).stdout.startswith("red?[31m: Luggage")
 
 
-def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unexpected_error_ends_with_one_line(grashof: Grashof, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(_problem: Problem) -> list[str]:
         raise ZeroDivisionError("division\nby zero")
 
@@ -163,14 +160,14 @@ def test_what_nobody_expected_ends_with_one_line(grashof: Grashof, monkeypatch: 
     assert line.startswith("grashof: unexpected error: ZeroDivisionError: division by zero;")
     assert "\n" not in line
     monkeypatch.setenv("GRASHOF_TRACEBACK", "1")
-    told = grashof("check", "luggage")
-    assert told.exit_code == 3
-    assert "Traceback (most recent call last)" in told.stderr
-    assert told.stderr.splitlines()[-1] == line
+    done = grashof("check", "luggage")
+    assert done.exit_code == 3
+    assert "Traceback (most recent call last)" in done.stderr
+    assert done.stderr.splitlines()[-1] == line
 
 
 @pytest.mark.study
-def test_no_backend_of_matplotlib_stands_in_the_way(tmp_path: Path) -> None:
+def test_no_backend_of_matplotlib_interferes(tmp_path: Path) -> None:
     environment = {**os.environ, "MPLBACKEND": "nonsense"}
     code = "import sys; from grashof.cli import main; sys.argv[0] = 'grashof'; main()"
     done = subprocess.run(
@@ -190,3 +187,12 @@ def test_every_error_of_a_file_has_its_line(grashof: Grashof, tmp_path: Path) ->
         f"grashof: {path}: motion.poses[2] is 6; it must be a pose [x, y, angle in degrees]",
         f"grashof: {path}: search.seed is -1; it must be a whole number from 0",
     ]
+
+
+def test_a_port_that_is_taken_is_refused(grashof: Grashof) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        done = grashof("live", "--port", port, "--no-browser")
+    assert done.exit_code == 3
+    assert done.stderr.startswith(f"grashof: --port {port}: ")
+    assert done.stderr.endswith("; 0 takes a free one\n")

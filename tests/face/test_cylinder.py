@@ -37,7 +37,7 @@ def solved(searched: Path, tmp_path: Path) -> Path:
     return copytree(searched, tmp_path / "out")
 
 
-def test_check_says_it(grashof: Grashof) -> None:
+def test_check_states_the_cylinder(grashof: Grashof) -> None:
     text = grashof("check", "lifting-arm").stdout
     assert "driven by a cylinder on driver or coupler or output; closed 300 to 700 mm" in text
     assert "rotatability any" in text

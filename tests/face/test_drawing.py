@@ -32,7 +32,7 @@ def test_a_copy_draws_the_same(few: Result, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.slow
-def test_what_a_lost_copy_owes_is_drawn_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_drawings_of_a_lost_copy_are_made_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     def none(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
 
@@ -43,7 +43,7 @@ def test_what_a_lost_copy_owes_is_drawn_here(few: Result, monkeypatch: pytest.Mo
         assert [set(files) for files in drawn] == [set(FORMATS)] * 2
 
 
-def test_what_cannot_be_sent_is_drawn_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_designs_that_cannot_be_sent_are_drawn_here(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
     monkeypatch.setattr(grashof_drawing, "_received", pytest.fail)
     unnamed = few.problem.__class__.__new__(type("Local", (few.problem.__class__,), {}))

@@ -1,4 +1,4 @@
-"""What the page, the terminal and run.json say of enclosures."""
+"""Enclosures on the page, in the terminal and in run.json."""
 
 from __future__ import annotations
 
@@ -6,56 +6,42 @@ from dataclasses import replace
 
 import pytest
 
-from grashof import synthesize
 from grashof.analysis.judge.verdict import Enclosure
 from grashof.output.terminal import print_table
 from grashof.page.search import search_page
-from grashof.problems import load
 from grashof.synth import Result
 from grashof.wording.proof import enclosure_line, enclosure_record
 
 
-@pytest.fixture
-def found() -> Result:
-    return synthesize(load("luggage"), enough=3)
-
-
-def told(result: Result, *shown: Enclosure) -> None:
-    for each, enclosure in zip(result.candidates, shown, strict=False):
-        each.values.enclosure = enclosure
-
-
-def test_all_verified(found: Result, capsys: pytest.CaptureFixture[str]) -> None:
-    line = enclosure_line(found)
+def test_all_verified(proven: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    line = enclosure_line(proven)
     assert line == (
-        f"Closure and transmission angle of {len(found)} designs verified by intervals of the driver angle, "
+        f"Closure and transmission angle of {len(proven)} designs verified by intervals of the driver angle, "
         "over their whole motion."
     )
-    assert line in search_page(found, {"versions": {"grashof": "0"}, "settings": {}})
-    print_table(found)
+    assert line in search_page(proven, {"versions": {"grashof": "0"}, "settings": {}})
+    print_table(proven)
     assert "intervals" not in capsys.readouterr().out
-    record = enclosure_record(found)
+    record = enclosure_record(proven)
     assert record is not None
-    assert (record["designs"], record["undecided"], record["contradicted"]) == (len(found), {}, {})
-    assert record["intervals"] == sum(each.values.enclosure.intervals for each in found.candidates)
+    assert (record["designs"], record["undecided"], record["contradicted"]) == (len(proven), {}, {})
+    assert record["intervals"] == sum(each.values.enclosure.intervals for each in proven.candidates)
+    empty = replace(proven, candidates=())
+    assert (enclosure_line(empty), enclosure_record(empty)) == ("", None)
 
 
 @pytest.mark.parametrize("contradicts", [False, True])
-def test_what_is_not_shown_is_named(
-    found: Result, capsys: pytest.CaptureFixture[str], contradicts: bool
+def test_an_undecided_design_is_named(
+    proven: Result, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, contradicts: bool
 ) -> None:
-    told(found, Enclosure(False, (0.1, 0.2), 7, "the box of A", contradicts))
-    line, first = enclosure_line(found), found.best.id
+    undecided = Enclosure(False, (0.1, 0.2), 7, "the box of A", contradicts)
+    monkeypatch.setattr(proven.best.values, "enclosure", undecided)
+    line, first = enclosure_line(proven), proven.best.id
     assert f"{first} (the box of A)" in line
     assert ("contradict the judge" in line) == contradicts
-    assert (f"{len(found) - 1} of {len(found)} designs" in line) != contradicts
-    print_table(found)
+    assert (f"{len(proven) - 1} of {len(proven)} designs" in line) != contradicts
+    print_table(proven)
     assert line in capsys.readouterr().out
-    record = enclosure_record(found)
+    record = enclosure_record(proven)
     assert record is not None
     assert record["contradicted" if contradicts else "undecided"] == {first: "the box of A"}
-
-
-def test_none_without_designs(found: Result) -> None:
-    empty = replace(found, candidates=())
-    assert (enclosure_line(empty), enclosure_record(empty)) == ("", None)

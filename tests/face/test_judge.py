@@ -55,7 +55,7 @@ def test_a_linkage_that_does_it(grashof: Grashof, hood: Path) -> None:
     assert not any("turn" in line for line in lines)  # it does not turn fully
 
 
-def test_what_it_misses_is_said_as_the_judge_says_it(grashof: Grashof, hood: Path) -> None:
+def test_its_defects_are_those_of_the_judge(grashof: Grashof, hood: Path) -> None:
     done = grashof("judge", "hinge.toml", "exact.toml")
     assert done.exit_code == 1
     missed = [line.removeprefix("  missed: ") for line in done.stdout.splitlines() if "missed" in line]

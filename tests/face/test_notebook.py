@@ -31,10 +31,10 @@ def cells(page: ET.Element) -> list[list[str]]:
 
 def test_a_linkage_shows_its_lengths_and_a_drawing() -> None:
     page = parsed(FourBar((0, 0), (4, 0), 1, 4, 3, (2, 1)))
-    told = dict(row for row in cells(page))  # type: ignore[misc]
-    assert [told[name] for name in ("r1", "r2", "r3", "r4")] == ["4", "1", "4", "3"]
-    assert told["P (u, v)"] == "2, 1"
-    assert told["Grashof class"] == "crank-rocker"
+    facts = dict(row for row in cells(page))  # type: ignore[misc]
+    assert [facts[name] for name in ("r1", "r2", "r3", "r4")] == ["4", "1", "4", "3"]
+    assert facts["P (u, v)"] == "2, 1"
+    assert facts["Grashof class"] == "crank-rocker"
     (drawing,) = page.iter(SVG)
     assert {"O2", "O4", "A", "B", "P"} <= set(drawing.itertext())
 
@@ -64,25 +64,25 @@ def test_a_result_shows_the_best_designs_as_the_terminal_does(few: Result) -> No
     assert len(list(page.iter(SVG))) == 1
 
 
-def test_a_result_without_designs_says_why(few: Result) -> None:
+def test_a_result_without_designs_states_the_reason(few: Result) -> None:
     page = parsed(replace(few, candidates=(), note=f"{EVIL} is in the way"))
     assert "".join(page.itertext()) == f"No design. {EVIL} is in the way"
 
 
-def test_a_design_shows_what_it_was_judged(few: Result) -> None:
-    told = dict(row for row in cells(parsed(few.best)))  # type: ignore[misc]
-    assert told["design"] == few.best.id
-    assert told["defects"] == "none"
+def test_a_design_shows_its_verdict(few: Result) -> None:
+    facts = dict(row for row in cells(parsed(few.best)))  # type: ignore[misc]
+    assert facts["design"] == few.best.id
+    assert facts["defects"] == "none"
     worst = np.degrees(few.best.verdict.transmission_min_task)
-    assert told["worst transmission angle"].startswith(f"{worst:.1f} deg over the task")
+    assert facts["worst transmission angle"].startswith(f"{worst:.1f} deg over the task")
 
 
 def test_text_of_the_user_is_text(few: Result) -> None:
     spec = LinkageSpec(load_linkage_spec("pumpjack").linkage, EVIL, EVIL, EVIL, EVIL)
     page = parsed(spec)
     assert not list(page.iter("script"))
-    told = dict(row for row in cells(page))  # type: ignore[misc]
-    assert told["title"] == told["source"] == told["length unit"] == EVIL
+    facts = dict(row for row in cells(page))  # type: ignore[misc]
+    assert facts["title"] == facts["source"] == facts["length unit"] == EVIL
     assert f"x ({EVIL})" in set(next(page.iter(SVG)).itertext())
     problem = replace(few.problem, title=EVIL, length_unit=EVIL, dynamics=None)
     assert not list(parsed(replace(few, problem=problem)).iter("script"))

@@ -1,4 +1,4 @@
-"""What `grashof solve` writes: lists, the record, other files left alone."""
+"""The files of `grashof solve`: lists, the record; other files are left alone."""
 
 from __future__ import annotations
 
@@ -64,9 +64,9 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
     assert set(record["files"]) == expected
     assert record["designs"] == len(table)
     assert record["settings"]["seed"] == 0
-    told = record["run"]
-    assert (told["ending"], told["resumed"], told["drawings_left_out"]) == ("complete", 0, 0)
-    begun, ended = (datetime.fromisoformat(told[name]) for name in ("begun", "ended"))
+    run = record["run"]
+    assert (run["ending"], run["resumed"], run["drawings_left_out"]) == ("complete", 0, 0)
+    begun, ended = (datetime.fromisoformat(run[name]) for name in ("begun", "ended"))
     assert timedelta(0) <= ended - begun < timedelta(minutes=5)  # whole seconds
     assert ended.utcoffset() == timedelta(0)
     assert record["counts"]["verified and distinct"] >= len(table)
@@ -76,7 +76,7 @@ def test_solve_writes_a_verified_list(grashof: Grashof, tmp_path: Path) -> None:
         for key in ("circuit_ok", "branch_ok", "order_ok", "full_rotation", "pareto"):
             assert design[key] is bool(getattr(row, key))
         assert design["assembly"] == [row.assembly] * 4
-    # Where it is no terminal, progress is plain lines.
+    # Without a terminal, progress is plain lines.
     assert "\x1b" not in done.output
     assert "of 16 starts solved" in done.stderr
 
@@ -104,9 +104,7 @@ def test_second_run_replaces_only_its_own_files(
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("small_search")
-def test_impossible_problem_names_what_stands_in_the_way(
-    grashof: Grashof, tmp_path: Path, impossible: Path
-) -> None:
+def test_an_impossible_problem_names_the_obstacle(grashof: Grashof, tmp_path: Path, impossible: Path) -> None:
     done = grashof("solve", impossible, "--starts", "16")
     assert done.exit_code == 1
     assert "transmission_min_deg 13.4 instead of 60" in done.stderr
@@ -152,7 +150,7 @@ def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Pa
 
 
 @pytest.mark.slow
-def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) -> None:
+def test_the_list_has_the_number_of_designs_that_the_file_requires(grashof: Grashof, tmp_path: Path) -> None:
     text = problem_text("luggage") + "\n[search]\nenough = 30\n"
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     assert grashof("solve", "mine.toml", "--drawings", "0").exit_code == 0
@@ -160,7 +158,7 @@ def test_the_list_holds_what_the_file_wants(grashof: Grashof, tmp_path: Path) ->
 
 
 @pytest.mark.slow
-def test_full_disk_is_told_and_keeps_the_old_run(
+def test_a_full_disk_is_reported_and_keeps_the_old_run(
     grashof: Grashof, few: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write_run(tmp_path / "luggage-designs", few, {}, 1)
@@ -176,7 +174,7 @@ def test_full_disk_is_told_and_keeps_the_old_run(
     assert {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()} == before
 
 
-def test_a_short_list_says_why_it_is_short(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_short_list_states_the_reason(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("solve", "luggage", "--starts", "3", "--drawings", "0")
     said = "the search ended after 3 of 3 solves: starts = 3 allows no more"
     assert done.stderr.splitlines().count(said) == 1
@@ -188,7 +186,7 @@ MOTION = f'kind = "motion"\nlength_unit = "mm"\n[motion]\nposes = {POSES}\n'
 
 
 @pytest.mark.slow
-def test_the_record_tells_the_least_error_and_the_bound(grashof: Grashof, tmp_path: Path) -> None:
+def test_the_record_has_the_least_error_and_the_bound(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(MOTION + "[requirements]\nerror_factor = 1.5\n")
     done = grashof("solve", "mine.toml", "--effort", "0.2", "--drawings", "0")
     assert done.exit_code == 0, done.output

@@ -1,4 +1,4 @@
-"""What the terminal shows."""
+"""The output on the terminal."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def zoned(**zones: Any) -> MotionTask:
     return MotionTask.from_degrees([[0, 0, 0], [1, 0, 10], [2, 1, 30]], **zones)
 
 
-def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_table_shows_the_main_quantities(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(few)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(f"{len(few)} distinct verified")
@@ -47,7 +47,7 @@ def test_table_shows_what_one_decides_by(few: Result, capsys: pytest.CaptureFixt
     assert max(map(len, lines)) < 100
 
 
-def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_torque_is_shown_where_it_is_a_goal(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(few)
     assert "torque  " not in capsys.readouterr().out
     driven = replace(few.problem, objective=Objective(transmission=1, torque=0.5))
@@ -95,7 +95,7 @@ def test_the_torque_is_shown_where_it_is_asked_for(few: Result, capsys: pytest.C
         ),
     ],
 )
-def test_the_summary_says_what_is_best(few: Result, changes: dict[str, Any], said: str) -> None:
+def test_the_summary_states_the_goal(few: Result, changes: dict[str, Any], said: str) -> None:
     assert f"  best: {said}" in summary(replace(few.problem, **changes))
 
 
@@ -136,13 +136,13 @@ def test_a_terminal_breaks_no_word(monkeypatch: pytest.MonkeyPatch) -> None:
     assert folded([line]) == ["  best: least error of a", "    crank-rocker; the list offers", "    more"]
 
 
-def test_heading_tells_of_designs_not_listed(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_heading_mentions_designs_not_listed(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(few, 56)
     said = f"56 distinct designs verified, listed are the best {len(few)} (crank-rocker)"
     assert capsys.readouterr().out.startswith(said)
 
 
-def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_list_is_cut_with_a_note(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
     many = tuple(replace(each, family=f"d{k}") for k, each in enumerate(few.candidates * 2))
     print_table(replace(few, candidates=many))
     out = capsys.readouterr().out
@@ -150,7 +150,7 @@ def test_a_long_list_is_cut_and_says_so(few: Result, capsys: pytest.CaptureFixtu
     assert "\n  13" not in out
 
 
-def test_the_best_of_each_family_stands_for_all(alike: Result, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_best_of_each_family_represents_all(alike: Result, capsys: pytest.CaptureFixture[str]) -> None:
     print_table(alike)
     first, second, *lines = capsys.readouterr().out.splitlines()
     assert first.startswith("8 distinct verified crank-rocker designs in 5 families, ")
@@ -185,12 +185,12 @@ def test_only_exact_designs_are_counted_until_there_are_enough(
         (Problem(task=path, requirements=Requirements(exact=True)), True),
         (Problem(task=path, requirements=Requirements(exact=True, tolerance=0.01)), False),
     ]
-    for asked, ends in tried:
-        assert ends_with_enough(asked) is ends
-        assert (f"{asked.search.enough} designs" in summary(asked)[-1]) is ends
+    for each, ends in tried:
+        assert ends_with_enough(each) is ends
+        assert (f"{each.search.enough} designs" in summary(each)[-1]) is ends
 
 
-def test_the_summary_tells_the_effort() -> None:
+def test_the_summary_states_the_effort() -> None:
     problem = load("luggage")
     assert "effort" not in summary(problem)[-1]
     assert summary(replace(problem, search=Search(effort=2.5)))[-1].endswith(", effort 2.5")
@@ -241,11 +241,11 @@ def test_summary_names_every_requirement_given() -> None:
         ("luggage", "motion through 4 poses, size 5.65685 m, angle_length 5.65685 m; every target met"),
     ],
 )
-def test_summary_tells_the_task(name: str, said: str) -> None:
+def test_the_summary_states_the_task(name: str, said: str) -> None:
     assert said in summary(load(name))[1]
 
 
-def test_the_heading_tells_the_error_of_its_column(few: Result) -> None:
+def test_the_heading_has_the_error_of_its_column(few: Result) -> None:
     fitted = replace(few, problem=replace(few.problem, requirements=Requirements(exact=False)))
     candidates = tuple(
         replace(each, verdict=replace(each.verdict, square=(1 + 0.1 * rank) ** 2))
@@ -256,7 +256,7 @@ def test_the_heading_tells_the_error_of_its_column(few: Result) -> None:
     assert best_rows(fitted)[0]["error rms"] == "0.5"
 
 
-def test_what_the_error_of_poses_counts_is_said(few: Result) -> None:
+def test_the_meaning_of_the_error_of_poses_is_stated(few: Result) -> None:
     fitted = replace(few.problem, requirements=Requirements(exact=False))
     said = "of positions and angles together, 1 rad counted as 5.65685 m"
     assert error_meaning(fitted) == said
@@ -273,10 +273,10 @@ def test_what_the_error_of_poses_counts_is_said(few: Result) -> None:
         ("path-vertical-line", None, "searching"),
     ],
 )
-def test_the_search_begins_with_what_it_does(name: str, exact: bool | None, said: str) -> None:
+def test_the_search_begins_with_its_first_step(name: str, exact: bool | None, said: str) -> None:
     problem = load(name)
-    asked = replace(problem, requirements=replace(problem.requirements, exact=exact))
-    assert finder_of(asked).beginning == said
+    problem = replace(problem, requirements=replace(problem.requirements, exact=exact))
+    assert finder_of(problem).beginning == said
 
 
 def test_a_name_is_no_markup(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -20,7 +20,7 @@ def live(problem: Problem | str = "luggage") -> LiveWidget:
     Parameters
     ----------
     problem : Problem or str
-        What it begins with: a problem, or what `load` takes.
+        Of the first page: a problem, or an argument of `load`.
 
     Returns
     -------

@@ -18,12 +18,12 @@ SCRIPTS = (
 
 @cache
 def live_page() -> str:
-    """The page as HTML; what it shows it asks for."""
+    """The page as HTML; it requests its content."""
     return page_of("live/live.html")
 
 
 def live_script() -> str:
-    """All scripts as one, which defines `startLive`."""
+    """All scripts in one, which defines `startLive`."""
     return f'"use strict";\n(() => {{\n{script_of(SCRIPTS)}\nwindow.startLive = startLive;\n}})();\n'
 
 
@@ -33,12 +33,14 @@ def live_style() -> str:
 
 
 def widget_module() -> str:
-    """The module of the notebook's widget, with the whole page in it."""
+    """The module of the notebook's widget, which contains the page."""
     page = page_of("live/widget.html", style=live_style(), script=live_script())
     return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 
+# Content and type of each address.
 FRONT: dict[str, Callable[[], tuple[str, str]]] = {
+    "/": lambda: (live_page(), "text/html"),
     "/live.css": lambda: (live_style(), "text/css"),
     "/live.js": lambda: (live_script(), "text/javascript"),
     "/start.js": lambda: (text_of("live/start.js"), "text/javascript"),

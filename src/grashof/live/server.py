@@ -15,11 +15,9 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from grashof.live.asked import MOST_BYTES, job_of, opened, request_of
-from grashof.live.front import FRONT, live_page
-from grashof.live.jobs import error_line
-from grashof.live.session import Sessions
-from grashof.live.solvers import Solvers
+from grashof.live.front import FRONT
+from grashof.live.requests import MOST_BYTES, error_line, job_of, opened, request_of
+from grashof.live.solvers import Sessions, Solvers
 from grashof.problems import ProblemError
 
 HOST = "127.0.0.1"
@@ -38,9 +36,9 @@ JSON_LINES = "application/x-ndjson"
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """What is served: `begin` has the "document" and "name" of a new page, `port` and host its own origin.
+    """A server: `begin` has the "document" and "name" of a new page; host and `port` are its origin.
 
-    Every request has to bring the token along; the page has it from the fragment of its address.
+    Every request needs the token, which the page has from the fragment of its address.
     """
 
     begin: dict[str, Any]
@@ -50,21 +48,18 @@ class Live:
 
     @property
     def origin(self) -> str:
-        """Where the page comes from."""
+        """Origin of the page."""
         return f"http://{HOST}:{self.port}"
 
     @property
     def address(self) -> str:
-        """What to open in a browser."""
+        """Address for the browser."""
         return f"{self.origin}/#{self.token}"
 
 
 def application(live: Live) -> Starlette:
-    """The application: the page, its style and scripts, and what the page asks for."""
+    """The application: the page, its style and scripts, and the answers to its requests."""
     sessions = Sessions(live.solvers)
-
-    async def page(_request: Request) -> Response:
-        return Response(live_page(), media_type="text/html")
 
     async def front(request: Request) -> Response:
         content, kind = FRONT[request.url.path]()
@@ -88,7 +83,6 @@ def application(live: Live) -> Starlette:
 
     return Starlette(
         routes=[
-            Route("/", page),
             *(Route(path, front) for path in FRONT),
             Route("/begin", _guarded(live, begin), methods=["POST"]),
             Route("/ask", _guarded(live, ask), methods=["POST"]),
@@ -102,7 +96,7 @@ def application(live: Live) -> Starlette:
 
 
 async def _until_left(lines: AsyncGenerator[str]) -> AsyncIterator[str]:
-    """Lines of a job; closing the request ends the work."""
+    """Lines of a job, which ends when the request is closed."""
     async with aclosing(lines):
         async for line in lines:
             yield line + "\n"
@@ -112,7 +106,7 @@ Answer = Callable[[Request, dict[str, Any]], Awaitable[Response]]
 
 
 def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Response]]:
-    """An answer to requests of our own page alone."""
+    """Answer only requests of our own page."""
 
     async def guarded(request: Request) -> Response:
         if request.headers.get("origin") != live.origin:
@@ -131,10 +125,10 @@ def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Respon
 
 
 async def _body(request: Request) -> bytes:
-    """The body, as long as it is not too large."""
-    stated = request.headers.get("content-length", "")
-    if stated.isdecimal() and int(stated) > MOST_BYTES:
-        raise ProblemError(f"the request has {stated} bytes; at most {MOST_BYTES} are allowed")
+    """The body; ProblemError where it is too large."""
+    length = request.headers.get("content-length", "")
+    if length.isdecimal() and int(length) > MOST_BYTES:
+        raise ProblemError(f"the request has {length} bytes; at most {MOST_BYTES} are allowed")
     body = b""
     async for part in request.stream():
         body += part

@@ -8,24 +8,16 @@ from typing import Any
 
 import anywidget
 
-from grashof.live.asked import beginning, job_of, opened, request_of
 from grashof.live.front import widget_module
-from grashof.live.jobs import error_line
-from grashof.live.session import Session
-from grashof.live.solvers import Solvers
+from grashof.live.requests import beginning, error_line, job_of, opened, request_of
+from grashof.live.solvers import Session, Solvers
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.problem_schema import problem_from
 from grashof.synth import Candidate
 
 
 class LiveWidget(anywidget.AnyWidget):
-    """A page in a cell; what it shows is read by `problem` and `designs`.
-
-    Parameters
-    ----------
-    problem : Problem or str
-        What it begins with.
-    """
+    """A page in a cell, which begins with a problem; `problem` and `designs` are those on it."""
 
     _esm = widget_module()
 
@@ -55,7 +47,7 @@ class LiveWidget(anywidget.AnyWidget):
         super().close()
 
     def _asked(self, _widget: object, message: dict[str, Any], _buffers: object) -> None:
-        """Answer a message of the page, besides what else the kernel does."""
+        """Answer a message of the page, beside other work of the kernel."""
         number = message.get("number")
         if not isinstance(number, int):
             return

@@ -11,8 +11,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.mechanism.position import places
 from grashof.drawing.scene import Scene
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems import Linkage
 from grashof.problems.values.linkages.mechanism import DyadKind
 
@@ -26,8 +25,8 @@ _COLOURS = {
     "output-2": (118, 183, 178),
 }
 _GREY = 120, 120, 120
-# Points and numbers of a dyad from C over E to D, each after those that it depends on, as GeoGebra writes
-# formulas; m and n are its bars, e and g the direction of its first link. Left of (x, y) is (-y, x). In
+# Points and numbers of a dyad from C over E to D, each after those that it depends on, in formulas of
+# GeoGebra; m and n are its bars, e and g the direction of its first link. Left of (x, y) is (-y, x). In
 # closed form, so that the assembly never changes.
 _END = {"{e}": "(x({E}) - x({C})) / {m}", "{g}": "(y({E}) - y({C})) / {m}"}
 _STEPS = {
@@ -117,7 +116,7 @@ def worksheet(model: Model) -> str:
 
 
 def _numbers(linkage: Linkage) -> dict[str, float]:
-    """What the formulas need by their short names."""
+    """Parameters of the formulas by their short names."""
     found = dict[str, float]()
     for row, value in zip(linkage.mechanism.parameters, linkage.parameters, strict=True):
         name = row.name.removesuffix("_2")

@@ -7,18 +7,17 @@ import xml.etree.ElementTree as ET
 import numpy as np
 
 from grashof.drawing.scene import Scene, Slide
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 
-_UNITS = {"mm": "Millimeters", "in": "Inches"}  # what the program shows
-_LONGER = 0.1  # share of the travel that a guide is longer at each end
+_UNITS = {"mm": "Millimeters", "in": "Inches"}  # units of the program
+_LONGER = 0.1  # of the travel, added to a guide at each end
 _RPM = 15.0  # as the program has it
 
 
 def linkage2(model: Model) -> str:
-    """A document with the linkage where its motion begins, from where the program goes on.
+    """A document with the linkage at the beginning of its motion, where the program continues.
 
     Places are in mm, as the program counts. The driver turns at the speed of the file, or at 15 rpm.
 
@@ -62,12 +61,14 @@ def linkage2(model: Model) -> str:
     root = ET.Element("linkage2")
     shown = {"units": _UNITS.get(model.spec.length_unit, _UNITS["mm"])}
     add(root, "program", zoom="1", xoffset="0", yoffset="0", scalefactor="1", **shown)
+    dynamics = model.spec.dynamics
+    rpm = _RPM if dynamics is None else float(abs(dynamics.speed_rpm))
     ids = {name: str(number) for number, name in enumerate(places)}
     for name, place in places.items():
         x, y = (1000 * model.metre * place).tolist()
         connector = add(root, "connector", id=ids[name], name=name.upper(), x=repr(x), y=repr(y))
         connector.attrib |= {"anchor": "true"} if name in fixed else {}
-        connector.attrib |= {"input": "true", "rpm": repr(_rpm(model))} if name == "o2" else {}
+        connector.attrib |= {"input": "true", "rpm": repr(rpm)} if name == "o2" else {}
         connector.attrib |= {"draw": "true"} if name == "p" else {}
         if name in guided:
             connector.set("slider", "true")
@@ -79,11 +80,6 @@ def linkage2(model: Model) -> str:
             add(link, "connector", id=ids[point])
     ET.indent(root, "\t")
     return ET.tostring(root, encoding="unicode") + "\n"
-
-
-def _rpm(model: Model) -> float:
-    dynamics = model.spec.dynamics
-    return _RPM if dynamics is None else float(abs(dynamics.speed_rpm))
 
 
 def _guide(model: Model, scene: Scene, slide: Slide) -> FloatArray:

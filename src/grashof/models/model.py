@@ -1,7 +1,8 @@
-"""What models of a linkage begin from: the linkage as it is used, its driver's way, and its links' masses."""
+"""The common base of models: a linkage as it is used, the range of its driver, the masses of its links."""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,7 +13,7 @@ from grashof.analysis.forces.from_spec import stated_masses
 from grashof.analysis.forces.mass import Masses, uniform_bars
 from grashof.problems import Linkage, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import TURN
-from grashof.problems.values.dynamics.dynamics_spec import METRES, DynamicsSpec
+from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.specs.linkage_spec import ListedDesign
 
 _BAR = 1.0  # kg/m, of the bars of a linkage whose file states no masses
@@ -28,9 +29,9 @@ class Model:
     linkage : Linkage
         A single one.
     low, high : float, rad
-        Driver angles between which it moves: a whole turn, or the dead positions beside `start`.
+        Driver angles between which it moves: a full turn, or the dead positions beside `start`.
     start : float, rad
-        Of a design of a list that of its first target, else the middle of the way.
+        Of a listed design that of its first target, else the middle of the range.
 
     Examples
     --------
@@ -85,7 +86,7 @@ class Model:
 
     @cached_property
     def first(self) -> Position:
-        """Where the links stand at `start`."""
+        """The position at `start`."""
         return solve_position(self.linkage, self.start)
 
     @property
@@ -103,11 +104,11 @@ class Model:
     def masses(self) -> Masses:
         """Masses of the links, lengths in the linkage's unit; bars of 1 kg/m where the file states none."""
         dynamics = self.spec.dynamics
-        if dynamics is None or not _has_masses(dynamics):
+        if dynamics is None or {dynamics.masses, dynamics.density, dynamics.mass_per_length} == {None}:
             return uniform_bars(self.linkage, _BAR * self.metre)
         return stated_masses(self.linkage, dynamics, self.metre)
 
 
-def _has_masses(dynamics: DynamicsSpec) -> bool:
-    stated = (dynamics.masses, dynamics.density, dynamics.mass_per_length)
-    return any(each is not None for each in stated)
+def add(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
+    """Add an element to another one."""
+    return ET.SubElement(parent, tag, attributes)

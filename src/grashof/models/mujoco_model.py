@@ -10,15 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.drawing.scene import Scene
-from grashof.models.model import Model
-from grashof.models.xml import add
+from grashof.models.model import Model, add
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Link
 
 STEPS = 50_000  # in a turn of the driver: the loop then stays closed to a millionth of a radian
-_LIGHT = 1e-4  # share of the heaviest link: what a link without mass has, as MuJoCo wants some
+_LIGHT = 1e-4  # of the heaviest link, for links without mass, which MuJoCo refuses
 _LEAST = 1e-14  # kg, kg m^2: MuJoCo refuses less than 1e-15
-_STIFF = 30.0  # of the drive: its gain over what inertia and weight ask of it
+_STIFF = 30.0  # gain of the drive over the demand of inertia and weight
 _THICK = 0.02  # of bars, as a share of the longest link
 _COLOURS = (
     "0.30 0.47 0.66 1",
@@ -61,8 +60,8 @@ def mjcf(model: Model) -> str:
     """A model in MJCF: lengths in m, masses in kg, the motion in the x-y plane.
 
     Coordinates are the angles of links on the ground from the x-axis (of a block: theta4), those in A, C and
-    D of links on moving ones, and the travel of slides. The model stands assembled at the driver angle it
-    begins from, and a drive turns it steadily. Gravity and masses are those of the file, or bars of 1 kg/m;
+    D of links on moving ones, and the travel of slides. The model is assembled at the first driver
+    angle, and a drive turns it steadily. Gravity and masses are those of the file, or bars of 1 kg/m;
     friction, springs and loads are left out.
 
     Parameters
@@ -108,7 +107,7 @@ def mjcf(model: Model) -> str:
 
 
 def _add(parent: ET.Element, link: _Body, bodies: dict[int, _Body], model: Model, size: float) -> None:
-    """Add a link, and those that hang on it."""
+    """Add a link and its children."""
     metre, number = model.metre, link.link.number
     place = {"pos": _numbers((*link.place * metre, 0)), "euler": _numbers((0, 0, link.angle))}
     body = add(parent, "body", name=link.link.name, **place)
@@ -139,7 +138,7 @@ def _add(parent: ET.Element, link: _Body, bodies: dict[int, _Body], model: Model
 
 
 def _gain(model: Model, gravity: float) -> float:
-    """Of the drive, N m s/rad: so high that inertia and weight slow it by few percent."""
+    """Gain of the drive, N m s/rad: inertia and weight slow it by few percent."""
     furthest = max(float(model.linkage.lengths.max()), float(np.hypot(*model.linkage.coupler_point)))
     reach, speed = furthest * model.metre, abs(model.omega2)
     weight = float(model.masses.total)
@@ -149,36 +148,37 @@ def _gain(model: Model, gravity: float) -> float:
 
 
 def _tree(model: Model) -> tuple[dict[int, _Body], list[_Loop]]:
-    """The bodies by the numbers of their links, and what closes each loop: in E, or of a rod in C.
+    """The bodies by the numbers of their links, and the closure of each loop: in E, or of a rod in C.
 
-    The first link of a dyad hangs on the host of C, the second on that of D; a rod hangs on its block.
+    The parent of the first link of a dyad is the host of C, that of the second the host of D, that of a rod
+    its block.
     """
     scene, at, kind = Scene(model.linkage), model.first, model.linkage.mechanism
     frames = {link.number: scene.frame(link) for link in kind.links}
     angles = {1: 0.0} | {number: float(angle) for number, angle in at.angles.items()}
     bodies, loops = dict[int, _Body](), list[_Loop]()
 
-    def hang(number: int, host: int, joint: str, points: dict[str, FloatArray]) -> None:
+    def pin(number: int, host: int, joint: str, points: dict[str, FloatArray]) -> None:
         """Pin a link by its origin."""
         link, angle = kind.links[number - 1], angles[number] - angles[host]
         place = frames[host][link.points[0]]
         bodies[number] = _Body(link, host, place, angle, _Joint(joint, angle), points)
 
-    hang(2, 1, "O2", _named(frames[2]))
+    pin(2, 1, "O2", _named(frames[2]))
     slides = {slide.loop: slide for slide in scene.slides}
     for number, loop in enumerate(kind.loops):
         (first, second), (on_c, on_d), slide = loop.links, loop.dyad.hosts, slides.get(number)
         points, e = _named(frames[second]), loop.e.upper()
         if slide is None or not slide.carried:
-            hang(first, on_c, loop.c.upper(), _named(frames[first]))
+            pin(first, on_c, loop.c.upper(), _named(frames[first]))
             loops.append(_Loop(first, second, frames[first][loop.e]))
         if slide is None:
             points[f"{e}{second}"] = points.pop(e)
-            hang(second, on_d, loop.d.upper(), points)
+            pin(second, on_d, loop.d.upper(), points)
             continue
         travel, name = float(slide.travel(at)), f"slide{slide.ending}"
         if slide.carried:
-            hang(second, on_d, loop.d.upper(), {})
+            pin(second, on_d, loop.d.upper(), {})
             place, joint = np.array([-slide.offset, travel]), _Joint(name, travel, (-1, 0, 0), "slide")
             points = _named(frames[first]) | {e: np.array([travel, 0.0])}
             bodies[first] = _Body(kind.links[first - 1], second, place, -np.pi / 2, joint, points)

@@ -1,1 +1,1 @@
-"""What is printed, and what a run writes."""
+"""The terminal, and the files of a run."""

@@ -1,4 +1,4 @@
-"""What `grashof analyse` writes and prints."""
+"""The files and the output of `grashof analyse`."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ import pandas as pd
 from rich.table import Table
 
 from grashof.output.folder import ANALYSIS_PAGE, ANALYSIS_RECORD, replacing_own_files
+from grashof.output.process import say
 from grashof.output.run_files import listed_files, versions_of, write_csv, write_json, write_page
-from grashof.output.streams import say
 from grashof.output.terminal import fitting, folded, plain_table
-from grashof.survey import Fact, LinkageReport, Section
+from grashof.survey import Fact, LinkageReport
 from grashof.wording.numbers import dimensions_text, number_text, value_text
 
 _PACKAGES = ("grashof", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
 
 def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False) -> list[str]:
-    """Write tables, summary, page, plots (pictures too, if asked) and their record; the files' names, sorted.
+    """Write tables, summary, page, plots, `pictures` too, and their record; the files' names, sorted.
 
-    OSError where the disk is full or the folder is lost; it then holds what it held before.
+    OSError where the disk is full or the folder is lost; it then holds its former files.
     """
     from grashof.figures.files import save
     from grashof.figures.section_plots import plots, section_pictures  # matplotlib takes a while to import
@@ -40,7 +40,11 @@ def write_report(folder: Path, report: LinkageReport, *, pictures: bool = False)
         for section in report.sections:
             for name, table in section.tables.items():
                 write_csv(fresh / f"table-{name}.csv", table)
-        write_csv(fresh / "summary.csv", _summary_frame(report))
+        rows = [
+            {"quantity": key, "value": fact.value, "unit": fact.unit, "what": fact.label, "section": section}
+            for key, (section, fact) in _facts_by_key(report).items()
+        ]
+        write_csv(fresh / "summary.csv", pd.DataFrame(rows))
         write_json(fresh / "summary.json", _summary(report))
         write_page(fresh / ANALYSIS_PAGE, analysis_page(report, about))
         for name, figure in chain(plots(report), section_pictures(report) if pictures else ()):
@@ -59,16 +63,9 @@ def print_report(report: LinkageReport) -> None:
     for line in fitting(_extremes_table(report, digits) for digits in (6, 4)):
         say(line)
     for section in report.sections:
-        for line in _section_lines(section):
+        lines = fitting([_facts_table(section.title, section.facts)]) if section.facts else []
+        for line in [*filter(None, lines), *folded(section.notes), ""] if lines else []:
             say(line)
-
-
-def _section_lines(section: Section) -> list[str]:
-    """Its facts under its title, with its notes; none without facts."""
-    if not section.facts:
-        return []
-    lines = fitting([_facts_table(section.title, section.facts)])
-    return [*(line for line in lines if line), *folded(section.notes), ""]
 
 
 def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
@@ -83,31 +80,15 @@ def _facts_table(title: str, facts: Iterable[Fact]) -> Table:
 
 def _extremes_table(report: LinkageReport, digits: int) -> Table:
     table, frame = plain_table(), report.tables["extremes"]
-    many = "range" in frame
-    for name in (
-        *(["range"] if many else []),
-        f"extremes {report.sweep.over}",
-        "unit",
-        "least",
-        "at theta2",
-        "largest",
-        "at theta2",
-    ):
-        left = name.startswith("extremes") or name == "unit"
-        table.add_column(name, justify="left" if left else "right", no_wrap=True)
+    ranges = ["range"] if "range" in frame else []
+    texts = (f"extremes {report.sweep.over}", "unit")
+    for name in (*ranges, *texts, "least", "at theta2", "largest", "at theta2"):
+        table.add_column(name, justify="left" if name in texts else "right", no_wrap=True)
     columns = ("min", "theta2_min_deg", "max", "theta2_max_deg")
     for row in frame.to_dict("records"):
         values = (number_text(row[name], digits) for name in columns)
-        table.add_row(*([str(row["range"])] if many else []), str(row["what"]), str(row["unit"]), *values)
+        table.add_row(*(str(row[name]) for name in (*ranges, "what", "unit")), *values)
     return table
-
-
-def _summary_frame(report: LinkageReport) -> pd.DataFrame:
-    rows = [
-        {"quantity": key, "value": fact.value, "unit": fact.unit, "what": fact.label, "section": section}
-        for key, (section, fact) in _facts_by_key(report).items()
-    ]
-    return pd.DataFrame(rows)
 
 
 def _facts_by_key(report: LinkageReport) -> dict[str, tuple[str, Fact]]:
@@ -133,11 +114,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
         "linkage": spec.linkage.stated,
         "notes": list(report.notes),
         "facts": {
-            key: {
-                "value": _finite(fact.value),
-                "unit": fact.unit,
-                **({"section": section} if section else {}),
-            }
+            key: {"value": _finite(fact.value), "unit": fact.unit} | ({"section": section} if section else {})
             for key, (section, fact) in _facts_by_key(report).items()
         },
         "sections": [
@@ -152,7 +129,7 @@ def _summary(report: LinkageReport) -> dict[str, Any]:
 
 
 def _finite(value: Any) -> Any:
-    """As JSON knows it: null for NaN, words for infinity."""
+    """A value for JSON: null for NaN, words for infinity."""
     value = value.item() if isinstance(value, np.generic) else value
     if not isinstance(value, float) or np.isfinite(value):
         return value

@@ -16,7 +16,7 @@ PATIENCE = 10  # s to wait for an answer
 
 
 class _Cluster(Executor):
-    """Dask's executor; a task that ends one worker after the other (`killed`, in Dask) is a `CrashError`."""
+    """Dask's executor; a task that ends one worker after another (`killed`, in Dask) is a `CrashError`."""
 
     def __init__(self, dask: Executor, killed: type[Exception]) -> None:
         self._dask, self._killed = dask, killed
@@ -41,15 +41,15 @@ class _Cluster(Executor):
         return ours
 
 
-# Their tracebacks of a lost scheduler would stand before the one line that says so.
+# They would print tracebacks of a lost scheduler before the one line that reports it.
 _NOISY = ("distributed.client", "distributed.core", "distributed.comm.core", "distributed.utils")
 
 
 @contextmanager
 def cluster(scheduler: str | None, workers: int) -> Iterator[tuple[Executor | None, int]]:
-    """Executor of a Dask scheduler, if one is named, and how many it works on at a time.
+    """Executor of a Dask scheduler, if one is named, and its number of tasks at a time.
 
-    ProblemError where Dask is not installed or the address is none; SolverError where no scheduler answers.
+    ProblemError where Dask is missing or the address is invalid; SolverError where no scheduler answers.
     """
     if scheduler is None:
         yield None, workers

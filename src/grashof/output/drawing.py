@@ -1,4 +1,4 @@
-"""Drawings of designs, made in a copy of the process where a core is free: matplotlib takes its time."""
+"""Drawings of designs, made in a copy of the process where a core is free: matplotlib is slow."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 Files = dict[str, bytes]
 
 FORMATS = (".png", ".svg")
-_MOST = 20.0  # s, for a drawing that takes less than one: more, and something is wrong beside
-_UNSENDABLE = (PicklingError, AttributeError, TypeError)  # what pickle says of a function without a name
+_MOST = 20.0  # s; a drawing takes less than one, so that the copy has then failed
+_UNSENDABLE = (PicklingError, AttributeError, TypeError)  # errors of pickle for a function without a name
 
 
 class Drawer:
@@ -31,7 +31,7 @@ class Drawer:
         self._copy = copy
 
     def begin(self, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:
-        """Begin to draw designs, once; they come one after the other, by the endings of their files."""
+        """Begin to draw designs, once; an iterator of their files by ending."""
         if self._copy is None or not candidates:
             return _made(problem, candidates)
         with suppress(ConnectionError):
@@ -44,7 +44,7 @@ class Drawer:
 
 @contextmanager
 def drawer(most: int) -> Iterator[Drawer]:
-    """One who draws so many designs at most, made ready beside this process until there are any.
+    """A drawer of at most `most` designs, made ready beside this process until there are any.
 
     The copy is made here, where it may be: with a single thread and a second core.
     """
@@ -65,7 +65,7 @@ def drawer(most: int) -> Iterator[Drawer]:
 
 
 def _may_be_copied() -> bool:
-    """Whether a copy of this process can work beside it: a thread might hold what the copy waits for."""
+    """Whether a copy of this process can work beside it: a thread might hold a lock that it needs."""
     return sys.platform == "linux" and threading.active_count() == 1 and len(os.sched_getaffinity(0)) > 1
 
 
@@ -79,7 +79,7 @@ def _made(problem: Problem, candidates: Sequence[Candidate], done: int = 0) -> I
 
 
 def _received(pipe: Connection, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:
-    """What a copy sends; made here from where it is lost."""
+    """Drawings of the copy; from where it is lost they are made here."""
     done = 0
     with suppress(EOFError, ConnectionError):
         while done < len(candidates) and pipe.poll(_MOST):
@@ -90,7 +90,7 @@ def _received(pipe: Connection, problem: Problem, candidates: Sequence[Candidate
 
 
 def _draw(pipe: Connection, other: Connection) -> None:
-    """The copy's work; it ends with the process that made it, which then holds the other end no more."""
+    """The work of the copy; it ends with the process that made it, which closes the other end of the pipe."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # which reaches every process of a terminal
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     other.close()
@@ -102,7 +102,7 @@ def _draw(pipe: Connection, other: Connection) -> None:
 
 
 def _get_ready() -> None:
-    """Import what draws, and have it load its fonts."""
+    """Import matplotlib, and load its fonts."""
     from matplotlib.figure import Figure
 
     from grashof.figures.files import drawn

@@ -1,4 +1,4 @@
-"""The output folder of a run: lists written whole or not at all, and only a run's own files replaced."""
+"""The output folder of a run: lists complete or absent, and only a run's own files replaced."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ def check_writable(folder: Path, drawings: int = 0, record: str = RECORD) -> Non
 
 @contextmanager
 def in_use(folder: Path) -> Iterator[None]:
-    """The folder for this run alone; it is made, and goes again if it stays empty.
+    """The folder for this run alone; it is made, and removed if it stays empty.
 
-    What a run that was killed left unfinished in it is removed. The lock ends with its process,
-    however that ends; where the system has none (Windows), two runs are not kept apart.
+    Unfinished files of a killed run are removed. The lock ends with its process, however that ends; where
+    the system has none (Windows), two runs are not kept apart.
     ProblemError where another run uses it, or it cannot be made.
     """
     with ExitStack() as stack:
@@ -79,13 +79,13 @@ def in_use(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def part_in_use(folder: Path, part: Path) -> Iterator[None]:
-    """A part of a folder for this run alone, while others make and use other parts of it.
+    """A part of a folder for this run alone, while others use other parts of it.
 
     ProblemError where another run uses it, the folder cannot be written, or the part is a link to elsewhere.
     """
     if part.is_symlink():
         raise ProblemError(f"--out {part}: is a link; it must be a folder")
-    # In this order: a folder that is made only to be looked at goes again, under the feet of the others.
+    # In this order: check_writable removes a folder that it made, which others may have begun to use.
     with in_use(part):
         check_writable(folder)
         yield
@@ -114,23 +114,28 @@ def _locked(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def replacing_own_files(folder: Path, keep: Collection[str] = (), record: str = RECORD) -> Iterator[Path]:
-    """An empty folder beside the files, to write those into that at the end replace the last run's.
+    """An empty folder for new files, which at the end replace those of the last run.
 
-    What the last run wrote (`record` lists it under "files"), and this one neither writes nor keeps, is
-    removed; other files are left alone. If anything fails, as a full disk does (OSError), the folder stays as
-    it was, and goes if it was made here. Links in it are replaced or removed, not what they lead to.
+    Files of the last run (in `record` under "files") that this one neither writes nor keeps are removed;
+    other files are left alone. If anything fails, as a full disk does (OSError), the folder stays as
+    it was, and is removed if it was made here. Links in it are replaced or removed, not their targets.
     """
-    with _named(folder), _made(folder):
-        before = own_files(folder, record)
-        with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
-            fresh = Path(name)
-            yield fresh
-            written = sorted(path.name for path in fresh.iterdir())
-            # The record goes last: until then the old one still knows every old file.
-            for file in sorted(written, key=lambda file: file == record):
-                (fresh / file).replace(folder / file)
-        for file in before - {*written, *keep}:
-            (folder / file).unlink(missing_ok=True)
+    try:
+        with _made(folder):
+            before = own_files(folder, record)
+            with tempfile.TemporaryDirectory(dir=folder, prefix=UNFINISHED) as name:
+                fresh = Path(name)
+                yield fresh
+                written = sorted(path.name for path in fresh.iterdir())
+                # The record goes last: until then the old one still lists every old file.
+                for file in sorted(written, key=lambda file: file == record):
+                    (fresh / file).replace(folder / file)
+            for file in before - {*written, *keep}:
+                (folder / file).unlink(missing_ok=True)
+    except OSError as error:
+        if error.filename is not None or error.strerror is None:
+            raise
+        raise OSError(error.errno, error.strerror, str(folder)) from None  # a full disk names no file
 
 
 def is_own_name(name: str, record: str = RECORD) -> bool:
@@ -145,13 +150,13 @@ def own_files(folder: Path, record: str = RECORD) -> set[str]:
     try:
         content = json.loads((folder / record).read_text(encoding="utf-8"))
         names, versions = content["files"], content["versions"]
-    # No run, or a record that is not ours; the last of the errors for lists nested a thousand deep.
+    # Not a run, or not our record; RecursionError for lists nested a thousand deep.
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()
     if not (isinstance(names, list) and isinstance(versions, dict) and "grashof" in versions):
         return set()
     # Our names only: a record that was tampered with must not reach any other file.
-    ours = {name for name in names if isinstance(name, str) and _NAMES[record].fullmatch(name)}
+    ours = {name for name in names if isinstance(name, str) and is_own_name(name, record)}
     return {name for name in ours if (folder / name).is_file()}
 
 
@@ -161,7 +166,7 @@ def _unwritable(folder: Path, error: OSError) -> ProblemError:
 
 
 def _taken(folder: Path, drawings: int, record: str) -> list[str]:
-    """Names that a run may write and that something else has."""
+    """Names of files of others that a run may write."""
     own = own_files(folder, record)
     found = [(path.name, _NAMES[record].fullmatch(path.name)) for path in folder.iterdir()]
     return sorted(
@@ -170,19 +175,8 @@ def _taken(folder: Path, drawings: int, record: str) -> list[str]:
 
 
 @contextmanager
-def _named(folder: Path) -> Iterator[None]:
-    """Errors that name no file, such as of a full disk, name the folder."""
-    try:
-        yield
-    except OSError as error:
-        if error.filename is not None or error.strerror is None:
-            raise
-        raise OSError(error.errno, error.strerror, str(folder)) from None
-
-
-@contextmanager
 def _made(folder: Path) -> Iterator[None]:
-    """The folder, with its parents; those made here go again if they stay empty."""
+    """The folder, with its parents; those made here are removed if they stay empty."""
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""A log of a run in a file, for who asks for one."""
+"""A log of a run in a file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from grashof.output.folder import is_own_name
-from grashof.output.streams import say
+from grashof.output.process import say
 from grashof.problems import ProblemError
 from grashof.synth.search.journal import is_record_name
 
@@ -18,7 +18,7 @@ LAYOUT = "%(asctime)s.%(msecs)03dZ %(levelname)s %(name)s: %(message)s"
 
 
 class _File(logging.FileHandler):
-    """Says once that it cannot be written any more: that never costs a result."""
+    """Reports once that it cannot be written any more: that never costs a result."""
 
     failed = False
 
@@ -26,13 +26,13 @@ class _File(logging.FileHandler):
         error = sys.exc_info()[1]
         if not self.failed:
             reason = getattr(error, "strerror", None) or error
-            say(f"--log {self.baseFilename}: {reason}; the log is not whole", err=True)
+            say(f"--log {self.baseFilename}: {reason}; the log is incomplete", err=True)
         self.failed = True
 
 
 @contextmanager
 def logged(path: Path | None, folder: Path, record: Path) -> Iterator[None]:
-    """What Grashof logs inside goes to the end of a file, too: every start, time in UTC.
+    """Append the log of the block to a file, too: every start, time in UTC.
 
     ProblemError where it cannot be written, or is one of the run's own files in `folder` or `record`.
     """

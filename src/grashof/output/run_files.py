@@ -1,4 +1,4 @@
-"""What a run writes: the candidates as CSV and JSON, the closest miss, the page, the record, the drawings."""
+"""The files of a run: candidates as CSV and JSON, the closest misses, the page, the record, the drawings."""
 
 from __future__ import annotations
 
@@ -19,19 +19,20 @@ from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.cylinder_drive import cylinder_forces
 from grashof.output.drawing import Drawer, Files, drawer
-from grashof.output.ending import Exit, Interruption
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
+from grashof.output.process import ExitCode, Interruption
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import no_formula
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import LISTED, OWN, Row, facts, known, rows_of, rows_of_nearest
-from grashof.synth.search.history import Ending, now
+from grashof.synth.search.history import StopReason, now
 from grashof.wording.proof import enclosure_record
 
 if TYPE_CHECKING:
     import pandas as pd
 
+_GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")  # limits that ended solves
 _PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
 
 
@@ -48,8 +49,8 @@ def write_run(
     """Write all files of a run, the lists first; names, sorted. A drawing that fails does not cost the lists.
 
     `settings` go into the record, `problem_text` into the page. `listed` is called once the lists are in the
-    folder; `stop` is asked before each of the `drawings` best is drawn. OSError where the disk is full or the
-    folder is lost; it then holds what it held before, or the lists alone.
+    folder, `stop` before each of the `drawings` best is drawn. OSError for a full disk or a lost folder; it
+    then holds its former files, or the lists alone.
     """
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]
@@ -82,8 +83,8 @@ def _write_lists(folder: Path, result: Result) -> list[Row]:
     return rows
 
 
-def left_out(result: Result, drawings: int, files: Iterable[str]) -> int:
-    """How many drawings that were asked for are not among the files of a run."""
+def missing_drawings(result: Result, drawings: int, files: Iterable[str]) -> int:
+    """Number of requested drawings that are not among the files of a run."""
     return min(drawings, len(result)) - sum(name.endswith(".png") for name in files)
 
 
@@ -105,8 +106,24 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = listed_files(folder, RECORD, others)
-    history = _history(result, left_out(result, drawings, files), stop)
-    write_json(folder / RECORD, _record(result, settings, history, files))
+    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
+    content = {
+        "problem": result.problem.name,
+        **_about(settings),
+        "run": _history(result, missing_drawings(result, drawings, files), stop),
+        "complete": result.complete,
+        "ended": result.ended,
+        **{name: None if np.isnan(error) else error for name, error in errors.items()},
+        "designs": len(result),
+        "note": result.note,
+        "proof": None if result.proof is None else result.proof.stated,
+        "intervals": enclosure_record(result),
+        "counts": result.counts,
+        "guards_hit": {name: result.tally.statuses[name] for name in _GUARDS},
+        "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
+        "files": files,
+    }
+    write_json(folder / RECORD, content)
     return files
 
 
@@ -162,12 +179,10 @@ def _driven(candidate: Candidate) -> dict[str, Any]:
     if verdict.cylinder is None:
         return {}
     at = solve_position(linkage, verdict.theta2, verdict.assembly)
-    stated = {
-        **verdict.cylinder.stated,
-        "length": cylinder_state(verdict.cylinder, linkage, at).length.tolist(),
-    }
+    length = cylinder_state(verdict.cylinder, linkage, at).length.tolist()
     forces = cylinder_forces(linkage, candidate.problem, verdict)
-    return {"cylinder": stated if np.isnan(forces).all() else {**stated, "force": _given(forces)}}
+    force = {} if np.isnan(forces).all() else {"force": _given(forces)}
+    return {"cylinder": {**verdict.cylinder.stated, "length": length, **force}}
 
 
 def _written(rows: Sequence[Row]) -> dict[str, str]:
@@ -177,7 +192,7 @@ def _written(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def _about(settings: dict[str, Any]) -> dict[str, Any]:
-    """What it takes to run the search again."""
+    """Versions and settings, from which the search can be repeated."""
     return {"versions": versions_of(_PACKAGES), "settings": settings}
 
 
@@ -186,51 +201,19 @@ def versions_of(packages: Iterable[str]) -> dict[str, str]:
     return {"python": platform.python_version(), **{name: version(name) for name in packages}}
 
 
-_ENDINGS = {Exit.INTERRUPTED: Ending.INTERRUPTED, Exit.TERMINATED: Ending.TERMINATED}
+_ENDINGS = {ExitCode.INTERRUPTED: StopReason.INTERRUPTED, ExitCode.TERMINATED: StopReason.TERMINATED}
 
 
 def _history(result: Result, undrawn: int, stop: Interruption) -> dict[str, Any] | None:
-    """What happened to the run until now; None of a list that no search made."""
+    """The history of the run until now; None for a list that no search made."""
     if result.history is None:
         return None
     ending = _ENDINGS.get(stop.code, result.history.ending)
     why = ending if stop() else "the run ended before they were drawn"
-    told = replace(
-        result.history,
-        ended=now(),
-        ending=ending,
-        drawings_left_out=undrawn,
-        why_left_out=why if undrawn else "",
-    )
-    times = {name: getattr(told, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
-    return {**asdict(told), **times, "processors": os.cpu_count()}
-
-
-def _record(
-    result: Result, settings: dict[str, Any], history: dict[str, Any] | None, files: list[str]
-) -> dict[str, Any]:
-    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
-    guards = {name: result.tally.statuses[name] for name in _GUARDS}
-    return {
-        "problem": result.problem.name,
-        **_about(settings),
-        "run": history,
-        "complete": result.complete,
-        "ended": result.ended,
-        **{name: None if np.isnan(error) else error for name, error in errors.items()},
-        "designs": len(result),
-        "note": result.note,
-        "proof": None if result.proof is None else result.proof.stated,
-        "intervals": enclosure_record(result),
-        "counts": result.counts,
-        "guards_hit": guards,
-        "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
-        "files": files,
-    }
-
-
-# What ended solves that would otherwise have gone on.
-_GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")
+    history = replace(result.history, ended=now(), ending=ending, drawings_left_out=undrawn)
+    history = replace(history, why_left_out=why if undrawn else "")
+    times = {name: getattr(history, name).isoformat(timespec="seconds") for name in ("begun", "ended")}
+    return {**asdict(history), **times, "processors": os.cpu_count()}
 
 
 def write_rows(path: Path, rows: Sequence[Row]) -> None:
@@ -265,5 +248,5 @@ def write_json(path: Path, content: dict[str, Any]) -> None:
 
 
 def write_page(path: Path, page: str) -> None:
-    """HTML as it is, with the same line ends everywhere."""
+    """Write HTML with the same line ends everywhere."""
     path.write_text(page, encoding="utf-8", newline="\n")

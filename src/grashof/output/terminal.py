@@ -1,4 +1,4 @@
-"""What the terminal shows: progress while a search works, and the list to decide by."""
+"""The terminal: progress of a search, and the table of the best designs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
+from itertools import chain
 from textwrap import TextWrapper
 
 import numpy as np
@@ -15,7 +16,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
-from grashof.output.streams import say
+from grashof.output.process import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
@@ -55,15 +56,15 @@ def console(*, stderr: bool = False) -> Console:
 def search_progress(
     name: str, begin: str = "searching", *, wanted: bool = True
 ) -> Iterator[Callable[[Progress], None]]:
-    """Something to give as `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
+    """An argument for `progress=`: a bar on a terminal, plain lines elsewhere; on stderr.
 
-    The bar shows `begin` until the first step is done; `wanted` if enough designs end the search.
+    The bar shows `begin` until the first step is done; `wanted` where enough designs end the search.
     """
     out = console(stderr=True)
     if not (out.is_terminal and sys.stderr.isatty()):  # the first alone can be forced by FORCE_COLOR
         yield lambda step: say(f"{name}: {_step(step, wanted)}", err=True)
         return
-    name_column = TextColumn("{task.description}", markup=False)  # a name such as [x] is no markup
+    name_column = TextColumn("{task.description}", markup=False)  # a name such as [x] is not markup
     columns = (name_column, BarColumn(), TextColumn("{task.fields[step]}"))
     with Bar(*columns, TimeElapsedColumn(), console=out, transient=True) as bar:
         task = bar.add_task(name, total=None, step=begin)
@@ -82,23 +83,22 @@ def _step(step: Progress, wanted: bool) -> str:
 
 
 def print_table(result: Result, verified: int | None = None) -> None:
-    """Print the best designs, with what an engineer decides by; `verified` is how many were found in all."""
+    """Print the best designs with their main quantities; `verified` is the number found in all."""
     for line in folded(heading(result, verified or len(result)).splitlines()):
         say(line)
-    for line in fitting(_tables(result)):
+    digits = 4 if console().width >= _WIDE else 3
+    left_out = [list(chain(*_DROPPED[:count])) for count in range(len(_DROPPED) + 1)]
+    for line in fitting(_table(result, digits, names) for names in left_out):
         say(line)
     doubted = [f"{row['#'].rstrip(' *')}: {row[CAUTION]}" for row in best_rows(result) if row.get(CAUTION)]
-    for line in folded([f"caution: {'; '.join(doubted)}"] if doubted else []):
-        say(line)
-    if not all(each.holds for each in enclosures(result)):
-        for line in folded([enclosure_line(result)]):
-            say(line)
-    for line in folded([proven] if (proven := proof_line(result)) else []):
+    undecided = not all(each.holds for each in enclosures(result))
+    lines = [f"caution: {'; '.join(doubted)}" if doubted else "", enclosure_line(result) if undecided else ""]
+    for line in folded([line for line in (*lines, proof_line(result)) if line]):
         say(line)
 
 
 def folded(lines: Sequence[str]) -> list[str]:
-    """Lines of words that no terminal breaks within a word; as they are where they are piped."""
+    """Lines folded between words to the width of the terminal; unchanged where they are piped."""
     out = console()
     if not (out.is_terminal and sys.stdout.isatty()):
         return list(lines)
@@ -124,17 +124,10 @@ def plain_table() -> Table:
     return Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
 
 
-def _tables(result: Result) -> Iterator[Table]:
-    """The list with fewer and fewer columns."""
-    digits = 4 if console().width >= _WIDE else 3
-    for dropped in range(len(_DROPPED) + 1):
-        yield _table(result, digits, [name for names in _DROPPED[:dropped] for name in names])
-
-
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     """The best design of each family in cells, the best of each region first; angles in deg.
 
-    "like this" is how many others the family has. Columns that are alike for all of them are left out.
+    "like this" is the number of others in the family. Columns equal in all rows are left out.
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families
     place = {id(each): number for number, each in enumerate(result.candidates)}
@@ -182,7 +175,7 @@ def units(problem: Problem) -> dict[str, str]:
 
 
 def _decided_by(problem: Problem) -> list[Quantity]:
-    """The error where there is one, the transmission angle, whatever else is weighed, size and lengths."""
+    """Main quantities: the error if any, the transmission angle, other goals, size and lengths."""
     error = [] if problem.requirements.is_exact(problem.task) else ["error"]
     if problem.task.has_output.any():
         names = ("structural_error_max", "structural_error_rms")
@@ -196,7 +189,7 @@ def _decided_by(problem: Problem) -> list[Quantity]:
 def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
     rows, counted_in = best_rows(result, digits), units(result.problem)
     table = plain_table()
-    names = [name for name in rows[0] if name not in (*left_out, CAUTION)]  # that is told below the table
+    names = [name for name in rows[0] if name not in (*left_out, CAUTION)]  # which follows the table
     for name in names:
         title = name.replace(" ", "\n") if name in _TWO_LINES or digits < 4 or "size" in left_out else name
         unit = f"\n{counted_in[name]}" if name in counted_in else ""
@@ -208,7 +201,7 @@ def _table(result: Result, digits: int, left_out: Sequence[str]) -> Table:
 
 
 def heading(result: Result, verified: int) -> str:
-    """How many designs there are, how exact, and what the columns of `best_rows` mean."""
+    """The number of designs, their exactness, and the meaning of the columns of `best_rows`."""
     exact = result.problem.requirements.is_exact(result.problem.task)
     verdicts = [candidate.verdict for candidate in result.candidates]
     worst = max(each.error_max for each in verdicts)
@@ -221,15 +214,13 @@ def heading(result: Result, verified: int) -> str:
         least = min(each.structural_error_max for each in verdicts)
         error = f", structural error from {task.shown(least, result.problem.length_unit)}"
     classes = _classes(result)
-    kind = f"{classes.pop()} " if len(classes) == 1 else ""
+    kind = classes.pop() if len(classes) == 1 else ""
     families = len(result.families)
-    found = counted(verified, f"distinct verified {kind}design")
-    found += f" in {counted(families, 'family')}" if families < len(result) else ""
-    if verified > len(result):  # nothing is known here of the class of the others
-        listed = str(len(result))
-        listed += f" in {counted(families, 'family')}" if families < len(result) else ""
-        found = f"{verified} distinct designs verified, listed are the best {listed}"
-        found += f" ({kind.strip()})" if kind else ""
+    grouped = f" in {counted(families, 'family')}" if families < len(result) else ""
+    found = counted(verified, f"distinct verified {f'{kind} ' if kind else ''}design") + grouped
+    if verified > len(result):  # the class of the others is unknown
+        found = f"{verified} distinct designs verified, listed are the best {len(result)}{grouped}"
+        found += f" ({kind})" if kind else ""
     unit = result.problem.length_unit
     lengths = f" Lengths in {unit}." if unit else ""
     mixed = ", some of each kind" if len(result.problem.mechanism) > 1 else ""

@@ -1,7 +1,6 @@
 """Sweeps: one problem with some of its keys varied, a folder of problems, or a table of targets.
 
-`sweep` solves every combination, keeps what is finished, and gives one table; `load_study` reads a study
-file.
+`sweep` solves every combination, keeps finished ones, and gives one table; `load_study` reads a study file.
 """
 
 from grashof.sweep.result import Step, Sweep

@@ -1,4 +1,4 @@
-"""Finished tasks on disk: one JSON file each, whole or not there, and the record of the sweep they are of."""
+"""Finished tasks on disk, a JSON file each, and the record of the sweep that they belong to."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from grashof.output.folder import SWEEP_RECORD, own_files, replacing_own_files
-from grashof.output.run_files import write_json
+from grashof.output.folder import SWEEP_RECORD
 from grashof.problems import ProblemError
 from grashof.problems.files.on_disk import WRITING, versions, write_whole
+from grashof.sweep.files import write_record
 
-RECORD = SWEEP_RECORD
 TASKS = "tasks"
 _OURS = re.compile(r"[0-9a-f]{32}\.json")
-_SHAPE = {"status", "found", "note", "decides", "designs", "drawing", "seconds"}  # of a result
+_KINDS = {"complete": bool, "tasks": int, "versions": dict, "study": str}  # of a record
+_RESULT = {"status", "found", "note", "decides", "designs", "drawing", "seconds"}  # keys of a result
 
 
-def fingerprint(combinations: Sequence[Any]) -> str:
-    """Of a study: the cells and the task of each combination, in their order."""
-    content = json.dumps(combinations, default=str)
-    return hashlib.sha256(content.encode()).hexdigest()[:32]
+def fingerprint(content: Sequence[Any]) -> str:
+    """The same for the same content only: 32 hexadecimal digits."""
+    return hashlib.sha256(json.dumps(content, default=str).encode()).hexdigest()[:32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,27 +38,30 @@ class Checkpoints:
         ProblemError where the folder holds an unfinished sweep and `resume` is False, or one of another
         fingerprint `study` or of other versions and it is True.
         """
-        record = self._record()
+        record, files = self._record(), self._files()
         if not resume:
             if record is not None and not record["complete"]:
                 raise ProblemError(
-                    f"{self.folder}: holds an unfinished sweep, {len(self._files())} of {record['tasks']} "
-                    "tasks done; --resume goes on with it, or name another folder"
+                    f"{self.folder}: holds an unfinished sweep, {len(files)} of {record['tasks']} "
+                    "tasks done; --resume continues it, or name another folder"
                 )
             return {}
         if record is None:
-            if any(self._files()):
-                raise ProblemError(f"{self.folder}: has tasks but no {RECORD}; name another folder")
+            if files:
+                raise ProblemError(f"{self.folder}: has tasks but no {SWEEP_RECORD}; name another folder")
             return {}
         self._refuse_other(record, study)
-        return {path.stem: self._result(path) for path in self._files(keys)}
+        known = set(keys)
+        if (other := next((path for path in files if path.stem not in known), None)) is not None:
+            raise ProblemError(f"{other}: is of another study or version; remove it, or name another folder")
+        return {path.stem: _result(path) for path in files}
 
     def _refuse_other(self, record: dict[str, Any], study: str) -> None:
-        theirs, ours = record["versions"], versions()
+        theirs = record["versions"]
         changed = [
-            f"{name} {theirs.get(name)} (now {mine})"
-            for name, mine in ours.items()
-            if theirs.get(name) != mine
+            f"{name} {theirs.get(name)} (now {ours})"
+            for name, ours in versions().items()
+            if theirs.get(name) != ours
         ]
         if changed:
             raise ProblemError(
@@ -74,59 +76,43 @@ class Checkpoints:
 
     def _record(self) -> dict[str, Any] | None:
         """The record of the sweep in the folder; None where there is none."""
-        path = self.folder / RECORD
+        path = self.folder / SWEEP_RECORD
         if not path.is_file():
             return None
         record = _content(path)
-        kinds = {"complete": bool, "tasks": int, "versions": dict, "study": str}
-        if not isinstance(record, dict) or not all(isinstance(record.get(k), t) for k, t in kinds.items()):
+        if not isinstance(record, dict) or not all(isinstance(record.get(k), t) for k, t in _KINDS.items()):
             raise ProblemError(f"{path}: is not the record of a sweep; name another folder")
         return record
 
-    def _files(self, keys: Collection[str] | None = None) -> list[Path]:
-        """Files of finished tasks; with `keys` any of another task is refused."""
-        folder = self.folder / TASKS
-        found = sorted(folder.glob("*.json")) if folder.is_dir() else []
-        ours = [path for path in found if _OURS.fullmatch(path.name)]
-        if keys is not None:
-            known = set(keys)
-            for path in ours:
-                if path.stem not in known:
-                    raise ProblemError(
-                        f"{path}: is of another study or version; remove it, or name another folder"
-                    )
-        return ours
-
-    def _result(self, path: Path) -> dict[str, Any]:
-        content = _content(path)
-        ours = isinstance(content, dict) and content.get("task") == path.stem
-        result = content.get("result") if ours else None
-        if not isinstance(result, dict) or not result.keys() >= _SHAPE:
-            raise ProblemError(
-                f"{path}: is not a finished task of this sweep; remove it to have it solved again"
-            )
-        return result
+    def _files(self) -> list[Path]:
+        """Files of finished tasks, sorted."""
+        return sorted(path for path in (self.folder / TASKS).glob("*.json") if _OURS.fullmatch(path.name))
 
     def begin(self, record: dict[str, Any], kept: Collection[str]) -> None:
-        """Make the folder, remove tasks of the last sweep but those kept, write the record of one begun."""
+        """Make the folder, remove the tasks of the last sweep except those kept, and write a new record."""
         tasks = self.folder / TASKS
         tasks.mkdir(parents=True, exist_ok=True)
-        for path in tasks.iterdir():
-            finished = _OURS.fullmatch(path.name) and path.stem not in kept
-            if finished or path.name.startswith(WRITING):
-                path.unlink()
-        before = own_files(self.folder, RECORD)
-        with replacing_own_files(self.folder, keep=before, record=RECORD) as fresh:
-            write_json(fresh / RECORD, {**record, "files": sorted({*before, RECORD})})
+        old = [path for path in self._files() if path.stem not in kept]
+        for path in (*old, *tasks.glob(f"{WRITING}*")):
+            path.unlink()
+        write_record(self.folder, record)
 
     def write(self, key: str, result: dict[str, Any]) -> None:
-        """Put a finished task on disk: to another name, flushed, renamed."""
-        path = self.folder / TASKS / f"{key}.json"
-        write_whole(path, {"task": key, "result": result})
+        """Put a finished task on disk, complete or not at all."""
+        write_whole(self.folder / TASKS / f"{key}.json", {"task": key, "result": result})
+
+
+def _result(path: Path) -> dict[str, Any]:
+    content = _content(path)
+    ours = isinstance(content, dict) and content.get("task") == path.stem
+    result = content.get("result") if ours else None
+    if not isinstance(result, dict) or not result.keys() >= _RESULT:
+        raise ProblemError(f"{path}: is not a finished task of this sweep; remove it to have it solved again")
+    return result
 
 
 def _content(path: Path) -> Any:
-    """What a JSON file states; None where it cannot be read."""
+    """The content of a JSON file; None where it cannot be read."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):

@@ -20,7 +20,7 @@ from grashof.sweep.study import MOST_COMBINATIONS, Source, Study
 class Combination:
     """One problem of a sweep, with its cells of the table and a label that distinguishes it.
 
-    `text`, the problem file, is empty where it states no problem; `wrong` tells why, a line each.
+    `text`, the problem file, is empty where the problem is invalid; `wrong` has the reasons, a line each.
     """
 
     cells: Mapping[str, Any]
@@ -31,9 +31,9 @@ class Combination:
 
 
 def combinations(study: Study) -> tuple[Combination, ...]:
-    """Every combination of a study, the last of the varied keys in turn first.
+    """Every combination of a study; the last of the varied keys changes fastest.
 
-    ProblemError for what is wrong in all alike: then it is the study that is wrong, or the base problem.
+    ProblemError for errors common to all: they are those of the study, or of the base problem.
     """
     count = len(study.sources) * prod(len(study.vary[keys[0]]) for keys in study.axes)
     if count > MOST_COMBINATIONS:
@@ -60,17 +60,15 @@ def _varied(study: Study) -> Iterator[dict[str, Any]]:
 
 def _combined(study: Study, source: Source, values: Mapping[str, Any]) -> Combination:
     cells = {**source.cells, **values}
-    wrong: list[str] = [source.wrong] if source.wrong else []
-    text = ""
+    wrong = [source.wrong] if source.wrong else []
+    text, document = "", source.document
     if not wrong:
-        document = source.document
-        options = {("search", key): value for key, value in (study.search or {}).items()}
-        for parts, value in [*options.items(), *((key_parts(key), value) for key, value in values.items())]:
+        settings = [(("search", key), value) for key, value in (study.search or {}).items()]
+        for parts, value in [*settings, *((key_parts(key), value) for key, value in values.items())]:
             with noted(wrong):
                 document = assigned(document, parts, value)
         with noted(wrong):
             text = problem_toml(problem_from(document, source.name, source.folder))
-        text = "" if wrong else text
-    words = [source.label] if source.label else []
-    label = ", ".join([*words, *(f"{key} = {value}" for key, value in values.items())])
-    return Combination(cells, source.name, label or source.name, text, tuple(wrong))
+    words = [source.label, *(f"{key} = {value}" for key, value in values.items())]
+    label = ", ".join(filter(None, words)) or source.name
+    return Combination(cells, source.name, label, "" if wrong else text, tuple(wrong))

@@ -1,8 +1,8 @@
-"""What a sweep writes: the table as CSV and Parquet, the plot, the page, the record."""
+"""The files of a sweep: the table as CSV and Parquet, the plot, the page, the record."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ _ENGINES = ("pyarrow", "fastparquet")  # of pandas, in the order in which it tri
 
 
 def check_folder(folder: Path | None, study: Study) -> None:
-    """Refuse, before any work is done, what could not be written in the end."""
+    """Refuse (ProblemError), before any work, a folder or format that cannot be written."""
     if study.parquet and not any(map(find_spec, _ENGINES)):
         raise ProblemError(
             "parquet needs pyarrow: pip install 'grashof[parquet]' (in a clone '.[parquet]'), or leave it out"
@@ -51,13 +51,12 @@ def record_of(done: Sweep, mark: str, *, complete: bool) -> dict[str, Any]:
     }
 
 
-def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
-    """Write all files of a sweep, of one without any result the record alone; their names, sorted."""
+def write_sweep(folder: Path, done: Sweep, mark: str) -> None:
+    """Write all files of a sweep; of one without any result the record alone."""
     record = record_of(done, mark, complete=done.complete)
     if not done.results:
-        before = own_files(folder, SWEEP_RECORD)
-        with replacing_own_files(folder, keep=before, record=SWEEP_RECORD) as fresh:
-            return _write_record(fresh, record, before)
+        write_record(folder, record)
+        return
     from grashof.figures.files import save  # matplotlib takes half a second to import
     from grashof.sweep.page import sweep_page
     from grashof.sweep.plot import plot_sweep
@@ -69,10 +68,12 @@ def write_sweep(folder: Path, done: Sweep, mark: str) -> list[str]:
             frame.to_parquet(fresh / PARQUET, index=False)
         save(plot_sweep(done, frame), [fresh / PLOT])
         write_page(fresh / SWEEP_PAGE, sweep_page(done, frame, record))
-        return _write_record(fresh, record)
+        write_json(fresh / SWEEP_RECORD, {**record, "files": listed_files(fresh, SWEEP_RECORD)})
 
 
-def _write_record(folder: Path, record: Mapping[str, Any], others: Iterable[str] = ()) -> list[str]:
-    files = listed_files(folder, SWEEP_RECORD, others)
-    write_json(folder / SWEEP_RECORD, {**record, "files": files})
-    return files
+def write_record(folder: Path, record: Mapping[str, Any]) -> None:
+    """Write the record of a sweep, and keep its other files."""
+    before = own_files(folder, SWEEP_RECORD)
+    with replacing_own_files(folder, keep=before, record=SWEEP_RECORD) as fresh:
+        files = listed_files(fresh, SWEEP_RECORD, before)
+        write_json(fresh / SWEEP_RECORD, {**record, "files": files})

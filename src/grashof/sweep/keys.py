@@ -34,9 +34,9 @@ def key_parts(key: str, where: str = "key") -> Parts:
 def assigned(document: dict[str, Any], parts: Parts, value: Any) -> dict[str, Any]:
     """A parsed problem file with another value at a key; tables that are missing are made.
 
-    Of a place such as ``requirements.o2`` a number for x or y fixes it there. ``x``, ``y`` and ``angle``
-    are entries of poses and points stated as lists, too. ProblemError where a list on the way has no such
-    entry, or something on the way is not a table.
+    A number for x or y of a place such as ``requirements.o2`` becomes an interval of no width. ``x``, ``y``
+    and ``angle`` are entries of poses and points stated as lists, too. ProblemError where a list on the way
+    lacks the entry, or something on the way is not a table.
 
     >>> assigned({"requirements": {}}, key_parts("requirements.o2.x"), 2.5)
     {'requirements': {'o2': {'x': [2.5, 2.5]}}}

@@ -14,7 +14,7 @@ from grashof.page.designs import legend, scene_of
 from grashof.page.render import DRAWING, plain, render
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.sweep.plot import measures, number_axes
+from grashof.sweep.plot import decisions, measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
 from grashof.synth.designs.table import LISTED
@@ -23,7 +23,7 @@ _SCRIPTS = (*DRAWING, "table.js", "scatter.js", "cells.js", "saving.js", "sweep.
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
 _TEXTS = ("status", "grashof_class")
-# Beside what varies, what decides and these: lengths, then what is known of the design.
+# Columns beside those varied and the deciding one: lengths, then properties of the design.
 _SHOWN = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "error", "torque_peak", "size", "r1", "r2",
     "r3", "r4", "grashof_class",
@@ -55,7 +55,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
     meant, *_ = ONE_LOOP
     kinds = {each["linkage"].get("mechanism", meant) for each in drawn} or {meant}
-    listed = {column.key for column in columns}  # so far: an interrupted sweep may not have varied all
+    listed = {column.key for column in columns}  # an interrupted sweep may not have varied all yet
     axes = [key for key in number_axes(done) if key in listed]
     rows_of_places = {place: row for row, place in enumerate(places)}
     first = next((row for row, place in enumerate(places) if done.results[place]["found"]), 0)
@@ -109,11 +109,11 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
 
 
 def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
-    """What varies, what became of it, and what any of the designs has of the main quantities."""
+    """Columns that vary, the results, and those of the main quantities that some design has."""
     quantities = {quantity.column: quantity for quantity in LISTED}
-    units = {one["decides"]["length_unit"] for one in done.results.values() if one["decides"]}
+    units = {each["length_unit"] for each in decisions(done)}
     unit = units.pop() if len(units) == 1 else ""
-    decides = {one["decides"]["column"] for one in done.results.values() if one["decides"]}
+    decides = {each["column"] for each in decisions(done)}
     keys = dict.fromkeys([*decides, *_SHOWN] if len(decides) == 1 else _SHOWN)
     known = [key for key in keys if key in shown and shown[key].notna().any()]
     varied = [key for key in varied_columns(done.combinations) if len(set(shown[key])) > 1]
@@ -140,18 +140,15 @@ def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
 
 
 def _scenes(done: Sweep, places: Sequence[int]) -> tuple[list[dict[str, Any]], dict[int, int]]:
-    """What is drawn of the problems, each different scene once, and which one belongs to each place."""
-    scenes: dict[str, dict[str, Any]] = {}
+    """Scenes of the problems, each different one once, and the number of the scene by place."""
+    texts: dict[str, int] = {}
     of_place: dict[int, int] = {}
-    numbers: dict[str, int] = {}
     for place in places:
         one = done.combinations[place]
         if one.text:
-            scene = scene_of(problem_of(one.text, one.name, one.name))
-            key = json.dumps(scene)
-            scenes.setdefault(key, scene)
-            of_place[place] = numbers.setdefault(key, len(numbers))
-    return list(scenes.values()), of_place
+            text = json.dumps(scene_of(problem_of(one.text, one.name, one.name)))
+            of_place[place] = texts.setdefault(text, len(texts))
+    return list(map(json.loads, texts)), of_place
 
 
 def _text(value: Any) -> str:

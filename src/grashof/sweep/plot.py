@@ -28,8 +28,8 @@ _NAMED = 60  # points up to which each has the number of its combination
 def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
     """The trade-off of a sweep, whose table is `frame`.
 
-    Over one varied number what decides and the size of the best designs; over two the same as grids; else
-    one against the other, with the Pareto-optimal ones joined.
+    Over one varied number the deciding quantity and the size of the best designs; over two the same as grids;
+    else one against the other, with the Pareto-optimal ones joined.
     """
     with rc_context(STYLE):
         best = frame.drop_duplicates("combination")
@@ -38,19 +38,18 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
         if len(keys) == 1:
             figure = _over_one(best, keys[0], decides, size)
         elif len(keys) == 2:
-            figure = _over_two(best, keys, decides, size)
+            figure = Figure(figsize=(7.0, 8.0), layout="constrained")
+            for axes, measure in zip(figure.subplots(2, 1), (decides, size), strict=True):
+                _grid(axes, best, keys, measure)
         else:
-            stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
-            figure = _front(best, decides, size, joined=len({each["length_unit"] for each in stated}) == 1)
+            units = {each["length_unit"] for each in decisions(done)}
+            figure = _front(best, decides, size, joined=len(units) == 1)
         figure.suptitle(shortened(done.study.title or done.study.name), fontsize=10, parse_math=False)
     return figure
 
 
 def number_axes(done: Sweep) -> tuple[str, ...]:
-    """The one or two keys that the plot is over, all numbers; empty for other sweeps.
-
-    Of keys that vary in step it is the first that has numbers.
-    """
+    """The one or two varied numbers of the axes, of keys in step the first number; empty for other sweeps."""
     axes = [keys for keys in done.study.axes if len(done.study.vary[keys[0]]) > 1]
     numeric = [next((key for key in keys if _is_numeric(done.study.vary[key])), "") for keys in axes]
     return tuple(numeric) if all(numeric) and len(done.study.sources) == 1 and len(numeric) <= 2 else ()
@@ -61,24 +60,26 @@ def _is_numeric(values: Sequence[Any]) -> bool:
 
 
 def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
-    """What decides in all combinations, or else the transmission angle; and the size.
+    """The deciding quantity, where it is the same in all combinations, or the transmission angle; the size.
 
-    An error that is nothing but rounding decides nothing.
+    An error within rounding decides nothing.
     """
-    stated = [result["decides"] for result in done.results.values() if result["decides"] is not None]
-    size = {"column": "size", "label": _named("size", stated), "better": -1}
+    known = decisions(done)
+    units = {each["length_unit"] for each in known}
+    unit = units.pop() if len(units) == 1 else ""
+    size = {"column": "size", "label": with_unit("size", unit), "better": -1}
     met = (best["error"].fillna(0.0) <= _ROUNDING * best["size"].fillna(1.0)).all()
-    columns = {each["column"] for each in stated}
+    columns = {each["column"] for each in known}
     if len(columns) == 1 and not (met and columns == {"error"}):
-        same = all(each["label"] == stated[0]["label"] for each in stated)
-        return stated[0] if same else {**stated[0], "label": stated[0]["label"].partition(" (")[0]}, size
+        same = all(each["label"] == known[0]["label"] for each in known)
+        return known[0] if same else {**known[0], "label": known[0]["label"].partition(" (")[0]}, size
     quantity = QUANTITIES["transmission_min_task"]
     return {"column": quantity.column, "label": f"{quantity.words} (deg)", "better": 1}, size
 
 
-def _named(label: str, stated: Sequence[Mapping[str, Any]]) -> str:
-    units = {each["length_unit"] for each in stated}
-    return with_unit(label, units.pop() if len(units) == 1 else "")
+def decisions(done: Sweep) -> list[Mapping[str, Any]]:
+    """The deciding quantity of each combination with designs, see `grashof.sweep.task.decides_of`."""
+    return [result["decides"] for result in done.results.values() if result["decides"] is not None]
 
 
 def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:
@@ -104,17 +105,8 @@ def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Ma
     return figure
 
 
-def _over_two(
-    best: pd.DataFrame, keys: Sequence[str], decides: Mapping[str, Any], size: Mapping[str, Any]
-) -> Figure:
-    figure = Figure(figsize=(7.0, 8.0), layout="constrained")
-    for axes, measure in zip(figure.subplots(2, 1), (decides, size), strict=True):
-        _grid(axes, best, keys, measure)
-    return figure
-
-
 def _alike(values: FloatArray) -> bool:
-    """Whether values differ by no more than a search leaves open: an axis would show that alone."""
+    """Whether values differ by no more than a search leaves open, which would fill the axis."""
     known = values[np.isfinite(values)]
     return bool(known.size) and float(np.ptp(known)) <= _ROUNDING * float(np.abs(known).max())
 
@@ -137,11 +129,11 @@ def _grid(axes: Axes, best: pd.DataFrame, keys: Sequence[str], measure: Mapping[
     masked = np.ma.masked_invalid(values)
     shown = axes.imshow(masked, cmap=scale, vmin=low, vmax=high, origin="lower", aspect="auto")
     axes.grid(visible=False)
-    for index, name, numbers in ((0, "x", across), (1, "y", up)):
+    for axis, key, numbers in ((axes.xaxis, keys[0], across), (axes.yaxis, keys[1], up)):
         labels = [f"{number:g}" for number in numbers]
         every = max(1, -(-len(labels) // 12))
-        getattr(axes, f"set_{name}ticks")(range(0, len(labels), every), labels[::every])
-        getattr(axes, f"set_{name}label")(keys[index], parse_math=False)
+        axis.set_ticks(range(0, len(labels), every), labels[::every])
+        axis.set_label_text(key, parse_math=False)
     if values.size <= _WRITTEN:
         _write(axes, values, shown)
     if np.isfinite(values).any():

@@ -1,4 +1,4 @@
-"""What became of the combinations of a study."""
+"""The results of a sweep, combination by combination."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Step:
         Combinations.
     combination : Combination
     result : mapping
-        What `grashof.sweep.task.solve_task` gave.
+        Of `grashof.sweep.task.solve_task`.
     """
 
     done: int
@@ -41,14 +41,14 @@ class Step:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweep:
-    """What became of the combinations of a study.
+    """The results of the combinations of a study.
 
     Parameters
     ----------
     study : Study
     combinations : tuple of Combination
     results : mapping of int to mapping
-        What `grashof.sweep.task.solve_task` gave, by the place of the combination; those finished.
+        Of `grashof.sweep.task.solve_task`, by the place of the combination; those finished.
     seconds : float
         Of this run.
     """
@@ -78,7 +78,7 @@ class Sweep:
 
     @property
     def headline(self) -> str:
-        """How many combinations there are and what became of them."""
+        """Number of combinations, and how many have designs or are invalid."""
         done, total = len(self.results), len(self.combinations)
         text = counted(total, "combination") if self.complete else f"{done} of {total} combinations done"
         text += f", {self.with_designs} with designs"
@@ -87,12 +87,12 @@ class Sweep:
     @property
     def best_place(self) -> int | None:
         """Place of the combination with the best design; None where they are not decided by the same."""
-        told = [(number, one) for number, one in sorted(self.results.items()) if one["designs"]]
-        if len({(one["decides"]["column"], one["decides"]["label"]) for _, one in told}) != 1:
+        solved = {number: one for number, one in sorted(self.results.items()) if one["designs"]}
+        if len({(one["decides"]["column"], one["decides"]["label"]) for one in solved.values()}) != 1:
             return None
-        decides = told[0][1]["decides"]
-        values = {number: one["designs"][0].get(decides["column"]) for number, one in told}
-        # Six digits: differences that a search leaves open do not decide, the first of them does.
+        decides = next(iter(solved.values()))["decides"]
+        values = {number: one["designs"][0].get(decides["column"]) for number, one in solved.items()}
+        # Six digits: a search leaves smaller differences open, of which the first decides.
         known = {number: float(f"{float(x):.6g}") for number, x in values.items() if x is not None}
         return max(known, key=lambda each: decides["better"] * known[each], default=None)
 

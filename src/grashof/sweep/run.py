@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 from grashof.problems import ProblemError
 from grashof.problems.values.checks import whole_number
 from grashof.sweep.checkpoints import Checkpoints, fingerprint
-from grashof.sweep.combinations import Combination, combinations
+from grashof.sweep.combinations import combinations
 from grashof.sweep.files import check_folder, record_of, write_sweep
 from grashof.sweep.result import Step, Sweep
 from grashof.sweep.solving import solved
@@ -38,7 +37,7 @@ def sweep(
     Parameters
     ----------
     study : Study or path-like
-        A study file, or what `load_study` made of it.
+        A study file, or the study that `load_study` made of it.
     out : path-like, optional
         Folder in which each combination is kept as soon as it is finished, and all files at the end; without
         it nothing is written.
@@ -47,13 +46,13 @@ def sweep(
     workers : int
         Processes without an executor. The table does not depend on it.
     resume : bool
-        Go on with the sweep of the same study that `out` holds.
+        Continue the sweep of the same study that `out` holds.
     designs : int, optional
         In place of the study's own.
     progress : callable, optional
         Called with a `Step` for every combination that is solved.
     stop : callable, optional
-        Asked all the time; the sweep ends when it returns True, with what is finished.
+        Called all the time; the sweep ends when it returns True, with the tasks finished by then.
 
     Returns
     -------
@@ -62,68 +61,45 @@ def sweep(
     Raises
     ------
     ProblemError
-        The study or another argument is invalid, or `out` holds what must not be replaced.
+        The study or another argument is invalid, or `out` holds files that must not be replaced.
     SolverError
-        A worker process was lost; what is finished is in `out`.
+        A worker process was lost; the finished tasks are in `out`.
     """
-    stated = study if isinstance(study, Study) else load_study(study)
+    loaded = study if isinstance(study, Study) else load_study(study)
     if designs is not None:
-        stated = replace(stated, designs=whole_number(designs, 1, "designs"))
+        loaded = replace(loaded, designs=whole_number(designs, 1, "designs"))
     whole_number(workers, 1, "workers")
     if resume and out is None:
-        raise ProblemError("resume needs out, the folder of the sweep to go on with")
+        raise ProblemError("resume needs out, the folder of the sweep to continue")
     begun = perf_counter()
-    made = combinations(stated)
-    options = Options(stated.designs, stated.time_limit)
+    made = combinations(loaded)
+    options = Options(loaded.designs, loaded.time_limit)
     keys = tuple(task_key(one.name, one.text, options) if one.text else "" for one in made)
     mark = fingerprint([[dict(one.cells), key] for one, key in zip(made, keys, strict=True)])
-    kept, finished = _opened(stated, made, keys, mark, out, resume)
-    results = _of_combinations(made, keys, finished)
+    checkpoints = None if out is None else Checkpoints(Path(out))
+    check_folder(None if out is None else Path(out), loaded)
+    finished = {} if checkpoints is None else checkpoints.read(mark, keys, resume=resume)
+    results = {number: finished[key] for number, key in enumerate(keys) if key in finished}
+    results |= {number: invalid(one.wrong) for number, one in enumerate(made) if not one.text}
+    if checkpoints is not None:
+        checkpoints.begin(record_of(Sweep(loaded, made, results), mark, complete=False), finished)
     places: dict[str, list[int]] = {}
     for number, key in enumerate(keys):
         places.setdefault(key, []).append(number)
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     for number in places.pop("", []):
-        tell(Step(len(results), len(made), made[number], results[number]))
+        report(Step(len(results), len(made), made[number], results[number]))
     firsts = {key: made[numbers[0]] for key, numbers in places.items() if key not in finished}
     tasks = [(key, one.name, one.text) for key, one in firsts.items()]
     try:
         with closing(solved(tasks, asdict(options), stop, executor, workers)) as ended:
             for key, result in ended:
-                if kept is not None:
-                    kept.write(key, result)
+                if checkpoints is not None:
+                    checkpoints.write(key, result)
                 results |= dict.fromkeys(places[key], result)
-                tell(Step(len(results), len(made), made[places[key][0]], result))
+                report(Step(len(results), len(made), made[places[key][0]], result))
     finally:
-        done = Sweep(stated, made, results, perf_counter() - begun)
-        if kept is not None:
-            write_sweep(kept.folder, done, mark)
+        done = Sweep(loaded, made, results, perf_counter() - begun)
+        if checkpoints is not None:
+            write_sweep(checkpoints.folder, done, mark)
     return done
-
-
-def _opened(
-    study: Study,
-    made: Sequence[Combination],
-    keys: Sequence[str],
-    mark: str,
-    out: str | os.PathLike[str] | None,
-    resume: bool,
-) -> tuple[Checkpoints | None, dict[str, dict[str, Any]]]:
-    """The folder of the sweep with its record, and the finished tasks in it."""
-    check_folder(None if out is None else Path(out), study)
-    if out is None:
-        return None, {}
-    kept = Checkpoints(Path(out))
-    finished = kept.read(mark, keys, resume=resume)
-    begun = Sweep(study, tuple(made), _of_combinations(made, keys, finished))
-    kept.begin(record_of(begun, mark, complete=False), finished)
-    return kept, finished
-
-
-def _of_combinations(
-    made: Sequence[Combination], keys: Sequence[str], finished: dict[str, dict[str, Any]]
-) -> dict[int, dict[str, Any]]:
-    """Results by the place of the combination; of those that state no problem, too."""
-    known = {number: finished[key] for number, key in enumerate(keys) if key in finished}
-    wrong = {number: invalid(one.wrong) for number, one in enumerate(made) if not one.text}
-    return known | wrong

@@ -1,4 +1,4 @@
-"""Tasks solved here, in processes of their own, or by anybody's executor."""
+"""Tasks solved here, in other processes, or by an executor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from grashof.synth.theory.stopping import stop_request
 Task: TypeAlias = tuple[str, str, str]
 Finished: TypeAlias = tuple[str, dict[str, Any]]
 _AHEAD = 1000  # tasks that an executor has at once
-_ASKED = 0.2  # s: how often `stop` is asked while others solve
+_PERIOD = 0.2  # s, between calls of `stop` while others solve
 
 
 def solved(
@@ -26,11 +26,11 @@ def solved(
     executor: Executor | None = None,
     workers: int = 1,
 ) -> Generator[Finished, None, None]:
-    """Key and result of every task as it ends, in no order; those that were stopped are left out.
+    """Key and result of every task as it ends, in no order, except for stopped ones.
 
     No task begins once `stop` is True. The executor, which gets text and plain values only, is not shut down;
-    without one, `workers` processes of its own, or this one, solve. SolverError where a process was lost,
-    though nobody asked to stop. `options` are those of `grashof.sweep.task.Options`.
+    without one, `workers` new processes, or this one, solve. SolverError where a process was lost and `stop`
+    is False. `options` are those of `grashof.sweep.task.Options`.
     """
     if executor is not None:
         yield from _elsewhere(executor, solve_task, tasks, options, stop)
@@ -71,15 +71,15 @@ def _elsewhere(
         while not ended:
             for key, name, text in islice(waiting, _AHEAD - len(left)):
                 left[executor.submit(solve, name, text, dict(options))] = key
-            ended = not left or stop()  # what is finished by then is taken along
-            timeout = 0 if ended else _ASKED
+            ended = not left or stop()  # tasks finished by then count
+            timeout = 0 if ended else _PERIOD
             for future in wait(left, timeout=timeout, return_when=FIRST_COMPLETED).done:
                 key = left.pop(future)
                 if (result := future.result()) is not None:
                     yield key, result
     except BrokenExecutor as error:
-        if not stop():  # who ends a group of processes ends these, too
-            raise SolverError(f"a worker process was lost: {error}; --resume goes on") from error
+        if not stop():  # a signal to the group of processes ends these, too
+            raise SolverError(f"a worker process was lost: {error}; --resume continues it") from error
     finally:
         for future in left:
             future.cancel()

@@ -39,7 +39,7 @@ _SIGNIFICANT = 12  # digits of the values of a range: 0.1 + 0.2 is 0.3
 class Source:
     """A parsed problem file that the varied keys are set in; its tables of loads are relative to its folder.
 
-    `cells` and `label` distinguish it from other sources, empty for a single one; `wrong` is why it is none.
+    `cells` and `label` distinguish it from other sources, empty for a single one; `wrong` is its error.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """What a sweep is asked, as a study file states it.
+    """A study, as its file states it.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     Raises
     ------
     ProblemError
-        No such file, or it states no study: all errors, a line each, that begins with a file's name.
+        No such file, or an invalid study: all errors, a line each, which begins with a file's name.
     """
     file = Path(path)
     text = file_text(file, "a study file")
@@ -160,7 +160,7 @@ Keys = Annotated[list[str], listed("a list of keys of vary")]
 
 
 class StudyFile(Table):
-    """The whole study file.
+    """A study file.
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ class StudyFile(Table):
 
 
 def _ill_joined(together: Sequence[Sequence[str]], vary: Mapping[str, Any]) -> list[str]:
-    """What is wrong with the keys that vary in step."""
+    """Errors in the keys that vary in step."""
     wrong: list[str] = []
     seen: set[str] = set()
     for i, keys in enumerate(together):
@@ -232,7 +232,7 @@ def _ill_joined(together: Sequence[Sequence[str]], vary: Mapping[str, Any]) -> l
                 hint = f"; did you mean {meant}?" if meant else ""
                 wrong.append(f"together[{i}] has {key}, which is not in vary{hint}")
             if key in seen:
-                wrong.append(f"together[{i}] has {key} once more; a key may stand there once")
+                wrong.append(f"together[{i}] has {key} once more; a key may be there once")
             seen.add(key)
         if len(set(counts.values())) > 1:
             shown = ", ".join(f"{key} {count}" for key, count in counts.items())
@@ -241,7 +241,7 @@ def _ill_joined(together: Sequence[Sequence[str]], vary: Mapping[str, Any]) -> l
 
 
 def _flat(tables: Mapping[str, Any], above: str = "") -> list[tuple[str, Any]]:
-    """Varied keys with what is given for them; keys without quotes are tables in TOML."""
+    """Varied keys with their values or range; keys without quotes are tables in TOML."""
     found: list[tuple[str, Any]] = []
     for key, given in tables.items():
         name = f"{above}{key}"
@@ -261,14 +261,14 @@ def _values(given: Any, where: str = "vary") -> list[Any]:
     low, high = (finite_number(given[word], f"{where}.{word}") for word in _RANGE[:2])
     steps = whole_number(given["steps"], 2, f"{where}.steps", MOST_COMBINATIONS)
     evenly = [float(f"{low + (high - low) * k / (steps - 1):.{_SIGNIFICANT}g}") for k in range(steps)]
-    whole = all(isinstance(given[word], int) for word in _RANGE[:2])
-    if whole and all(value.is_integer() for value in evenly):
+    integers = all(isinstance(given[word], int) for word in _RANGE[:2])
+    if integers and all(value.is_integer() for value in evenly):
         return [int(value) for value in evenly]
     return evenly
 
 
 def _sources(document: Mapping[str, Any], folder: Path) -> tuple[Source, ...]:
-    """The problems that a study names; nothing where it names none in the right way."""
+    """The problems that a study names; none where it names them in the wrong way."""
     named, several, table = (document.get(key) for key in ("problem", "problems", "table"))
     if isinstance(several, str) and named is None:
         return _problems_in(folder / several)
@@ -278,13 +278,9 @@ def _sources(document: Mapping[str, Any], folder: Path) -> tuple[Source, ...]:
     if not isinstance(table, str):
         return (base,)
     rows = target_rows(folder / table, base.document)
-    return tuple(
-        Source(base.name, cells, laid, _row_label(cells), folder=base.folder) for cells, laid in rows
-    )
-
-
-def _row_label(cells: Mapping[str, Any]) -> str:
-    return f"row {cells['row']}{f' ({cells[NAME]})' if cells.get(NAME) else ''}"
+    labels = (f"row {cells['row']}{f' ({cells[NAME]})' if cells.get(NAME) else ''}" for cells, _ in rows)
+    made = zip(rows, labels, strict=True)
+    return tuple(Source(base.name, cells, laid, label, folder=base.folder) for (cells, laid), label in made)
 
 
 def _base(named: str, folder: Path) -> Source:

@@ -19,7 +19,7 @@ _NUMBERS = {quantity.column for quantity in LISTED} | {OBJECTIVE}
 
 
 def varied_columns(combinations: Sequence[Combination]) -> tuple[str, ...]:
-    """Columns of what distinguishes the combinations."""
+    """Columns that distinguish the combinations."""
     return tuple(dict.fromkeys(key for one in combinations for key in one.cells))
 
 
@@ -28,8 +28,8 @@ def sweep_frame(
 ) -> pd.DataFrame:
     """A row for each design of the combinations finished (`results` of `solve_task`), in their order.
 
-    It has ``combination`` (from 1), the varied keys, ``status``, ``designs`` (how many were found), the
-    columns of candidates.csv and ``note``, what stood in the way.
+    It has ``combination`` (from 1), the varied keys, ``status``, ``designs`` (number found), the columns of
+    candidates.csv and ``note``, the obstacle.
     """
     varied = varied_columns(combinations)
     rows = [
@@ -50,7 +50,7 @@ def sweep_frame(
 
 
 def _series(name: str, values: list[Any], varied: Sequence[str]) -> pd.Series[Any]:
-    """A column of one type, so that what is missing does not turn whole numbers into others."""
+    """A column of one type, so that missing values do not turn integers into floats."""
     if name in varied:
         return _of_any(values)
     if name in _NUMBERS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -61,7 +61,7 @@ def _check_header(path: Path, header: Sequence[str], kind: str) -> None:
     wanted = {_column(part, k) for k in range(1, _count(header) + 1) for part in _LAYOUTS[kind]}
     for name in header:
         if header.count(name) > 1:
-            wrong.append(f"{path}: column {name} stands there {header.count(name)} times")
+            wrong.append(f"{path}: has column {name} {header.count(name)} times")
         elif name not in wanted and name != NAME:
             if "." in name:
                 with noted(wrong):
@@ -114,18 +114,18 @@ def _cell(where: str, name: str, text: str) -> Any:
 def _laid_over(
     base: Mapping[str, Any], kind: str, header: Sequence[str], cells: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """The problem file with the targets of a row, and with its other keys."""
+    """The problem file with the targets and other keys of a row."""
     wrong: list[str] = []
     targets: list[Any] = []
     for number in range(1, _count(header) + 1):
         with noted(wrong):
             targets.append(_target(kind, cells, number))
     refuse(wrong)
-    stated = base.get(kind)
-    table = {**(stated if isinstance(stated, dict) else {}), _TARGETS[kind]: [t for t in targets if t]}
-    document = {**base, kind: table}
-    for name, value in _others(cells):
-        document = assigned(document, key_parts(name), value)
+    table = base[kind] if isinstance(base.get(kind), dict) else {}
+    document = {**base, kind: {**table, _TARGETS[kind]: [target for target in targets if target]}}
+    for name, value in cells.items():
+        if "." in name and value is not None:  # a key of the problem file
+            document = assigned(document, key_parts(name), value)
     return document
 
 
@@ -137,8 +137,3 @@ def _target(kind: str, cells: Mapping[str, Any], number: int) -> Any:
         if kind == "path" and known and part not in known:
             raise ProblemError(f"{_column(part, number)} is empty; it must be a finite number")
     return list(known.values()) if len(known) == len(given) else known
-
-
-def _others(cells: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Cells that are keys of the problem file."""
-    return ((name, value) for name, value in cells.items() if "." in name and value is not None)

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 from grashof.problems import Problem, ProblemError
 from grashof.problems.files.on_disk import versions
 from grashof.problems.files.problem_file import problem_of
+from grashof.wording.numbers import with_unit
 
 if TYPE_CHECKING:
     from grashof.synth import Result
 
 OK, NONE, CUT, INVALID = "ok", "no design", "time limit", "invalid"
-OBJECTIVE = "objective"  # column of what several goals amount to
+OBJECTIVE = "objective"  # column of the weighted sum of several goals
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,21 +43,21 @@ def task_key(name: str, text: str, options: Options) -> str:
 def solve_task(
     name: str, text: str, options: Mapping[str, Any], stop: Callable[[], bool] = lambda: False
 ) -> dict[str, Any] | None:
-    """Solve a problem file with `Options`; JSON, or None where `stop`, asked between batches, was True."""
+    """Solve a problem file with `Options`; plain values, or None if `stop`, called between batches, holds."""
     from grashof.synth import synthesize
 
     begun = perf_counter()
     try:
         result = synthesize(problem_of(text, name, name), time_limit=options["time_limit"], stop=stop)
-    except ProblemError as error:  # what only a search can tell
+    except ProblemError as error:  # found only by a search
         return invalid(str(error).splitlines())
     if not result.complete and stop():
         return None
-    return {**_told(result, options["designs"]), "seconds": round(perf_counter() - begun, 3)}
+    return {**_plain_result(result, options["designs"]), "seconds": round(perf_counter() - begun, 3)}
 
 
 def invalid(wrong: Sequence[str]) -> dict[str, Any]:
-    """What is told of a combination that states no problem."""
+    """The result of a combination that states no problem."""
     return {**_empty(INVALID), "note": "; ".join(wrong), "seconds": 0.0}
 
 
@@ -64,50 +65,47 @@ def _empty(status: str) -> dict[str, Any]:
     return {"status": status, "found": 0, "note": "", "decides": None, "designs": [], "drawing": None}
 
 
-def _told(result: Result, most: int) -> dict[str, Any]:
-    """What the table, the plot and the page need of a result."""
+def _plain_result(result: Result, most: int) -> dict[str, Any]:
+    """The part of a result that the table, the plot and the page need."""
     from grashof.page.designs import designs_of
     from grashof.synth.designs.ranking import pareto_optimal
     from grashof.synth.designs.table import rows_of
 
     status = CUT if not result.complete else OK if result.candidates else NONE
-    told = {**_empty(status), "found": len(result), "note": result.note}
+    found = {**_empty(status), "found": len(result), "note": result.note}
     listed = result.candidates[:most]
     if not listed:
-        return told
+        return found
     problem = result.problem
     decides = decides_of(problem)
     fronts = pareto_optimal(problem, result.candidates)
     known = [
-        {**row, "pareto": bool(front)}
-        for row, front in zip(rows_of(problem, listed), fronts[: len(listed)], strict=True)
+        {**row, "pareto": bool(front)} for row, front in zip(rows_of(problem, listed), fronts, strict=False)
     ]
-    rows = [{key: _plain(value) for key, value in row.items()} for row in known]
-    if decides["column"] == OBJECTIVE:
-        for row, candidate in zip(rows, listed, strict=True):
-            row[OBJECTIVE] = _plain(candidate.objective(problem))
     drawing = designs_of(problem, listed[:1], known[:1])[0]
-    return {**told, "decides": decides, "designs": rows, "drawing": {key: drawing[key] for key in _DRAWN}}
+    if decides["column"] == OBJECTIVE:
+        known = [{**row, OBJECTIVE: one.objective(problem)} for row, one in zip(known, listed, strict=True)]
+    rows = [{key: _plain(value) for key, value in row.items()} for row in known]
+    return {**found, "decides": decides, "designs": rows, "drawing": {key: drawing[key] for key in _DRAWN}}
 
 
 _DRAWN = ("id", "linkage", "low", "high", "turns", "direction", "theta2", "assemblies", "task")
 
 
 def decides_of(problem: Problem) -> dict[str, Any]:
-    """What decides which design is best: its column, what it is called, and which way is better."""
+    """The quantity by which the best design is chosen: its column, its label, and which way is better."""
     from grashof.problems.values.requirements.requirements import QUANTITIES
 
     goals, lengths = problem.goals, {"length_unit": problem.length_unit}
     if problem.by_objective and len(goals) > 1:
         return {"column": OBJECTIVE, "label": "objective", "better": 1, **lengths}
     quantity = goals[0][0] if problem.by_objective else QUANTITIES["error"]
-    unit = quantity.unit.of(problem.length_unit)
-    label = f"{quantity.words} ({unit})" if unit else quantity.words
+    label = with_unit(quantity.words, quantity.unit.of(problem.length_unit))
     return {"column": quantity.column, "label": label, "better": quantity.better, **lengths}
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON knows it: null where there is none, words for what has no limit."""
+    """A value for JSON: null for NaN, words for infinity."""
     if hasattr(value, "item"):
         value = value.item()
     if isinstance(value, float) and not isfinite(value):

@@ -1,11 +1,15 @@
-"""What `grashof export` writes: the parts, models for other programs, and an Excel workbook."""
+"""The files of `grashof export`: the parts, models for other programs, and an Excel workbook."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from grashof.models import Model, freecad, geogebra, linkage2, mjcf, solidworks
 from grashof.problems import LinkageSpec, ProblemError, load_linkage_spec
@@ -14,19 +18,20 @@ from grashof.problems.values.checks import finite_number, positive_number
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import wrong_value
 from grashof.problems.values.specs.linkage_spec import ListedDesign
-from grashof.workshop.dxf import dxf
-from grashof.workshop.files import write_whole
+from grashof.workshop.formats import dxf, svg
 from grashof.workshop.plan import Plan, plan_parts
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.sheet import sheet
 from grashof.workshop.solids import step, stl
-from grashof.workshop.svg import svg
 from grashof.workshop.workbook import listed_candidates, workbook
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A file that can be written of the parts under a heading, or of the model; `xlsx` is none of them."""
+    """A kind of file, made from the parts and a heading, or from the model; `xlsx` is not among them."""
 
     ending: str
     parts: Callable[[Plan, str], str | bytes] | None = None
@@ -63,7 +68,7 @@ class Making:
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """What came of an export: the plan, if one is drawn, and why other formats are refused, a line each."""
+    """The result of an export: the plan, if one was made, the files, and a line for each refused format."""
 
     plan: Plan | None
     written: tuple[Path, ...]
@@ -71,10 +76,10 @@ class Exported:
 
 
 def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Exported:
-    """Write files by `FORMATS` or xlsx; a format that cannot represent the linkage costs the others nothing.
+    """Write files of `FORMATS` or xlsx; one that cannot represent the linkage does not affect the others.
 
     `linkage` is as for `load_linkage`; for a workbook alone also ``DIR/candidates.json#1,3,5``. ProblemError
-    for bad input, named, or where no format can represent it; OSError for a full disk or a lost folder.
+    for bad input, or where no format can represent it; OSError for a full disk or a lost folder.
     """
     if not files:
         options = ", ".join(f"--{name}" for name in (*FORMATS, WORKBOOK))
@@ -101,12 +106,8 @@ def export_files(linkage: str, making: Making, files: dict[str, Path]) -> Export
     refused = list(dict.fromkeys(refused))
     if not contents:
         raise ProblemError("\n".join(refused))
-    write_whole({files[kind]: _bytes(content) for kind, content in contents.items()})
+    _write_whole({files[kind]: content for kind, content in contents.items()})
     return Exported(made, tuple(files[kind] for kind in contents), tuple(refused))
-
-
-def _bytes(content: str | bytes) -> bytes:
-    return content.encode("utf-8") if isinstance(content, str) else content
 
 
 def plan_lines(plan: Plan) -> list[str]:
@@ -132,7 +133,7 @@ def _refuse_path(kind: str, path: Path) -> None:
 
 
 def _chosen(linkage: str) -> tuple[list[LinkageSpec | ListedDesign], Path | None]:
-    """What LINKAGE names, and the list that it is from."""
+    """The linkage or designs that LINKAGE names, and the list that contains them."""
     file, mark, names = linkage.rpartition("#")
     if not (mark and file.endswith(".json")):
         return [load_linkage_spec(linkage)], None
@@ -176,9 +177,9 @@ def _millimetres(spec: LinkageSpec, making: Making) -> float:
 
 
 def _ratio(scale: str) -> float:
-    part, _, whole = scale.partition(":")
+    numerator, _, denominator = scale.partition(":")
     try:
-        return positive_number(float(part), "scale") / positive_number(float(whole or 1), "scale")
+        return positive_number(float(numerator), "scale") / positive_number(float(denominator or 1), "scale")
     except ValueError:
         raise wrong_value("scale", scale, "a number above 0 or a ratio such as 1:20") from None
 
@@ -186,3 +187,63 @@ def _ratio(scale: str) -> float:
 def _heading(one: LinkageSpec | ListedDesign, making: Making) -> str:
     spec = one.spec if isinstance(one, ListedDesign) else one
     return f"{spec.title or spec.name}, scale {making.scale}"
+
+
+def write_dxf(path: str | os.PathLike[str], plan: Plan, title: str = "") -> None:
+    """Write the parts, the assembly and the parts list as DXF, in mm.
+
+    Parameters
+    ----------
+    path : str or path-like
+    plan : Plan
+    title : str
+        Above the parts list.
+
+    Raises
+    ------
+    ProblemError
+        ezdxf is not installed.
+    OSError
+        The file cannot be written; an older one stays.
+    """
+    _write_whole({Path(path): dxf(sheet(plan, title))})
+
+
+def write_svg(path: str | os.PathLike[str], plan: Plan, title: str = "") -> None:
+    """Write the same drawing as SVG, in mm; parameters as for `write_dxf`."""
+    _write_whole({Path(path): svg(sheet(plan, title))})
+
+
+def write_xlsx(
+    path: str | os.PathLike[str],
+    chosen: Sequence[LinkageSpec | ListedDesign],
+    candidates: pd.DataFrame | None = None,
+) -> None:
+    """Write an Excel workbook; parameters as for `workbook`.
+
+    Raises
+    ------
+    ProblemError
+        openpyxl is not installed.
+    OSError
+        The file cannot be written; an older one stays.
+    """
+    _write_whole({Path(path): workbook(chosen, candidates)})
+
+
+def _write_whole(contents: Mapping[Path, str | bytes]) -> None:
+    """Write files beside their places, and move them there when all are complete.
+
+    OSError names the file whose disk is full or folder is lost; every file is then as it was before.
+    """
+    with ExitStack() as folders:
+        fresh = {}
+        for path, content in contents.items():
+            try:
+                beside = tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-")
+                fresh[path] = Path(folders.enter_context(beside)) / path.name
+                fresh[path].write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+            except OSError as error:
+                raise OSError(error.errno, error.strerror, str(path)) from None
+        for path, file in fresh.items():
+            file.replace(path)

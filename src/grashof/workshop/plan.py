@@ -11,12 +11,12 @@ from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import positive_number
-from grashof.workshop.link_plates import base_plate, link_plates
+from grashof.workshop.link_plates import Slot, base_angle, base_plate, link_plates, slots_of
 from grashof.workshop.plates import Plate, PlateSizes, spacer
-from grashof.workshop.slots import Slot, base_angle, slots_of
 from grashof.workshop.stacking import GROUND, Pin, Stack, pinned, placed, poses, ranges_of_use, stack, sweep
 
 _MOST_MET = 8  # pairs that notes name
+_RETURN_CRANK = "the driver is in two plates: both are fixed to pin {}, which turns with them"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """All that is made for a linkage.
+    """All parts of a linkage.
 
     Parameters
     ----------
@@ -80,9 +80,8 @@ class Plan:
             )
             rows.append((part.plate.name, str(len(part.layers)), layers, thick, distances or "-"))
         for pin in self.pins:
-            name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"
             about = f"diameter {hole:g}, length {self.pin_length(pin):g}"
-            rows.append((name, "1", f"{pin.low} to {pin.high}", "-", about))
+            rows.append((pin.title, "1", f"{pin.low} to {pin.high}", "-", about))
         return rows
 
 
@@ -102,9 +101,9 @@ def plan_parts(
         One linkage.
     sizes : PlateSizes, optional
     mm_per_unit : float
-        Millimetres of the plates for one unit of the linkage; a scale goes in here, too.
+        Millimetres of the plates for one unit of the linkage, times the scale.
     within : pair of float, rad, optional
-        Range of driver angles used; by default the whole turn, or all between dead positions.
+        Range of driver angles used; by default a full turn, or all between dead positions.
     theta2 : float, rad, optional
         Driver angle of the assembly; by default a quarter into the motion. Of a linkage with two ranges
         between dead positions, only that of this angle is used.
@@ -126,9 +125,11 @@ def plan_parts(
     [('base', (0,)), ('driver', (1,)), ('coupler', (2,)), ('output', (1,))]
     """
     sizes = sizes or PlateSizes()
-    scaled = _in_millimetres(linkage, mm_per_unit)
+    if linkage.shape:
+        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
+    scaled = linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
     if not scaled.mechanism.slides:
-        link_plates(scaled, sizes, ())  # what is too short is refused before what cannot be assembled
+        link_plates(scaled, sizes, ())  # refuse short links before open linkages
     ranges = ranges_of_use(scaled, within, theta2)
     slots = slots_of(scaled, ranges, sizes)
     plates, without_hole = link_plates(scaled, sizes, slots)
@@ -148,17 +149,10 @@ def plan_parts(
             "pins end flush with their outer plates; their lengths leave nothing for heads or rings",
             *(_slot_note(scaled, slot) for slot in slots),
             *_two_bases(order, scaled),
-            *_return_crank(order),
+            *([_RETURN_CRANK.format(order.crank.pin)] if order.crank is not None else []),
             *without_hole,
         ),
     )
-
-
-def _in_millimetres(linkage: Linkage, mm_per_unit: float) -> Linkage:
-    """The linkage in mm, with O2 at the origin."""
-    if linkage.shape:
-        raise ProblemError(f"linkage is a batch of shape {linkage.shape}; it must be a single one")
-    return linkage.scaled(positive_number(mm_per_unit, "mm_per_unit"), linkage.o2)
 
 
 def _parts(
@@ -194,7 +188,7 @@ def _joints(linkage: Linkage, theta2: float) -> dict[str, tuple[float, float]]:
 def _use(
     linkage: Linkage, ranges: tuple[tuple[float, float], ...], within: tuple[float, float] | None
 ) -> str:
-    """Over which motion nothing meets."""
+    """The motion over which nothing meets."""
     if within is None and full_rotation(linkage):
         return "free over the whole turn of the driver"
     spans = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))
@@ -219,9 +213,3 @@ def _two_bases(order: Stack, linkage: Linkage) -> list[str]:
         *(f"- {pair}" for pair in order.met[:_MOST_MET]),
         *([f"- and {more} more pairs"] if more > 0 else []),
     ]
-
-
-def _return_crank(order: Stack) -> list[str]:
-    if order.crank is None:
-        return []
-    return [f"the driver is in two plates: both are fixed to pin {order.crank.pin}, which turns with them"]

@@ -19,7 +19,7 @@ _STRAIGHT = 1e-9  # share of a plate's length by which holes in line may be off 
 
 @dataclass(frozen=True, slots=True)
 class PlateSizes:
-    """What the plates of a linkage are cut to.
+    """Dimensions of the plates of a linkage.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def plate_of(
 
 
 def _hull(points: FloatArray) -> FloatArray:
-    """Corners of what surrounds points, counter-clockwise, shape (1, 2 or more, 2)."""
+    """Corners of the convex hull of points, counter-clockwise, shape (1, 2 or more, 2)."""
     hull = shapely.convex_hull(shapely.multipoints(points))
     corners: FloatArray = shapely.get_coordinates(shapely.orient_polygons(hull))
     return corners[:-1] if shapely.get_dimensions(hull) == 2 else corners

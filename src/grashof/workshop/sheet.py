@@ -67,7 +67,7 @@ class Sheet:
 
 
 def sheet(plan: Plan, title: str = "") -> Sheet:
-    """A plan as parts in a column, the assembly at their right, the list below under the printable title."""
+    """A plan as parts in a column, the assembly to their right, the list below under the printable title."""
     title = printable(title)[:_TITLE_LENGTH]
     gap = plan.sizes.width / 2
     cut, size = _column(plan, gap)
@@ -79,19 +79,17 @@ def sheet(plan: Plan, title: str = "") -> Sheet:
     up = notes_size[1] + 2 * gap
     shapes = [*_moved(cut, 0, up), *_moved(assembly, beside, up), *_moved(notes, 0, 0)]
     levels = tuple(f"ASSEMBLY_{layer}" for layer in range(plan.layers))
-    whole = (max(width, notes_size[0]), up + height)
-    margin = gap
     return Sheet(
         title,
-        tuple(_moved(shapes, margin, margin)),
+        tuple(_moved(shapes, gap, gap)),
         (CUT, ENGRAVE, *levels, PINS, NOTES),
-        float(whole[0] + 2 * margin),
-        float(whole[1] + 2 * margin),
+        float(max(width, notes_size[0]) + 2 * gap),
+        float(up + height + 2 * gap),
     )
 
 
 def printable(text: str) -> str:
-    r"""A text in one line, without what no file can hold or nobody can see.
+    r"""A text in one line, without unprintable characters.
 
     >>> printable("Two\n lines\x07")
     'Two lines'
@@ -100,7 +98,7 @@ def printable(text: str) -> str:
 
 
 def _column(plan: Plan, gap: float) -> tuple[list[Shape], tuple[float, float]]:
-    """Every copy of every part, from the bottom up; what is cut and engraved, and the size of it all."""
+    """Every copy of every part, from the bottom up, to cut and engrave; and the size of the column."""
     shapes: list[Shape] = []
     widest, top = 0.0, 0.0
     for part in reversed(plan.parts):
@@ -124,7 +122,7 @@ def _part(part: Part, thickness: float) -> list[Shape]:
     if len(plate.corners) > 1:
         middle, angle, room = _room(plate)
         height = min(plate.width / 5, room / len(words))
-        if height >= plate.width / 20:  # smaller ones nobody reads
+        if height >= plate.width / 20:  # smaller text is illegible
             x, y = middle.tolist()
             shapes.append(Text(ENGRAVE, x, y, height, words, angle, centred=True))
     return shapes
@@ -168,7 +166,7 @@ def _room(plate: Plate) -> tuple[FloatArray, float, float]:
 
 
 def _assembly(plan: Plan) -> tuple[list[Shape], tuple[float, float]]:
-    """The parts where they belong, each on the drawing layer of its level, and the size of it all."""
+    """The parts in place, each on the drawing layer of its level, and the size of the assembly."""
     shapes: list[Shape] = []
     corners = []
     for part in plan.parts:

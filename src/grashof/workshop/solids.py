@@ -49,8 +49,7 @@ def assembly(plan: Plan) -> Any:
     for pin in plan.pins:
         cylinder = cad.Solid.make_cylinder(plan.sizes.hole / 2, plan.pin_length(pin))
         x, y = _place(plan, pin)
-        name = pin.name if pin.name.startswith("post") else f"pin {pin.name}"
-        children.append(_named(cylinder.moved(cad.Location((x, y, pin.low * thick))), name))
+        children.append(_named(cylinder.moved(cad.Location((x, y, pin.low * thick))), pin.title))
     return cad.Compound(label="linkage", children=children)
 
 
@@ -79,7 +78,7 @@ def _wire(vertices: FloatArray) -> Any:
 
 
 def _place(plan: Plan, pin: Pin) -> tuple[float, float]:
-    """Where a pin stands, mm: in its joint, or as a post in its hole of the base."""
+    """Place of a pin, mm: in its joint, or as a post in its hole of the base."""
     if pin.name in plan.joints:
         return plan.joints[pin.name]
     base = plan.parts[0]
@@ -94,7 +93,7 @@ def _named(solid: Any, name: str) -> Any:
 
 
 def _written(write: Callable[[str], object], ending: str) -> bytes:
-    """What the library writes, which wants a file of its own."""
+    """Output of the library, which requires a file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"linkage{ending}"
         write(str(path))

@@ -1,9 +1,8 @@
-"""The layer on which each plate lies, so that no plate or pin hits another one while the linkage moves.
+"""The layer of each plate, so that no plate or pin hits another one while the linkage moves.
 
 The base is layer 0. A pin joins two plates and passes all layers between, on each of them inside a spacer as
-wide as a link's end: there it is in the way of every other part. Links that share a pin lie on different
-layers, which leaves eight orders of a four-bar on one base. Empty layers would make pins longer and free
-nothing.
+wide as a link's end, which blocks every other part. Links that share a pin lie on different layers, which
+leaves eight orders of a four-bar on one base. Empty layers would only make pins longer.
 """
 
 from __future__ import annotations
@@ -24,18 +23,17 @@ from grashof.analysis.mechanism.position import places
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.workshop.plates import Plate, PlateSizes
-from grashof.workshop.return_crank import ReturnCrank, return_cranks
-from grashof.workshop.slots import base_angle
+from grashof.workshop.link_plates import base_angle
+from grashof.workshop.plates import Plate, PlateSizes, bar, plate_of
 
 GeometryArray: TypeAlias = npt.NDArray[np.object_]
 _SAMPLES = 721
-GROUND = "ground"
+GROUND, DRIVER, RETURN_CRANK = "ground", "driver", "return crank"
 _SHORTEST_STEP = 1e-9  # rad; a step across the jump at a change point is never short enough
 
 
 def pinned(kind: Mechanism) -> dict[str, tuple[str, ...]]:
-    """What each pin joins; what is no plate that moves is the base. The pin of a slide runs in a slot.
+    """The plates on each pin, with the base for links without one; the pin of a slide runs in a slot.
 
     >>> from grashof.problems import SliderCrank
     >>> pinned(SliderCrank.mechanism)
@@ -58,17 +56,43 @@ class Pin:
     held: tuple[int, ...] = field(default=(), repr=False)
 
     @property
+    def title(self) -> str:
+        """Its name in the parts list: of a joint after "pin"."""
+        return self.name if self.name.startswith("post") else f"pin {self.name}"
+
+    @property
     def passed(self) -> tuple[int, ...]:
         """Layers between, where it runs in spacers."""
         return tuple(layer for layer in range(self.low + 1, self.high) if layer not in self.held)
+
+
+class ReturnCrank(NamedTuple):
+    """A driver in two plates on `pin`, of which the return crank, `turned` (rad), holds `far`."""
+
+    pin: str
+    far: str
+    turned: float
+    plates: dict[str, Plate]
+
+    def pinned(self, joints: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+        """The plates on each pin then."""
+        found = dict(joints)
+        found[self.pin] = (*joints[self.pin], RETURN_CRANK)
+        found[self.far] = tuple(RETURN_CRANK if part == DRIVER else part for part in joints[self.far])
+        return found
+
+    def placed(self, places: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        """The places of links and pins, with that of the return crank."""
+        angle = places[DRIVER][:, 2] + self.turned
+        return {**places, RETURN_CRANK: np.column_stack([places[self.pin][:, :2], angle])}
 
 
 @dataclass(frozen=True, slots=True)
 class Stack:
     """Layers of the links that are plates, the base on 0, the pins of the joints and between two bases.
 
-    `posts` are where the second base is held, mm along the base from O2; `met` tells, for each order on one
-    base that was tried before, which two parts would come too close, and where; `crank` divides the driver.
+    `posts` are the places of the posts of a second base, mm along the base from O2; `met` names two parts too
+    close, and where, for each order tried before on one base; `crank` divides the driver.
     """
 
     layers: Mapping[str, int]
@@ -94,24 +118,24 @@ class Motion:
 def ranges_of_use(
     linkage: Linkage, within: tuple[float, float] | None = None, at: float | None = None
 ) -> tuple[tuple[float, float], ...]:
-    """Driver angles, rad, of the plates' motion: `within`, or the whole turn, or all between dead positions.
+    """Driver angles, rad, of the plates' motion: `within`, or a full turn, or all between dead positions.
 
     Of two ranges between dead positions only the one with the angle `at` counts, if it is given. ProblemError
     where the linkage cannot be assembled on `within`, or at all.
     """
     ends = driver_ranges(linkage)
-    whole = tuple((float(low), float(high)) for low, high in ends if np.isfinite(low))
-    if not whole:
+    every = tuple((float(low), float(high)) for low, high in ends if np.isfinite(low))
+    if not every:
         raise ProblemError("the linkage cannot be assembled at any driver angle; change its lengths")
     if within is None:
         number = -1 if at is None else int(range_index(linkage, at)[0])
-        return whole if number < 0 else (whole[number],)
+        return every if number < 0 else (every[number],)
     low, high = within
     index, inside = range_index(linkage, low)
     room, wanted = 2 * np.pi, "at most a turn"
     if not full_rotation(linkage):
-        room = whole[int(index)][1] - float(inside) if index >= 0 else 0.0
-        wanted = "within " + " or ".join(f"{a:.6g} to {b:.6g} deg" for a, b in np.degrees(whole))
+        room = every[int(index)][1] - float(inside) if index >= 0 else 0.0
+        wanted = "within " + " or ".join(f"{a:.6g} to {b:.6g} deg" for a, b in np.degrees(every))
     if not 0 < high - low <= room + 1e-9:
         given = f"{np.degrees(low):.6g} to {np.degrees(high):.6g}"
         raise ProblemError(f"theta2 is {given} deg; it must be {wanted}, the lesser first")
@@ -119,8 +143,8 @@ def ranges_of_use(
 
 
 def sweep(linkage: Linkage, ranges: tuple[tuple[float, float], ...], step: float) -> Motion:
-    """One linkage, in mm, at so many angles of `ranges`, rad, that no joint moves farther than `step`, mm."""
-    # Closer towards the ends, where at a dead position the links run away from their driver.
+    """One linkage, mm, at angles of `ranges`, rad, between which no joint moves farther than `step`, mm."""
+    # Denser towards the ends, where at a dead position links move fast relative to their driver.
     share = (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
     theta2 = np.concatenate([_fine(linkage, low + (high - low) * share, step) for low, high in ranges])
     return Motion(theta2, poses(linkage, theta2))
@@ -150,7 +174,7 @@ def placed(points: FloatArray, place: FloatArray) -> FloatArray:
 def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: PlateSizes) -> Stack:
     """The least number of layers on which nothing meets, lengths in mm; ProblemError if no order is free.
 
-    The motion has steps of at most the clearance, so that nothing passes unseen between two of them. Where no
+    The motion has steps of at most the clearance, so that no collision falls between two of them. Where no
     order on one base is free, a second base, joined by posts outside the reach of the links, carries some of
     the ground pivots from the other side; where that does not help, the driver has a return crank.
     """
@@ -169,8 +193,21 @@ def stack(plates: Mapping[str, Plate], linkage: Linkage, motion: Motion, sizes: 
     )
 
 
+def return_cranks(plates: Mapping[str, Plate], sizes: PlateSizes) -> Iterator[ReturnCrank]:
+    """The two ways to divide a driver that has two crank pins, A and C; none of others."""
+    driver = plates[DRIVER]
+    if not {"A", "C"} <= {*driver.joints}:
+        return
+    for pin, far in (("A", "C"), ("C", "A")):
+        holes = dict(zip(driver.joints, driver.holes, strict=True))
+        x, y = holes.pop(far) - holes[pin]
+        crank = bar(RETURN_CRANK, (pin, far), (0.0, float(np.hypot(x, y))), sizes)
+        divided = {DRIVER: plate_of(DRIVER, holes, sizes), RETURN_CRANK: crank}
+        yield ReturnCrank(pin, far, float(np.arctan2(y, x)), {**plates, **divided})
+
+
 class _Bench:
-    """Parts whose orders are tried: plates, what each pin joins, and their motion."""
+    """Parts whose orders are tried: plates, the plates on each pin, and their motion."""
 
     def __init__(
         self,
@@ -183,7 +220,7 @@ class _Bench:
         self.cores, self.gap = cache(self._cores), cache(self._gap)
 
     def free(self, linkage: Linkage, met: dict[str, None]) -> Stack | None:
-        """The first order in which nothing meets, on one base or on two; notes down what meets on one."""
+        """The first order in which nothing meets, on one base or two; `met` gets pairs that meet on one."""
         layings = _layings(tuple(self.plates), self.joints)
         for order in _orders(layings, self.joints, [()]):
             if (pair := self._meeting(order)) is None:
@@ -210,7 +247,7 @@ class _Bench:
         return float(gaps[worst]), float(self.motion.theta2[worst])
 
     def _cores(self, name: str) -> GeometryArray:
-        """What a part surrounds by half a width, at every angle of the sweep: geometries, shape (n,)."""
+        """The core of a part, half a width inside its outline, at every angle: geometries, shape (n,)."""
         corners = self.plates[name].corners if name in self.plates else np.zeros((1, 2))
         at = placed(corners, self.motion.places[name])
         if len(corners) == 1:
@@ -286,12 +323,8 @@ def _posts(
     """Positions along the base from O2 that no link reaches."""
     angle = base_angle(linkage)
     along = np.array([np.cos(angle), np.sin(angle)])
-    reached = np.concatenate(
-        [
-            ((placed(plate.corners, motion.places[name]) - linkage.o2) @ along).ravel()
-            for name, plate in plates.items()
-        ]
-    )
+    corners = (placed(plate.corners, motion.places[name]) for name, plate in plates.items())
+    reached = np.concatenate([((at - linkage.o2) @ along).ravel() for at in corners])
     apart = sizes.width + 2 * sizes.gap
     return float(reached.min() - apart), float(reached.max() + apart)
 

@@ -84,7 +84,7 @@ def listed_candidates(path: Path, designs: Sequence[ListedDesign]) -> pd.DataFra
 
 
 def _value(text: str) -> bool | int | float | str | None:
-    """Value of a cell of a CSV file; pandas would lose the last digit of some numbers."""
+    """Value of a cell of a CSV file; pandas would lose the last digit of some."""
     if text in ("", "True", "False"):
         return None if not text else text == "True"
     for kind in (int, float):
@@ -102,12 +102,10 @@ def _list_sheet(page: Worksheet, frame: pd.DataFrame, unit: str) -> None:
     for column, name in enumerate(frame.columns, start=1):
         values = frame[name].tolist()
         shown = _number_format(values)
-        _bold(_put(page, 1, column, name))
+        _put(page, 1, column, name, bold=True)
         _put(page, 2, column, _UNITS[name].of(unit) if name in _UNITS else "").font = Font(italic=True)
         for row, value in enumerate(values, start=3):
-            cell = _put(page, row, column, value)
-            if isinstance(value, float):
-                cell.number_format = shown
+            _put(page, row, column, value, shown)
         for row in (1, 2):
             page.cell(row, column).fill = shade
         widest = max((len(value) for value in values if isinstance(value, str)), default=0)
@@ -117,7 +115,7 @@ def _list_sheet(page: Worksheet, frame: pd.DataFrame, unit: str) -> None:
 
 
 def _number_format(values: Sequence[Any]) -> str:
-    """Six digits of the greatest of some numbers; by powers of ten where zeros would take their place."""
+    """Format for six digits of the greatest of some numbers, exponential where they would be zeros."""
     sizes = [abs(value) for value in values if isinstance(value, float) and np.isfinite(value)]
     greatest = max(sizes, default=0.0)
     if not greatest:
@@ -132,10 +130,8 @@ def _linkage_sheet(page: Worksheet, one: LinkageSpec | ListedDesign) -> None:
     spec = _spec(one)
     facts = _facts(spec)
     for row, (name, value, unit) in enumerate(facts, start=1):
-        _bold(_put(page, row, 1, name))
-        cell = _put(page, row, 2, value)
-        if isinstance(value, float):
-            cell.number_format = _number_format([value])
+        _put(page, row, 1, name, bold=True)
+        _put(page, row, 2, value, _number_format([value]))
         _put(page, row, 3, unit)
     if isinstance(one, ListedDesign):
         _table(page, len(facts) + 2, 1, _targets(one))
@@ -167,20 +163,22 @@ def _unit_of(column: str, unit: str) -> str:
 
 
 def _targets(design: ListedDesign) -> list[Sequence[Any]]:
-    """Where the linkage stands at each target, under a heading."""
+    """The position of the linkage at each target, under a heading."""
     linkage = design.spec.linkage
     state = solve_position(linkage, design.theta2, design.assembly)
     places = [f"{name}_{axis}" for name in linkage.mechanism.moving for axis in "xy"]
     heading = ["target", "theta2_deg", "assembly", *places, "position_error"]
-    rows: list[Sequence[Any]] = [heading + ["angle_error_deg"] * bool(design.angle_error)]
-    numbers = np.column_stack([getattr(state, name) for name in linkage.mechanism.moving]).tolist()
-    for i, (angle, joints) in enumerate(zip(np.degrees(design.theta2).tolist(), numbers, strict=True)):
-        row = [i + 1, angle, design.assembly[i], *joints, design.position_error[i]]
-        if design.angle_error:
-            turned = design.angle_error[i]
+    joints = np.column_stack([getattr(state, name) for name in linkage.mechanism.moving]).tolist()
+    angles = np.degrees(design.theta2).tolist()
+    columns = [range(1, len(joints) + 1), angles, design.assembly, joints, design.position_error]
+    rows = [
+        [number, angle, sign, *at, error] for number, angle, sign, at, error in zip(*columns, strict=True)
+    ]
+    if design.angle_error:
+        heading.append("angle_error_deg")
+        for row, turned in zip(rows, design.angle_error, strict=True):
             row.append(None if turned is None else float(np.degrees(turned)))
-        rows.append(row)
-    return rows
+    return [heading, *rows]
 
 
 def _transmission(spec: LinkageSpec) -> list[Sequence[Any]]:
@@ -221,20 +219,21 @@ def _table(page: Worksheet, row: int, column: int, lines: Sequence[Sequence[Any]
     from openpyxl.utils import get_column_letter
 
     shown = [_number_format(values) for values in zip(*lines[1:], strict=True)]
-    for down, line in enumerate(lines):
+    for right, name in enumerate(lines[0], start=column):
+        _put(page, row, right, name, bold=True)
+        dimensions = page.column_dimensions[get_column_letter(right)]
+        dimensions.width = max(12, len(str(name)) + 3, dimensions.width)
+    for down, line in enumerate(lines[1:], start=row + 1):
         for right, value in enumerate(line):
-            cell = _put(page, row + down, column + right, value)
-            if isinstance(value, float):
-                cell.number_format = shown[right]
-            if not down:
-                _bold(cell)
-                width = max(12, len(str(value)) + 3)
-                letter = get_column_letter(column + right)
-                page.column_dimensions[letter].width = max(width, page.column_dimensions[letter].width)
+            _put(page, down, column + right, value, shown[right])
 
 
-def _put(page: Worksheet, row: int, column: int, value: Any) -> Cell | MergedCell:
+def _put(
+    page: Worksheet, row: int, column: int, value: Any, number_format: str = "", *, bold: bool = False
+) -> Cell | MergedCell:
     """Write a cell: numbers as numbers, text that no spreadsheet takes for a formula, and no NaN."""
+    from openpyxl.styles import Font
+
     cell = page.cell(row, column)
     if isinstance(value, str):
         cell.value = printable(value)
@@ -244,13 +243,11 @@ def _put(page: Worksheet, row: int, column: int, value: Any) -> Cell | MergedCel
         cell.value = None if np.isnan(value) else str(value)
     else:
         cell.value = value
+    if isinstance(value, float) and number_format:
+        cell.number_format = number_format
+    if bold:
+        cell.font = Font(bold=True)
     return cell
-
-
-def _bold(cell: Cell | MergedCell) -> None:
-    from openpyxl.styles import Font
-
-    cell.font = Font(bold=True)
 
 
 def _spec(one: LinkageSpec | ListedDesign) -> LinkageSpec:
@@ -268,7 +265,7 @@ def _openpyxl() -> ModuleType:
 
 
 def _without_times(file: bytes) -> bytes:
-    """The workbook with the time of its writing, which openpyxl puts in everywhere, taken out."""
+    """The workbook without the time of its writing, which openpyxl adds everywhere."""
     made = BytesIO()
     with zipfile.ZipFile(BytesIO(file)) as old, zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as new:
         for name in old.namelist():

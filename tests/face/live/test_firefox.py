@@ -29,7 +29,7 @@ class Firefox:
         self.window = self.ask("browsingContext.getTree")["contexts"][0]["context"]
 
     def ask(self, method: str, **parameters: Any) -> dict[str, Any]:
-        """A command, and what comes of it."""
+        """Send a command; its result."""
         self.number += 1
         self.socket.send(json.dumps({"id": self.number, "method": method, "params": parameters}))
         while True:
@@ -42,7 +42,7 @@ class Firefox:
                 return found
 
     def value(self, expression: str) -> Any:
-        """What an expression is, as JSON."""
+        """The value of an expression, as JSON."""
         there = {"context": self.window}
         text = f"JSON.stringify(({expression}) ?? null)"
         found = self.ask("script.evaluate", expression=text, target=there, awaitPromise=False)

@@ -19,7 +19,7 @@ from grashof.problems.values.linkages.mechanisms import linkage_of
 
 
 @pytest.mark.study
-def test_forty_moves_show_what_the_library_gives(page: Page) -> None:
+def test_forty_moves_show_the_designs_of_the_library(page: Page) -> None:
     """Each followed list is `track` of the last one, and in the end the list is that of a search."""
     page.evaluate(
         "addEventListener('keydown', () => { window.before = structuredClone(grashof.state()); }, true)"
@@ -58,7 +58,7 @@ def hold_searches(route: Route, waiting: list[Route]) -> None:
 
 
 @pytest.mark.study
-def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page) -> None:
+def test_designs_are_compared_and_lost_ones_fade_with_their_defects(page: Page) -> None:
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
     assert page.locator("#compare article").count() == 2
@@ -85,8 +85,8 @@ def test_designs_are_compared_and_lost_ones_fade_with_what_they_miss(page: Page)
 
 
 @pytest.mark.study
-def test_what_a_search_has_not_found_yet_comes_back(page: Page) -> None:
-    """While it goes on, the chosen and compared designs may be missing; its end decides."""
+def test_designs_not_found_yet_return(page: Page) -> None:
+    """During the search, the chosen and compared designs may be missing; its end decides."""
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
     page.locator(".listing tbody tr").nth(2).click()
@@ -142,7 +142,7 @@ def test_a_killed_solver_is_replaced_in_mid_work(page: Page, server: tuple[str, 
 
 
 @pytest.mark.study
-def test_without_a_design_the_closest_miss_is_shown_and_what_to_relax(page: Page) -> None:
+def test_without_a_design_the_closest_miss_is_shown_with_a_relaxation(page: Page) -> None:
     page.locator("input[type=number][data-limit=transmission_min_deg]").fill("60")
     page.locator("input[type=number][data-limit=transmission_min_deg]").press("Enter")
     found = searched(page)
@@ -168,8 +168,8 @@ def test_the_velocity_of_p_is_that_of_the_analysis(page: Page, kind: str) -> Non
     for _ in range(5):
         theta2 = state(page)["theta2"]
         speed = float(solve_kinematics(linkage, theta2, omega2=1.0).p.speed)
-        told = float(page.locator("#velocity output").inner_text().replace("−", "-"))
-        assert told == pytest.approx(speed, rel=1e-3)
+        shown_speed = float(page.locator("#velocity output").inner_text().replace("−", "-"))
+        assert shown_speed == pytest.approx(speed, rel=1e-3)
         page.locator("#player input[type=range]").focus()
         for _ in range(4):
             page.keyboard.press("PageUp")

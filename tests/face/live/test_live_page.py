@@ -49,6 +49,7 @@ def test_a_pose_is_dragged_by_its_place_and_by_its_angle(page: Page) -> None:
     assert searched(page)["document"]["motion"]["poses"] == after
 
 
+@pytest.mark.slow
 def test_a_locked_target_stays(page: Page) -> None:
     page.locator("tr[data-target='1'] [data-do=lock]").click()
     before = state(page)["document"]
@@ -114,7 +115,7 @@ def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
 
 @pytest.mark.slow
 def test_a_path_is_drawn_by_hand(page: Page) -> None:
-    assert page.locator("[data-mode=draw]").is_hidden()  # of poses there is no path to draw
+    assert page.locator("[data-mode=draw]").is_hidden()  # poses have no path to draw
     page.locator("[data-menu=open] summary").click()
     page.locator("[name=catalogue]").select_option("path-vertical-line")
     page.wait_for_function("() => window.grashof.state().document.kind === 'path'")

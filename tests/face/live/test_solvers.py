@@ -1,4 +1,4 @@
-"""Solver processes: interruptible, replaced when they are lost; and what they tell, whose keys stay."""
+"""Solver processes: interruptible, replaced when they are lost; the lists they report, whose keys stay."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ import json
 import os
 import signal
 from collections.abc import Callable, Coroutine, Iterator
+from io import StringIO
 from time import monotonic
 from typing import Any
 
+import ezdxf
 import pytest
 
 from grashof import load, synthesize
-from grashof.live.jobs import Job, Line
-from grashof.live.session import MOST_PAGES, Sessions
-from grashof.live.solvers import GRACE, TRIES, Solvers, State
+from grashof.live.requests import Job, Line
+from grashof.live.requests import job_of as job_from
+from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
 from grashof.problems.files.on_disk import document_of
@@ -67,7 +69,7 @@ def test_an_idle_solver_that_is_killed_is_replaced(solvers: Solvers, run: Run) -
 
 
 @pytest.mark.study
-def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers, run: Run) -> None:
+def test_a_job_that_ends_every_solver_is_reported_in_a_line(solvers: Solvers, run: Run) -> None:
     async def killing() -> None:
         killed = 0
         while killed < TRIES:
@@ -93,13 +95,13 @@ def test_a_job_that_ends_every_solver_is_told_in_a_line(solvers: Solvers, run: R
 def test_the_newest_job_of_a_page_wins(solvers: Solvers, run: Run) -> None:
     session = Sessions(solvers).of("one")
 
-    async def asked(job: Job) -> list[str]:
+    async def requested(job: Job) -> list[str]:
         return [json.loads(line)["kind"] async for line in session.lines(job)]
 
     async def both() -> tuple[list[str], list[str]]:
-        first = asyncio.ensure_future(asked(job_of("nine-points")))
+        first = asyncio.ensure_future(requested(job_of("nine-points")))
         await asyncio.sleep(0.5)
-        second = await asked(job_of("luggage"))
+        second = await requested(job_of("luggage"))
         return await asyncio.wait_for(first, 1), second
 
     first, second = run(both())
@@ -130,12 +132,46 @@ def document() -> dict[str, Any]:
     return document_of(problem_text("luggage"), "luggage")
 
 
-def told(job: Job) -> tuple[list[dict[str, Any]], bytes]:
-    """Lists that a job tells of, and what the page has in the end."""
+def lists_of(job: Job) -> tuple[list[dict[str, Any]], bytes]:
+    """Lists that a job reports, and the designs of the page in the end."""
     every: list[Line] = []
     lines(job, lambda: False, every.append)
     lists = [json.loads(line.text) for line in every if line.shown is not None]
     return lists, [line.shown for line in every if line.shown is not None][-1]
+
+
+def answers(job: Job) -> list[dict[str, Any]]:
+    every: list[Line] = []
+    lines(job, lambda: False, every.append)
+    return [json.loads(line.text) for line in every]
+
+
+def test_a_document_that_is_not_a_task_is_refused_line_by_line(document: dict[str, Any]) -> None:
+    wrong = {**document, "motion": {"poses": [[0, 0, 0]], "bodies": 1}}
+    (error, _) = answers(Job("search", wrong, "luggage"))
+    assert error["kind"] == "error"
+    assert any("motion.bodies is unknown" in line for line in error["lines"])
+    assert len(error["lines"]) == 2
+
+
+def test_a_dxf_drawing_comes_back_as_polylines(document: dict[str, Any]) -> None:
+    drawing, text = ezdxf.new(), StringIO()
+    drawing.modelspace().add_line((1, 2), (3, 4))
+    drawing.write(text)
+    (found, _) = answers(Job("outline", document, "luggage", {"text": text.getvalue()}))
+    assert found["polylines"] == [[[1.0, 2.0], [3.0, 4.0]]]
+    (error, _) = answers(Job("outline", document, "luggage", {"text": "no drawing"}))
+    assert error["lines"][0].startswith("is not a DXF file")
+
+
+def test_files_of_the_machine_are_neither_read_nor_named(document: dict[str, Any]) -> None:
+    named = {**document, "dynamics": {**document["dynamics"], "loads": [{"table": "/etc/passwd"}]}}
+    (error, _) = answers(Job("search", named, "luggage"))
+    assert error["kind"] == "error"
+    assert "root" not in json.dumps(error)
+    request = {"what": "file", "document": document, "name": "../../x", "file": "problem"}
+    (file, _) = answers(job_from(request))
+    assert file["name"] == "x.toml"
 
 
 def keys(found: dict[str, Any]) -> list[int]:
@@ -164,21 +200,21 @@ def test_few_that_are_absent_are_kept(result: Result) -> None:
 
 @pytest.mark.study
 def test_designs_that_are_not_followed_keep_their_keys_too(document: dict[str, Any]) -> None:
-    (*_, found), shown = told(Job("search", document, "luggage"))
+    (*_, found), shown = lists_of(Job("search", document, "luggage"))
     assert len(keys(found)) > TRACKED
-    (followed,), shown = told(Job("track", document, "luggage", shown=shown))
+    (followed,), shown = lists_of(Job("track", document, "luggage", shown=shown))
     assert keys(followed) == keys(found)[:TRACKED]
-    (*_, again), _ = told(Job("search", document, "luggage", shown=shown))
+    (*_, again), _ = lists_of(Job("search", document, "luggage", shown=shown))
     assert keys(again) == keys(found)
 
 
 @pytest.mark.study
 def test_the_keys_of_misses_are_not_those_of_designs_to_come(document: dict[str, Any]) -> None:
     limits = {**document.get("requirements", {}), "transmission_min_deg": 60}
-    (*_, found), shown = told(Job("search", {**document, "requirements": limits}, "luggage"))
+    (*_, found), shown = lists_of(Job("search", {**document, "requirements": limits}, "luggage"))
     assert not found["found"]
     assert keys(found)
-    (*_, again), _ = told(Job("search", document, "luggage", shown=shown))
+    (*_, again), _ = lists_of(Job("search", document, "luggage", shown=shown))
     assert again["found"]
     assert not set(keys(again)) & set(keys(found))
 
@@ -187,13 +223,15 @@ def test_the_keys_of_misses_are_not_those_of_designs_to_come(document: dict[str,
     ("name", "kind", "changed"),
     [
         ("function-five-pairs", "function", {"output_deg": [0, 12.01, 31, 55, 80.02]}),
-        ("quick-return", "stroke", {"swing_deg": 80.5}),
+        pytest.param("quick-return", "stroke", {"swing_deg": 80.5}, marks=pytest.mark.study),
     ],
 )
 def test_designs_of_functions_and_strokes_follow(name: str, kind: str, changed: dict[str, Any]) -> None:
     document = document_of(problem_text(name), name)
-    (*_, found), shown = told(Job("search", document, name))
-    (followed,), _ = told(Job("track", {**document, kind: {**document[kind], **changed}}, name, shown=shown))
+    (*_, found), shown = lists_of(Job("search", document, name))
+    (followed,), _ = lists_of(
+        Job("track", {**document, kind: {**document[kind], **changed}}, name, shown=shown)
+    )
     assert keys(followed) == keys(found)[:TRACKED]
     before = {design["key"]: design["linkage"]["r2"] for design in found["designs"]}
     for design in followed["designs"]:

@@ -19,7 +19,7 @@ Run = Callable[[Coroutine[Any, Any, Any]], Any]
 
 
 class Model:
-    """What a notebook does between the kernel and the page: messages to and fro."""
+    """The notebook between the kernel and the page: messages both ways."""
 
     def __init__(self, widget: LiveWidget, monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
         self.widget, self.run, self.sent = widget, run, list[dict[str, Any]]()
@@ -96,7 +96,7 @@ def test_the_page_works_in_its_frame(browser: Browser, monkeypatch: pytest.Monke
         widget.close()
 
 
-def test_what_is_no_problem_is_refused() -> None:
+def test_a_value_that_is_not_a_problem_is_refused() -> None:
     with pytest.raises(ProblemError, match="problem is 3; it must be a Problem or a name"):
         live(3)  # type: ignore[arg-type]
     with pytest.raises(ProblemError, match="neither a problem of the catalogue nor a file"):

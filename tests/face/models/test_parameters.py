@@ -22,7 +22,7 @@ def expected(model: Model) -> dict[str, float]:
     return kept | {f"theta{link}_deg": float(np.degrees(angle)) for link, angle in angles.items()}
 
 
-def test_what_cannot_be_assembled_has_no_model() -> None:
+def test_an_open_linkage_has_no_model() -> None:
     with pytest.raises(ProblemError, match="apart cannot be assembled at any driver angle"):
         Model.of(LinkageSpec(FourBar((0, 0), (100, 0), 5, 9, 8), "apart"))
 

@@ -1,4 +1,4 @@
-"""A Dask scheduler that is named: a task that ends its workers is given up, and a lost scheduler is told."""
+"""A Dask scheduler that is named: a task that ends its workers fails, and a lost scheduler is reported."""
 
 import subprocess
 import sys
@@ -51,7 +51,7 @@ if __name__ == "__main__":
         try:
             work.made(crash, scaled, 7)
         except CrashError as error:
-            print("given up:", error)
+            print("failed:", error)
         starts = screen(scaled, 0, 0, 50, 0).starts[:3]
         known = Work().attempts(scaled, starts, 0)
         made = work.attempts(scaled, starts, 0)
@@ -62,20 +62,20 @@ if __name__ == "__main__":
         try:
             work.made(nap, scaled, 30)
         except SolverError as error:
-            print("told:", error)
+            print("lost:", error)
 '''
 
 
 @pytest.mark.study
-def test_what_ends_workers_is_given_up_and_a_lost_scheduler_is_told(tmp_path: Path) -> None:
+def test_a_task_that_ends_workers_fails_and_a_lost_scheduler_is_reported(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     (tmp_path / "fatal.py").write_text(SCRIPT, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "fatal.py"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
     )
     assert done.returncode == 0, done.stderr
-    given_up, same, told = done.stdout.splitlines()
-    assert given_up.startswith("given up: a task ends the workers that do it")
+    failed, same, lost = done.stdout.splitlines()
+    assert failed.startswith("failed: a task ends the workers that do it")
     assert same == "True"
-    assert told == "told: a worker process was lost: the scheduler was lost"
+    assert lost == "lost: a worker process was lost: the scheduler was lost"
     assert "Traceback" not in done.stderr

@@ -84,5 +84,5 @@ def test_the_log_of_a_shard_harms_no_file_of_the_search(grashof: Grashof, tmp_pa
 def test_a_full_disk_costs_the_log_alone(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof(*FEW, "--log", "/dev/full")
     assert done.exit_code == 0
-    assert done.stderr.count("--log /dev/full: No space left on device; the log is not whole\n") == 1
+    assert done.stderr.count("--log /dev/full: No space left on device; the log is incomplete\n") == 1
     assert (tmp_path / "luggage-designs" / "candidates.csv").exists()

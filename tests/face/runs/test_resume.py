@@ -1,4 +1,4 @@
-"""Runs that are killed, interrupted or ended, and gone on with."""
+"""Runs that are killed, interrupted or ended, and resumed."""
 
 from __future__ import annotations
 
@@ -64,11 +64,11 @@ def killed_and_resumed(folder: Path, moments: list[float]) -> bytes:
 @pytest.mark.study
 @pytest.mark.parametrize("moments", [2, pytest.param(20, marks=pytest.mark.study)])
 def test_a_run_that_was_killed_goes_on_to_the_same_list(tmp_path: Path, moments: int) -> None:
-    whole, killed = tmp_path / "whole", tmp_path / "killed"
-    whole.mkdir()
+    once, killed = tmp_path / "once", tmp_path / "killed"
+    once.mkdir()
     killed.mkdir()
     begun = time.monotonic()
-    table = finished(whole)
+    table = finished(once)
     seconds = time.monotonic() - begun
     at = (np.random.default_rng(moments).uniform(0.3, 1.0, moments) * seconds).tolist()
     assert killed_and_resumed(killed, at) == table
@@ -83,7 +83,7 @@ SIGNALS = [(signal.SIGINT, 130, "Ctrl-C", "interrupted"), (signal.SIGTERM, 143, 
 @pytest.mark.slow
 @pytest.mark.quick("15-143-SIGTERM-terminated")
 @pytest.mark.parametrize(("number", "code", "name", "ending"), SIGNALS)
-def test_a_signal_ends_the_search_and_writes_what_it_has(
+def test_a_signal_ends_the_search_and_writes_its_designs(
     tmp_path: Path, number: int, code: int, name: str, ending: str
 ) -> None:
     process = running(tmp_path, "--drawings", "1")
@@ -95,28 +95,31 @@ def test_a_signal_ends_the_search_and_writes_what_it_has(
     _, said = process.communicate(timeout=60)
     assert process.returncode == code
     assert time.monotonic() - begun < 6  # of which 2 are the search's; machines are busy
-    assert "--resume goes on with it" in said
+    assert "--resume continues it" in said
     assert f"drawings are left out: {name} came before 1 of them were made" in said.splitlines()
-    told = json.loads((out / "run.json").read_text())["run"]
-    assert told["ending"] == told["why_left_out"] == ending
+    run = json.loads((out / "run.json").read_text())["run"]
+    assert run["ending"] == run["why_left_out"] == ending
     assert len(pd.read_csv(out / "candidates.csv")) > 0
     assert (out / "search" / "search.json").exists()
 
 
-def test_a_record_that_is_not_gone_on_with_is_kept(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_record_that_is_not_resumed_is_kept(
+    grashof: Grashof, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     record = tmp_path / "luggage-designs" / "search"
     record.mkdir(parents=True)
     (record / "search.json").write_text("{}", encoding="utf-8")
     refused = grashof(*FOUR, "--resume")
     assert refused.exit_code == 2
     assert "search.json: is not the record of a search" in refused.stderr
+    request.getfixturevalue("found_at_once")
     done = grashof(*FOUR)
     assert done.exit_code == 0
     assert "the record of an unfinished search is kept as search-old" in done.stderr
     assert (tmp_path / "luggage-designs" / "search-old" / "search.json").read_text() == "{}"
 
 
-@pytest.mark.quick("search-old")
+@pytest.mark.usefixtures("found_at_once")
 @pytest.mark.parametrize("place", ["search", "search-old"])
 def test_files_of_others_beside_a_record_are_never_deleted(
     grashof: Grashof, tmp_path: Path, place: str
@@ -127,21 +130,13 @@ def test_files_of_others_beside_a_record_are_never_deleted(
         (folder / name / "search.json").write_text("{}", encoding="utf-8")
     (folder / place / "2026.json").write_text("mine", encoding="utf-8")
     done = [grashof(*FOUR) for _ in range(2)]
-    # The record moves with what is beside it, and is not replaced there.
+    # The record moves with the files beside it, and is not replaced there.
     assert [each.exit_code for each in done] == ([0, 0] if place == "search" else [2, 2])
     if place == "search-old":
         (line,) = done[0].stderr.splitlines()
         assert line.endswith("search-old: is, or has, more than the record of a search; move it away")
     kept = folder / "search-old" / "2026.json"
     assert kept.read_text(encoding="utf-8") == "mine"
-
-
-def test_a_folder_of_others_named_search_stays(grashof: Grashof, tmp_path: Path) -> None:
-    mine = tmp_path / "luggage-designs" / "search" / "notes"
-    mine.parent.mkdir(parents=True)
-    mine.touch()
-    assert grashof(*FOUR).exit_code == 0
-    assert mine.exists()
 
 
 def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> None:
@@ -154,22 +149,26 @@ def test_a_file_named_search_is_refused(grashof: Grashof, tmp_path: Path) -> Non
     assert [path.name for path in folder.iterdir()] == ["search"]
 
 
-def test_two_runs_do_not_share_a_folder(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_run_has_its_folder_to_itself_and_removes_the_rest_of_a_killed_one(
+    grashof: Grashof, tmp_path: Path
+) -> None:
     folder = tmp_path / "luggage-designs"
     with in_use(folder):
         done = grashof(*FOUR)
     assert done.exit_code == 2
     assert done.stderr.splitlines()[-1].endswith("name another folder")
-    assert grashof(*FOUR).exit_code == 0
+    left, mine = folder / ".writing-abc", folder / "search" / "notes"
+    for path in (left / "candidates.csv", mine):
+        path.parent.mkdir(parents=True)
+        path.touch()
+    done = grashof(*FOUR)
+    assert done.exit_code == 0
+    assert not left.exists()
+    assert mine.exists()
 
 
-def test_what_a_killed_run_left_is_removed_and_without_a_record_it_begins_anew(
-    grashof: Grashof, tmp_path: Path
-) -> None:
-    left = tmp_path / "luggage-designs" / ".writing-abc"
-    left.mkdir(parents=True)
-    (left / "candidates.csv").touch()
+@pytest.mark.usefixtures("found_at_once")
+def test_without_a_record_a_resumed_search_begins_anew(grashof: Grashof) -> None:
     done = grashof(*FOUR, "--resume")
     assert done.exit_code == 0
     assert "has no record of a search; it begins anew" in done.stderr
-    assert not left.exists()

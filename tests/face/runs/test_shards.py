@@ -54,7 +54,7 @@ def test_shards_are_merged_into_the_files_of_a_search(grashof: Grashof, tmp_path
 
 
 @pytest.mark.study
-def test_what_cannot_be_merged_is_told_in_one_line(grashof: Grashof, tmp_path: Path) -> None:
+def test_shards_that_cannot_be_merged_are_refused_in_one_line(grashof: Grashof, tmp_path: Path) -> None:
     def said(*given: str) -> str:
         done = grashof(*given)
         assert done.exit_code == 2
@@ -133,7 +133,7 @@ def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
 
 @pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
-def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> None:
+def test_the_same_command_continues_a_terminated_shard(tmp_path: Path) -> None:
     program = "from grashof.cli import main; main()"
     given = ["solve", "luggage", "--effort", "10", "--shard", "1/1", "--out", "out"]
     command = [sys.executable, "-c", program, *given]
@@ -145,7 +145,7 @@ def test_a_terminated_shard_goes_on_with_the_same_command(tmp_path: Path) -> Non
     said = process.stderr.read()
     assert process.wait(timeout=60) == 143
     assert time.monotonic() - begun < 6
-    first = re.search(r"shard 1/1: (\d+) of 40 chunks.*; the same command goes on with it", said)
+    first = re.search(r"shard 1/1: (\d+) of 40 chunks.*; the same command continues it", said)
     assert first is not None
     process.stderr.close()
     again = subprocess.run([*command, "--time-limit", "1"], cwd=tmp_path, capture_output=True, text=True)

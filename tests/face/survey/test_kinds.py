@@ -15,6 +15,7 @@ from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.commands import analyse
+from grashof.options import AnalyseOptions
 from grashof.problems import (
     DynamicsSpec,
     LinkageSpec,
@@ -270,5 +271,5 @@ def test_bars_that_are_dead_everywhere_but_for_rounding_are_refused_in_one_line(
     four = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\n"
     file.write_text(f'mechanism = "stephenson-3"\n{four}{dyad}')
     with pytest.raises(ProblemError, match="long: its lengths are too unlike to be analysed"):
-        analyse(str(file), tmp_path / "made")
+        analyse(str(file), AnalyseOptions(out=tmp_path / "made"))
     assert not (tmp_path / "made").exists()

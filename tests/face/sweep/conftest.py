@@ -20,7 +20,7 @@ starts = 1
 enough = 1
 effort = 0.2
 """
-# What no linkage does, for tests that no search has to be run for.
+# For tests without a search.
 STUDY = """\
 problem = "base.toml"
 [vary]
@@ -44,20 +44,20 @@ def write(tmp_path: Path) -> Write:
 
 @pytest.fixture(scope="session")
 def solved() -> dict[str, Any]:
-    """What a task gives."""
+    """The result of a task."""
     result = solve_task("base", BASE, {"designs": 1, "time_limit": None})
     assert result is not None
     return result
 
 
 @pytest.fixture
-def told(monkeypatch: pytest.MonkeyPatch, solved: dict[str, Any]) -> list[str]:
-    """Problems that were solved, by a solver that takes no time and names the problem in its note."""
-    texts: list[str] = []
+def texts(monkeypatch: pytest.MonkeyPatch, solved: dict[str, Any]) -> list[str]:
+    """Texts of the problems solved so far, by a solver that takes no time and names them in its note."""
+    solved_texts: list[str] = []
 
     def solve(name: str, text: str, options: Any, stop: object = None) -> dict[str, Any]:
-        texts.append(text)
+        solved_texts.append(text)
         return {**solved, "note": text.splitlines()[6]}
 
     monkeypatch.setattr("grashof.sweep.solving.solve_task", solve)
-    return texts
+    return solved_texts

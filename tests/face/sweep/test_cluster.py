@@ -71,7 +71,7 @@ def test_a_cluster_gives_the_same_table(write: Callable[..., Path], tmp_path: Pa
     assert done.returncode == 0, done.stderr
     lost, interrupted, resumed = json.loads(done.stdout.splitlines()[-1])
     assert [each["code"] for each in (lost, interrupted, resumed)] == [0, 130, 0], done.stdout
-    assert "interrupted: --resume goes on" in interrupted["said"]
+    assert "interrupted: --resume continues it" in interrupted["said"]
     assert resumed["said"].count(" of 30: ") < 30
     sweep(study, out=tmp_path / "here")
     table = (tmp_path / "here" / "sweep.csv").read_bytes()

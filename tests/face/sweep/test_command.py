@@ -1,4 +1,4 @@
-"""The command: what it says, how it ends, what signals leave behind."""
+"""The command: its output, its exit codes, and the files that signals leave behind."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def grashof(*arguments: object) -> Any:
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
 
-@pytest.mark.usefixtures("told")
-def test_what_a_sweep_says(write: Write, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("texts")
+def test_the_output_of_a_sweep(write: Write, tmp_path: Path) -> None:
     done = grashof("sweep", write(), "--out", tmp_path / "out", "--top", 1)
     assert done.exit_code == 0
     headline, best = done.stdout.splitlines()
@@ -51,14 +51,6 @@ def test_bad_input_ends_it_with_a_line_for_each_error(write: Write, tmp_path: Pa
     ]
 
 
-def test_an_address_that_is_none_is_refused(write: Write, tmp_path: Path) -> None:
-    done = grashof("sweep", write(), "--out", tmp_path / "out", "--scheduler", "x")
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert done.stderr.startswith("grashof: --scheduler x: missing port number")
-    assert done.stderr.count("\n") == 1
-    assert not (tmp_path / "out").exists()
-
-
 def test_nothing_but_invalid_combinations_is_no_design(write: Write, tmp_path: Path) -> None:
     study = write('problem = "base.toml"\n[vary]\nrequirements.transmission_min_deg = [95, 96]\n')
     done = grashof("sweep", study, "--out", tmp_path / "out")
@@ -70,7 +62,7 @@ def test_nothing_but_invalid_combinations_is_no_design(write: Write, tmp_path: P
 @pytest.mark.quick("2")
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_leaves_what_is_finished(
+def test_a_signal_leaves_the_finished_tasks(
     write: Write,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -90,13 +82,13 @@ def test_a_signal_leaves_what_is_finished(
     ended = grashof("sweep", write(), "--out", tmp_path / "out")
     assert ended.exit_code == 128 + number
     assert "3 of 12 combinations done" in ended.stdout
-    assert "--resume goes on" in ended.stderr
+    assert "--resume continues it" in ended.stderr
     assert signal.getsignal(number) is before
     assert len(pd.read_csv(tmp_path / "out" / "sweep.csv")) == 3
     refused = grashof("sweep", write(), "--out", tmp_path / "out")
     assert refused.exit_code == 2
     assert refused.stderr.count("\n") == 1
-    assert "3 of 12 tasks done; --resume goes on with it" in refused.stderr
+    assert "3 of 12 tasks done; --resume continues it" in refused.stderr
     assert grashof("sweep", write(), "--out", tmp_path / "out", "--resume").exit_code == 0
     assert len(done) == 4 + 9
 
@@ -134,7 +126,7 @@ def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path
         options = ("--workers", "2", *(("--resume",) if number else ()))
         assert ended_after(started(study, out, *options), 20, way, group=group) == code
         assert len(list((out / "tasks").glob("*.json"))) >= 20 * (number + 1)
-    time.sleep(1.0)  # nothing goes on without the parent
+    time.sleep(1.0)  # nothing continues without the parent
     count = len(list((out / "tasks").iterdir()))
     time.sleep(1.0)
     assert len(list((out / "tasks").iterdir())) == count
@@ -142,8 +134,8 @@ def test_two_hundred_tasks_interrupted_in_every_way(write: Write, tmp_path: Path
     said = running.communicate(timeout=600)[1]
     assert running.returncode == 0
     assert said.count(" of 200: ") <= 200 - 80
-    whole = started(study, tmp_path / "whole")
-    whole.communicate(timeout=600)
-    assert whole.returncode == 0
+    once = started(study, tmp_path / "once")
+    once.communicate(timeout=600)
+    assert once.returncode == 0
     for name in ("sweep.csv", "sweep.png", "sweep.html"):
-        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+        assert (out / name).read_bytes() == (tmp_path / "once" / name).read_bytes()

@@ -84,7 +84,7 @@ def test_nothing_found_is_plotted_too(done: Callable[..., Sweep]) -> None:
         ("[vary]\nsearch.seed = [1, 2]\nsearch.starts = [1, 2]\nsearch.enough = [1, 2]\n", ()),
     ],
 )
-def test_what_it_is_over(done: Callable[..., Sweep], text: str, axes: tuple[str, ...]) -> None:
+def test_axes_of_the_plot(done: Callable[..., Sweep], text: str, axes: tuple[str, ...]) -> None:
     assert number_axes(done(text, [])) == axes
 
 

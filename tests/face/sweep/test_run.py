@@ -1,4 +1,4 @@
-"""Sweeps from a study to a table: interrupted, resumed, elsewhere; what is kept and what is refused."""
+"""Sweeps from a study to a table: interrupted, resumed, on an executor; files kept and refused."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Write = Callable[..., Path]
 
 
 class Stop:
-    """Asks to stop after so many steps."""
+    """Stops after a number of steps."""
 
     def __init__(self, after: int) -> None:
         self.left = after
@@ -47,22 +47,22 @@ def interrupted(study: Path, out: Path, after: int, *, resume: bool) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("told")
-def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path, told: list[str]) -> None:
+@pytest.mark.usefixtures("texts")
+def test_an_interrupted_sweep_gives_the_same_table(write: Write, tmp_path: Path, texts: list[str]) -> None:
     study, out = write(), tmp_path / "out"
     assert interrupted(study, out, 5, resume=False) == 5
     assert len(pd.read_csv(out / "sweep.csv")) == 5
     assert json.loads((out / "sweep.json").read_text())["complete"] is False
     assert interrupted(study, out, 3, resume=True) == 8
     assert sweep(study, out=out, resume=True).complete
-    assert len(told) == 12
-    assert len(set(told)) == 12
-    sweep(study, out=tmp_path / "whole")
+    assert len(texts) == 12
+    assert len(set(texts)) == 12
+    sweep(study, out=tmp_path / "once")
     for name in ("sweep.csv", "sweep.png", "sweep.html"):
-        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+        assert (out / name).read_bytes() == (tmp_path / "once" / name).read_bytes()
     assert len(list((out / "tasks").iterdir())) == 12
     assert sweep(study, out=out, resume=True).complete  # nothing is left to do
-    assert len(told) == 24
+    assert len(texts) == 24
 
 
 @pytest.mark.slow
@@ -83,7 +83,7 @@ def test_the_row_of_a_combination_is_its_best_design(write: Write) -> None:
         np.testing.assert_array_equal(rows[numbers].to_numpy(float), frame[numbers].to_numpy(float))
 
 
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_anybody_s_executor(write: Write) -> None:
     with ThreadPoolExecutor(3) as executor:
         there = sweep(write(), executor=executor)
@@ -97,7 +97,7 @@ def test_processes_find_the_same(write: Write) -> None:
 
 
 @pytest.mark.study
-def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write) -> None:
+def test_a_combination_without_designs_states_the_reason(write: Write) -> None:
     limits = '[vary]\n"requirements.transmission_min_deg" = [95, 15, 80]\n'
     done = sweep(write(f'problem = "luggage"\n{limits}[search]\nstarts = 2\n'))
     frame = done.to_frame()
@@ -108,58 +108,39 @@ def test_a_combination_without_designs_states_what_stood_in_the_way(write: Write
     assert done.headline == "3 combinations, 1 with designs, 1 invalid"
 
 
-@pytest.mark.study
-@pytest.mark.usefixtures("told")
-def test_what_is_not_gone_on_with(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("texts")
+def test_other_studies_versions_and_spoilt_tasks_are_not_resumed(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     study, out = write(), tmp_path / "out"
-    interrupted(study, out, 4, resume=False)
+    interrupted(study, out, 2, resume=False)
     kept = sorted((out / "tasks").iterdir())
-    other = write('problem = "base.toml"\n[vary]\nsearch.seed = [1]\n', "other.toml")
-    refusals = [
-        (study, {}, "holds an unfinished sweep, 4 of 12 tasks done; --resume goes on with it"),
-        (study, {"resume": True, "designs": 2}, "holds a sweep of another study or of other options"),
-        (other, {"resume": True}, "holds a sweep of another study"),
-    ]
-    for path, options, words in refusals:
-        with pytest.raises(ProblemError) as refused:
+
+    def refused(path: Path, words: str, **options: Any) -> None:
+        with pytest.raises(ProblemError, match=words) as error:
             sweep(path, out=out, **options)
-        assert words in str(refused.value)
-        assert str(refused.value).count("\n") == 0
+        assert "\n" not in str(error.value)
+
+    other = write('problem = "base.toml"\n[vary]\nsearch.seed = [1]\n', "other.toml")
+    refused(study, "holds an unfinished sweep, 2 of 12 tasks done; --resume continues it")
+    refused(study, "holds a sweep of another study or of other options", resume=True, designs=2)
+    refused(other, "holds a sweep of another study", resume=True)
     with monkeypatch.context() as patched:
         others = {**versions(), "casadi": "9.9"}
         patched.setattr("grashof.sweep.checkpoints.versions", lambda: others)
-        with pytest.raises(ProblemError, match=r"holds a sweep made with casadi [\d.]+ \(now 9.9\)"):
-            sweep(study, out=out, resume=True)
+        refused(study, r"holds a sweep made with casadi [\d.]+ \(now 9.9\)", resume=True)
     assert sorted((out / "tasks").iterdir()) == kept
-    assert sweep(study, out=out, resume=True).complete
-
-
-@pytest.mark.quick("[]-is not a finished task")
-@pytest.mark.usefixtures("told")
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("{", "is not a finished task of this sweep"),
-        ('{"task": "other", "result": {}}', "is not a finished task"),
-        ("[]", "is not a finished task"),
-    ],
-)
-def test_a_spoilt_checkpoint_is_refused(write: Write, tmp_path: Path, text: str, words: str) -> None:
-    study, out = write(), tmp_path / "out"
-    interrupted(study, out, 1, resume=False)
-    (path,) = (out / "tasks").iterdir()
-    path.write_text(text)
-    with pytest.raises(ProblemError, match=words):
-        sweep(study, out=out, resume=True)
-    path.rename(path.with_name(f"{32 * 'a'}.json"))
-    with pytest.raises(ProblemError, match="is of another study or version"):
-        sweep(study, out=out, resume=True)
+    for text in ("{", '{"task": "other", "result": {}}', "[]"):
+        kept[0].write_text(text)
+        refused(study, "is not a finished task of this sweep", resume=True)
+    kept[0].rename(kept[0].with_name(f"{32 * 'a'}.json"))
+    refused(study, "is of another study or version", resume=True)
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("told")
+@pytest.mark.usefixtures("texts")
 def test_a_finished_sweep_is_done_again_and_other_files_stay(
-    write: Write, tmp_path: Path, told: list[str]
+    write: Write, tmp_path: Path, texts: list[str]
 ) -> None:
     study, out = write(), tmp_path / "out"
     sweep(study, out=out)
@@ -167,7 +148,7 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
     (out / "tasks" / ".writing-abc").write_text("half")
     (out / "tasks" / "mine.txt").write_text("mine")
     sweep(study, out=out)
-    assert len(told) == 24
+    assert len(texts) == 24
     assert sorted(path.name for path in out.iterdir()) == [
         "notes.txt", "sweep.csv", "sweep.html", "sweep.json", "sweep.png", "tasks",
     ]  # fmt: skip
@@ -179,8 +160,8 @@ def test_a_finished_sweep_is_done_again_and_other_files_stay(
         sweep(study, out=out)
 
 
-@pytest.mark.usefixtures("told")
-def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("texts")
+def test_a_lost_process_keeps_the_finished_tasks(write: Write, tmp_path: Path) -> None:
     class Losing(ThreadPoolExecutor):
         left = 3
 
@@ -196,14 +177,14 @@ def test_a_lost_process_keeps_what_is_finished(write: Write, tmp_path: Path) -> 
     assert sweep(write(), out=tmp_path / "out", resume=True).complete
 
 
-@pytest.mark.usefixtures("told")
-def test_equal_combinations_are_solved_once(write: Write, told: list[str]) -> None:
+@pytest.mark.usefixtures("texts")
+def test_equal_combinations_are_solved_once(write: Write, texts: list[str]) -> None:
     done = sweep(write('problem = "base.toml"\n[vary]\n"path.points[1].y" = [1, 1.0, 2]\n'))
-    assert len(told) == 2
+    assert len(texts) == 2
     assert done.to_frame()["combination"].tolist() == [1, 2, 3]
 
 
-def test_parquet_is_the_same_table(write: Write, tmp_path: Path, told: list[str]) -> None:
+def test_parquet_is_the_same_table(write: Write, tmp_path: Path, texts: list[str]) -> None:
     pytest.importorskip("pyarrow")
     sweep(write(f"parquet = true\n{write().read_text()}"), out=tmp_path / "out")
     table = pd.read_parquet(tmp_path / "out" / "sweep.parquet")

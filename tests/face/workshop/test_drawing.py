@@ -1,4 +1,4 @@
-"""What stands in the DXF and SVG files: hole distances, outlines, and that nothing collides in motion.
+"""The content of DXF and SVG files: hole distances, outlines, and parts that never collide in motion.
 
 The files are read back, and the linkage is moved here by a circle intersection of its own.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from functools import cache
 from io import StringIO
 from itertools import combinations
 from pathlib import Path
@@ -24,9 +25,8 @@ from grashof.problems import FourBar, ProblemError, load_linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Result
 from grashof.workshop import Plan, PlateSizes, plan_parts, write_dxf, write_svg
-from grashof.workshop.dxf import dxf
+from grashof.workshop.formats import dxf, svg
 from grashof.workshop.sheet import sheet
-from grashof.workshop.svg import svg
 
 SIZES = PlateSizes(width=20, hole=6, thickness=5, clearance=1)
 LINKAGES = {
@@ -40,6 +40,12 @@ LINKAGES = {
     "kite": (FourBar((0, 0), (100, 0), 100, 150, 150, (50, 40)), 1.0),
     "parallelogram": (FourBar((0, 0), (100, 0), 70, 100, 70, (50, 40)), 1.0),
 }
+
+
+@cache
+def plan_of(name: str) -> Plan:
+    linkage, scale = LINKAGES[name]
+    return plan_parts(linkage, SIZES, scale)
 
 
 @dataclass
@@ -198,20 +204,19 @@ def moved(
     return shapely.polygons(np.stack([path.real, path.imag], axis=-1))
 
 
-@pytest.mark.quick("pumpjack-dxf", "P at A-dxf", "triple rocker-dxf", "parallelogram-svg")
+@pytest.mark.quick("pumpjack-dxf", "parallelogram-svg")
 @pytest.mark.parametrize("kind", READERS)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_nothing_meets_in_motion(name: str, kind: str) -> None:
     linkage, scale = LINKAGES[name]
-    layers = drawn(plan_parts(linkage, SIZES, scale), kind)
+    layers = drawn(plan_of(name), kind)
     assert least_gap(linkage, scale, layers) > 0.9 * SIZES.gap
 
 
 @pytest.mark.parametrize("kind", READERS)
-@pytest.mark.parametrize("name", LINKAGES)
+@pytest.mark.parametrize("name", ["pumpjack", "drag link, P far off", "P at A", "double rocker", "kite"])
 def test_holes_are_as_far_apart_as_the_joints(name: str, kind: str) -> None:
-    linkage, scale = LINKAGES[name]
-    plan = plan_parts(linkage, SIZES, scale)
+    (linkage, scale), plan = LINKAGES[name], plan_of(name)
     parts = parts_of(drawn(plan, kind)["CUT"])
     assert len(parts) == sum(len(part.layers) for part in plan.parts)
     r1, r2, r3, r4 = (float(r) * scale for r in linkage.lengths)
@@ -255,7 +260,7 @@ def test_parts_to_cut_lie_apart_and_bars_have_the_area_of_the_formula(kind: str)
 
 
 def test_arcs_are_true_arcs() -> None:
-    plan = plan_parts(*LINKAGES["pumpjack"][:1], SIZES, 50.0)
+    plan = plan_of("pumpjack")
     drawing = sheet(plan)
     document = ezdxf.read(StringIO(dxf(drawing)))
     bulges = sorted(len(line) for line in document.modelspace().query("LWPOLYLINE[layer=='CUT']"))
@@ -265,7 +270,7 @@ def test_arcs_are_true_arcs() -> None:
 
 
 def test_all_joints_of_luggage_designs(few: Result) -> None:
-    for candidate in few.candidates[:4]:
+    for candidate in few.candidates[:2]:
         layers = drawn(plan_parts(candidate.linkage, SIZES, 50.0), "svg")
         assert least_gap(candidate.linkage, 50.0, layers) > 0.9 * SIZES.gap
 
@@ -295,7 +300,7 @@ def test_any_linkage_moves_freely_or_is_refused(
 
 
 def test_files_say_the_same_every_time(tmp_path: Path) -> None:
-    plan = plan_parts(*LINKAGES["pumpjack"][:1], SIZES, 50.0)
+    plan = plan_of("pumpjack")
     for write, kind in ((write_dxf, "dxf"), (write_svg, "svg")):
         first, second = tmp_path / f"one.{kind}", tmp_path / f"two.{kind}"
         write(first, plan, "Jack")
@@ -305,7 +310,7 @@ def test_files_say_the_same_every_time(tmp_path: Path) -> None:
 
 
 def test_titles_are_only_text() -> None:
-    plan = plan_parts(*LINKAGES["pumpjack"][:1], SIZES, 50.0)
+    plan = plan_of("pumpjack")
     drawing = sheet(plan, "<script>\n0\nEOF\x07 ünïcode " + "x" * 500)
     texts = [entity.dxf.text for entity in ezdxf.read(StringIO(dxf(drawing))).modelspace().query("TEXT")]
     assert drawing.title in texts
@@ -314,8 +319,8 @@ def test_titles_are_only_text() -> None:
     assert not [element for element in root.iter() if "script" in element.tag]
 
 
-def test_the_parts_list_stands_in_the_drawing() -> None:
-    plan = plan_parts(*LINKAGES["pumpjack"][:1], SIZES, 50.0)
+def test_the_parts_list_is_in_the_drawing() -> None:
+    plan = plan_of("pumpjack")
     texts = [e.dxf.text for e in ezdxf.read(StringIO(dxf(sheet(plan)))).modelspace().query("TEXT")]
     assert all(cell in texts for row in plan.rows() for cell in row)
     assert "Assembly at theta2 = -53.13 deg, layer 0 (the base) farthest from the eye" in texts

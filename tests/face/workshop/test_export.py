@@ -1,4 +1,4 @@
-"""`grashof export`: files, refusals in one line, exit codes; and the order of the layers."""
+"""`grashof export`: files, refusals in one line, exit codes; the order of the layers."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_models_need_no_plan(grashof: Grashof, tmp_path: Path) -> None:
     assert grashof("export", "short.toml", "--mujoco", "short.xml", "--step", "short.step").exit_code == 2
 
 
-def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_format_that_cannot_represent_a_linkage_is_refused(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("export", "crank-shaper", "--mujoco", "a.xml", "--linkage2", "a.linkage2")
     assert done.exit_code == 2
     why = "--linkage2 is for a four-bar or a slider-crank; Linkage has no block that swings about a pivot"
@@ -84,7 +84,7 @@ def test_a_format_that_cannot_tell_a_linkage_says_so(grashof: Grashof, tmp_path:
     assert (alone.exit_code, alone.stderr) == (2, f"grashof: {why}\n")
 
 
-def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_path: Path) -> None:
+def test_a_design_is_drawn_at_its_first_target(grashof: Grashof, few: Result, tmp_path: Path) -> None:
     write_run(tmp_path / "d", few, {}, drawings=0)
     done = grashof("export", "d/candidates.json#1", "--dxf", "one.dxf", "--scale", "1:50")
     assert done.exit_code == 0, done.stderr
@@ -108,27 +108,22 @@ def test_a_design_stands_at_its_first_target(grashof: Grashof, few: Result, tmp_
         ("", "nothing to write; give a FILE for one or several of --dxf, --svg, --step,"),
         ("--dxf a.dwg", "--dxf a.dwg: the file name must end in .dxf"),
         ("--mujoco a.dat", "--mujoco a.dat: the file name must end in .xml"),
-        ("--freecad a.dat", "--freecad a.dat: the file name must end in .csv"),
-        ("--step a.dat", "--step a.dat: the file name must end in .step"),
         ("--svg .", "--svg .: the file name must end in .svg"),
         (f"--svg {'x' * 300}.svg", "File name too long"),
         ("--svg no/a.svg", "--svg no/a.svg: there is no folder no"),
         ("--dxf a.dxf --mm-per-unit 1", "mm_per_unit is given, but length_unit of mine is mm"),
         ("--dxf a.dxf --hole 20", "hole is 20 mm; it must be less than the width, 20 mm"),
         ("--dxf a.dxf --width 0", "width in mm is 0; it must be a number greater than zero"),
-        ("--dxf a.dxf --thickness -3", "thickness in mm is -3"),
         ("--dxf a.dxf --hole nan", "hole in mm is nan; it must be a finite number"),
         ("--dxf a.dxf --clearance 0", "clearance in mm is 0; it must be from 0.2 to 20"),
         ("--dxf a.dxf --width 60", "r2 is 30 mm; for width 60 and hole 6 mm it must be at least 33 mm"),
         ("--dxf a.dxf --scale 1:0", "scale is '1:0'; it must be a number above 0 or a ratio such as 1:20"),
-        ("--dxf a.dxf --scale small", "scale is 'small'"),
         ("--dxf a.dxf --scale -2", "scale is '-2'"),
         ("--dxf a.dxf --scale 1000", "r1 is 100000 mm, over 1000 widths of 20 mm"),
         (
             "--dxf a.dxf --theta2-deg 90 10",
             "theta2 is 90 to 10 deg; it must be at most a turn, the lesser first",
         ),
-        ("--dxf a.dxf --theta2-deg 0 400", "theta2 is 0 to 400 deg"),
         ("--dxf a.dxf --theta2-deg 0 nan", "theta2_deg is nan"),
         ("--dxf a.dxf --theta2-deg 0", "theta2-deg"),
     ],
@@ -166,7 +161,7 @@ def test_a_missing_library_is_named(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_full_disk_leaves_what_was_there(
+def test_a_full_disk_leaves_the_older_files(
     grashof: Grashof, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def full(path: Path, content: bytes) -> int:
@@ -195,7 +190,7 @@ def test_driver_and_output_share_a_layer_only_where_they_never_meet() -> None:
     assert [near.pin_length(pin) for pin in near.pins] == [10, 10, 10, 20]
 
 
-def test_a_drag_link_gets_a_second_base_and_says_why() -> None:
+def test_a_drag_link_gets_a_second_base_with_the_reason() -> None:
     plan = plan_parts(DRAG)
     found = layers(plan)
     assert (found["base"], found["driver"], found["coupler"], found["output"]) == ((0, 4), (1,), (2,), (3,))
@@ -219,7 +214,7 @@ def test_part_of_the_motion_may_need_fewer_layers() -> None:
     assert "free for theta2 = -68.0 to -29.0 deg, between the dead positions" in one.notes
 
 
-def test_where_p_has_no_hole_it_is_said() -> None:
+def test_a_missing_hole_for_p_is_noted() -> None:
     plan = plan_parts(FourBar((0, 0), (100, 0), 30, 90, 80, (88, 3)), PlateSizes(hole=5))
     assert plan.parts[2].plate.joints == ("A", "B")
     said = "the coupler has no hole for P: it lies 3.606 mm from B, and holes are at least 12.5 mm apart"

@@ -10,16 +10,16 @@ from grashof.problems import Search
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
-from grashof.synth.search.history import Ending, StopCondition
+from grashof.synth.search.history import StopCondition, StopReason
 from grashof.synth.search.searches import Run
 from grashof.synth.search.workers import CRASHED, Work
 
 pytestmark = pytest.mark.usefixtures("small_search")
 ENDINGS = {
-    "whole": ({}, Ending.COMPLETE),
-    "late": ({"time_limit": 1e-6}, Ending.TIME_LIMIT),
-    "stopped": ({"stop": lambda: True}, Ending.STOPPED),
-    "late, not stopped": ({"time_limit": 1e-6, "stop": lambda: False}, Ending.TIME_LIMIT),
+    "whole": ({}, StopReason.COMPLETE),
+    "late": ({"time_limit": 1e-6}, StopReason.TIME_LIMIT),
+    "stopped": ({"stop": lambda: True}, StopReason.STOPPED),
+    "late, not stopped": ({"time_limit": 1e-6, "stop": lambda: False}, StopReason.TIME_LIMIT),
 }
 
 
@@ -46,7 +46,7 @@ def test_a_stop_condition_stays_met() -> None:
     asked = StopCondition(None, lambda: next(answers))
     assert [asked(), asked(), asked()] == [False, True, True]
     assert list(answers) == [False]  # not asked any more
-    assert asked.ending is Ending.STOPPED
+    assert asked.ending is StopReason.STOPPED
 
 
 class Crashing(Work):

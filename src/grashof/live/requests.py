@@ -1,14 +1,14 @@
-"""What a page may ask for: within limits, and refused in a line otherwise."""
+"""Requests of a live page, checked against limits; the jobs for its solvers, and the lines that come back."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn
 
-from grashof.live.jobs import FILES, KINDS, Job
 from grashof.problems import Problem, ProblemError, catalogue, load_with_text
 from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_of, problem_text
@@ -16,6 +16,8 @@ from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.checks import readable
 from grashof.problems.values.errors import wrong_value
 
+KINDS = ("track", "search", "file", "outline")
+FILES = ("problem", "list", "designs", "report", "dxf")
 MOST_BYTES = 1_000_000  # of a request
 MOST_TARGETS = 200
 MOST_CORNERS = 1000  # of all areas, outlines and bodies together
@@ -25,8 +27,36 @@ _DEPTH = 12  # of tables and lists in each other
 _NAME = re.compile(r"[^\w.-]+")
 
 
+@dataclass(frozen=True, slots=True)
+class Job:
+    """Work for a page, one of `KINDS`, with the problem file as JSON and its name.
+
+    `options` are those of its kind: keys of designs, a kind of file, the text of a drawing; `shown` has the
+    designs of the page, as the previous job left them.
+    """
+
+    what: str
+    document: dict[str, Any]
+    name: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    shown: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line of JSON for the page; `shown` has the designs of the page from now on."""
+
+    text: str
+    shown: bytes | None = None
+
+
+def error_line(*lines: str) -> Line:
+    """A line that states an error."""
+    return Line(json.dumps({"kind": "error", "lines": list(lines)}))
+
+
 def request_of(body: bytes) -> dict[str, Any]:
-    """A request as JSON without NaN; ProblemError where it is too large, no JSON, or no table."""
+    """The table in a request; ProblemError where it is too large, has NaN, or is not a table in JSON."""
     if len(body) > MOST_BYTES:
         raise ProblemError(f"the request has {len(body)} bytes; at most {MOST_BYTES} are allowed")
     try:
@@ -43,9 +73,9 @@ def _no_constant(word: str) -> NoReturn:
 
 
 def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
-    """The job that a request asks for; ProblemError where it is malformed or more than one page may ask.
+    """The job of a request with "what", "document", "name", and for some kinds "keys", "key", "file", "text".
 
-    It has "what", "document", "name", and for some kinds "keys", "key", "file" and "text".
+    ProblemError where it is malformed or exceeds a limit.
     """
     what = _one_of(request, "what", KINDS)
     document = request.get("document")
@@ -90,63 +120,52 @@ def _keys(given: object, name: str) -> list[int]:
 
 
 def refuse_too_much(document: dict[str, Any]) -> None:
-    """ProblemError for more targets, corners or effort than a page may ask for.
+    """Refuse more targets, corners or effort than the live page takes (ProblemError).
 
-    What is refused would keep a solver busy for long; `grashof solve` takes it.
+    They would keep a solver busy for long; `grashof solve` takes them.
     """
-    targets = max((len(each) for table in _tables(document) for each in _lists(table)), default=0)
+    tables = [each for key, each in document.items() if isinstance(each, dict) and key != "scene"]
+    lists = [each for table in tables for each in table.values() if isinstance(each, list)]
+    targets = max(map(len, lists), default=0)
     if targets > MOST_TARGETS:
         raise ProblemError(f"the task has {targets} targets; the live page takes at most {MOST_TARGETS}")
-    _numbers(document)
-    wanted = document.get("requirements")
-    areas = wanted.get("keep_out") if isinstance(wanted, dict) else None
-    corners = _numbers(document.get("scene")) + _numbers(areas)
+    _count_numbers(document)  # refuses deep nesting
+    corners = _count_numbers([document.get("scene"), _entry(document, "requirements", "keep_out")])
     if corners > 2 * MOST_CORNERS:
         raise ProblemError(
             f"areas and outlines have {corners // 2} corners; at most {MOST_CORNERS} are drawn"
         )
-    search = document.get("search")
-    effort = search.get("effort") if isinstance(search, dict) else None
+    effort = _entry(document, "search", "effort")
     if isinstance(effort, int | float) and effort > MOST_EFFORT:
         raise ProblemError(f"search.effort is {effort:g}; the live page takes at most {MOST_EFFORT:g}")
 
 
-def _tables(document: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    return (
-        each for each in document.values() if isinstance(each, dict) and each is not document.get("scene")
-    )
+def _entry(document: dict[str, Any], table: str, key: str) -> object:
+    found = document.get(table)
+    return found.get(key) if isinstance(found, dict) else None
 
 
-def _lists(table: dict[str, Any]) -> Iterator[list[Any]]:
-    return (each for each in table.values() if isinstance(each, list))
-
-
-def _numbers(value: object, depth: int = 0) -> int:
-    """How many numbers there are in tables and lists within each other; too deep ones are refused."""
+def _count_numbers(value: object, depth: int = 0) -> int:
+    """Count the numbers in nested tables and lists; refuse those nested too deeply."""
     if depth > _DEPTH:
         raise ProblemError(f"the document has tables in each other more than {_DEPTH} deep")
-    if isinstance(value, dict):
-        value = list(value.values())
-    if isinstance(value, list):
-        return sum(_numbers(each, depth + 1) for each in value)
+    if isinstance(value, dict | list):
+        entries = value.values() if isinstance(value, dict) else value
+        return sum(_count_numbers(each, depth + 1) for each in entries)
     return int(isinstance(value, int | float))
 
 
 def document_from(text: str, name: str) -> dict[str, Any]:
-    """A problem file as JSON; ProblemError where it states no valid problem, or names other files.
-
-    >>> document_from(problem_text("luggage"), "luggage")["motion"]["poses"][0]
-    [5, 4, 0]
-    """
+    """A problem file as JSON; ProblemError where it is invalid or names other files."""
     problem_of(text, f"{name}.toml", name)
     return document_of(text, f"{name}.toml")
 
 
 def beginning(problem: Problem | str | None) -> dict[str, Any]:
-    """What a page begins with: a problem, one of the catalogue, one from a file, or luggage.
+    """The "document" and "name" of a new page: of a problem, one of the catalogue or of a file, or luggage.
 
-    Tables of numbers that a file names become part of the document. ProblemError where it is no problem, or
-    more than a page may ask for.
+    Tables of numbers that a file names become part of the document. ProblemError where the problem is invalid
+    or exceeds a limit.
     """
     if isinstance(problem, Problem):
         found, text = problem, problem_toml(problem)
@@ -154,17 +173,14 @@ def beginning(problem: Problem | str | None) -> dict[str, Any]:
         found, text = load_with_text("luggage" if problem is None else problem)
     try:
         document = document_from(text, found.name)
-    except ProblemError:  # it names files beside it, which the page has no way to
+    except ProblemError:  # it names files beside it, which the page cannot reach
         document = document_of(problem_toml(found), found.name)
     refuse_too_much(document)
     return {"document": document, "name": name_of(Path(found.name).name)}
 
 
 def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
-    """What a page asks for: the problem it begins with, one of the catalogue, or a file's text.
-
-    As "document", "name", and the names of the "catalogue"; ProblemError where it is no problem.
-    """
+    """The "document" and "name" of the first problem, one of the catalogue, or a file's; the "catalogue"."""
     found = begin
     if "text" in request:
         text, name = request["text"], name_of(request.get("name", ""))
