@@ -5,10 +5,9 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
 from typer.testing import CliRunner
 
 import grashof.output.drawing as grashof_drawing
@@ -16,6 +15,9 @@ from grashof import load, synthesize
 from grashof.cli import app
 from grashof.problems import problem_text
 from grashof.synth import Result
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 Grashof = Callable[..., Any]
 
@@ -84,7 +86,7 @@ def browser() -> Iterator[Browser]:
     path = next((name for name in found if name), None)
     if path is None:
         pytest.skip("no Chromium on this machine: the page is not tested in a browser")
-    with sync_playwright() as playwright:
+    with pytest.importorskip("playwright.sync_api").sync_playwright() as playwright:
         started = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield started
         started.close()

@@ -9,7 +9,6 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from IPython.core.interactiveshell import InteractiveShell
 
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.synth import Result
@@ -88,12 +87,14 @@ def test_text_of_the_user_is_text(few: Result) -> None:
     assert not list(parsed(replace(few, problem=problem)).iter("script"))
 
 
+@pytest.mark.extra
 def test_a_notebook_shows_it() -> None:
-    shell = InteractiveShell.instance()
+    interactive = pytest.importorskip("IPython.core.interactiveshell").InteractiveShell
+    shell = interactive.instance()
     try:
         done = shell.run_cell("from grashof.problems import load_linkage_spec\nload_linkage_spec('pumpjack')")
         shown, _ = shell.display_formatter.format(done.result)
         assert shown["text/html"] == load_linkage_spec("pumpjack")._repr_html_()
         assert shown["text/plain"].startswith("LinkageSpec(")
     finally:
-        InteractiveShell.clear_instance()
+        interactive.clear_instance()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from playwright.sync_api import Page
+from typing import TYPE_CHECKING, Any
 
 from grashof.problems import Problem
 from grashof.problems.files.problem_schema import problem_from
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 State = dict[str, Any]
 

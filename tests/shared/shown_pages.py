@@ -1,9 +1,13 @@
 """Shared by tests of pages in a browser: what a page says of itself, and waiting for it."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from playwright.sync_api import Page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 
 def state(page: Page) -> dict[str, Any]:

@@ -6,16 +6,18 @@ import json
 import os
 import signal
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from live_pages import State, keys, linkages, problem_of, searched, shown, stated
-from playwright.sync_api import Page, Route
 from shown_pages import state
 
 from grashof import load, synthesize, track
 from grashof.analysis import solve_kinematics
 from grashof.problems.values.linkages.mechanisms import linkage_of
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Route
 
 
 @pytest.mark.study

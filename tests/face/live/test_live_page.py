@@ -5,14 +5,17 @@ from __future__ import annotations
 import tomllib
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from live_pages import linkages, problem_of, searched, stated
-from playwright.sync_api import Page
 from shown_pages import state
 
 from grashof import load, synthesize
 from grashof.problems.files.problem_schema import problem_from
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 
 def place_of(page: Page, handle: str) -> tuple[float, float]:

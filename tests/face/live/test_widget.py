@@ -5,15 +5,17 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Callable, Coroutine
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from playwright.sync_api import Browser
 
 from grashof import load, synthesize
 from grashof.live import live
 from grashof.live.widget import LiveWidget
 from grashof.problems import ProblemError
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 Run = Callable[[Coroutine[Any, Any, Any]], Any]
 

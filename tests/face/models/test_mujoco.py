@@ -1,6 +1,9 @@
 """The model for MuJoCo moves as the linkage does, and has its masses."""
 
-import mujoco
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,6 +12,9 @@ from grashof.analysis.forces.energy import energies
 from grashof.models import Model, mjcf
 from grashof.problems import LinkageSpec, SliderCrank
 from grashof.problems.values.linkages.mechanism import DyadKind
+
+pytestmark = pytest.mark.extra
+mujoco: Any = pytest.importorskip("mujoco")
 
 AGREES = 1e-5  # of the longest link
 

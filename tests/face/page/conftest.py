@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 import pytest
-from playwright.sync_api import Browser, Page
 
 from grashof import load, synthesize
 from grashof.page.analysis import analysis_page
@@ -20,7 +19,10 @@ from grashof.survey import Fact, LinkageReport, Plot, Section, report_on
 from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+Open = Callable[..., "Page"]
 PagePath = Callable[[str], Path]
 RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
 TITLE = "<script>document.title = 'caught'</script>"

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page
 from shown_pages import state, wait_until
 
 from grashof.survey import LinkageReport
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+Open = Callable[..., "Page"]
 
 
 def plot(page: Page, title: str) -> Locator:

@@ -6,11 +6,10 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import driver_ranges, solve_kinematics, solve_position, transmission_angle
@@ -24,6 +23,9 @@ from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, Li
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import LOOP_POINTS
 from grashof.survey import report_on
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 TEMPLATES = Path(designs.__file__).parent / "templates"
 ONE_LOOP: dict[str, Linkage] = {

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Locator, Page
 from shown_pages import state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
@@ -15,7 +14,10 @@ from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import FourBar
 from grashof.synth import Result
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+Open = Callable[..., "Page"]
 # Points of the scatter plot that a click in their middle meets.
 UNCOVERED = """
 [...document.querySelectorAll(".point")].filter((node) => {

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import pandas as pd
 import pytest
-from playwright.sync_api import Page, expect
 from shown_pages import state
 
 from grashof.synth import Result
 from grashof.synth.designs.table import NAMES
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+Open = Callable[..., "Page"]
 
 
 def test_columns_are_sorted(opened: Open, few: Result) -> None:
@@ -43,6 +46,7 @@ def test_designs_are_filtered(opened: Open, few: Result) -> None:
     assert page.locator("form output").inner_text() == f"{both.sum()} of {len(frame)}"
     assert page.locator(".point:not(.filtered)").count() == both.sum()
     page.locator("button[type=reset]").click()
+    expect = pytest.importorskip("playwright.sync_api").expect
     expect(page.locator("form output")).to_have_text(f"{len(frame)} of {len(frame)}")
     page.check("[name=pareto]")
     assert set(state(page)["listed"]) == set(frame.loc[frame["pareto"], "id"])

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Page
 from shown_pages import state
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+Open = Callable[..., "Page"]
 
 
 def open_all(page: Page) -> None:

@@ -7,18 +7,20 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pandas as pd
 from PIL import Image
-from playwright.sync_api import Page
 
 from grashof.survey import LinkageReport
 from grashof.synth import Result
 
-Open = Callable[..., Page]
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+Open = Callable[..., "Page"]
 HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 SVG = "{http://www.w3.org/2000/svg}"
 

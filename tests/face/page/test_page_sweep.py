@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Page
 from shown_pages import state
 
 from grashof.sweep import Sweep, load_study, sweep
 from grashof.sweep.page import sweep_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 BASE = """\
 kind = "path"

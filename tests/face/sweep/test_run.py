@@ -184,6 +184,7 @@ def test_equal_combinations_are_solved_once(write: Write, texts: list[str]) -> N
     assert done.to_frame()["combination"].tolist() == [1, 2, 3]
 
 
+@pytest.mark.extra
 def test_parquet_is_the_same_table(write: Write, tmp_path: Path, texts: list[str]) -> None:
     pytest.importorskip("pyarrow")
     sweep(write(f"parquet = true\n{write().read_text()}"), out=tmp_path / "out")

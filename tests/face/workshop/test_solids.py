@@ -12,6 +12,7 @@ from grashof.workshop import Plan, PlateSizes, plan_parts
 from grashof.workshop.plates import Plate
 from grashof.workshop.solids import TOLERANCE, step, stl
 
+pytestmark = pytest.mark.extra
 cad = pytest.importorskip("build123d")
 
 LINKAGES = [
