@@ -1,6 +1,6 @@
 """Make the picture of the page for the documentation: solve the luggage problem and take a screenshot.
 
-Needs Chromium and the package playwright (`pip install '.[test]'`).
+Needs Chromium and the package playwright (`pip install playwright`).
 """
 
 import argparse
