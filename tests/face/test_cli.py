@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -77,8 +78,15 @@ def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
         ("solve luggage --effort nan", "--effort"),
         ("solve", "PROBLEM"),
         ("solv luggage", "solve"),
-        ("solve luggage --scheduler x", "--scheduler x: missing port number"),
         (f"solve luggage --out {'x' * 300}", "File name too long"),
+        pytest.param(
+            "solve luggage --scheduler x",
+            "--scheduler x: missing port number",
+            marks=[
+                pytest.mark.extra,
+                pytest.mark.skipif(find_spec("distributed") is None, reason="needs Dask"),
+            ],
+        ),
     ],
 )
 def test_bad_usage_is_one_line(grashof: Grashof, tmp_path: Path, arguments: str, said: str) -> None:

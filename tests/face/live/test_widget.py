@@ -11,12 +11,15 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.live import live
-from grashof.live.widget import LiveWidget
 from grashof.problems import ProblemError
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+    from grashof.live.widget import LiveWidget
+
+pytest.importorskip("anywidget")
+pytestmark = pytest.mark.extra
 Run = Callable[[Coroutine[Any, Any, Any]], Any]
 
 

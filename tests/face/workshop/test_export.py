@@ -55,7 +55,9 @@ def test_all_three_at_once(grashof: Grashof, tmp_path: Path) -> None:
     assert (tmp_path / "jack.svg").read_bytes() == first.replace(b"scale 1:20", b"scale 0.05")
 
 
+@pytest.mark.extra
 def test_every_format_has_an_option_and_is_written(grashof: Grashof, tmp_path: Path) -> None:
+    pytest.importorskip("build123d")
     options = {parameter.name for parameter in get_command(app).commands["export"].params}  # type: ignore[attr-defined]
     assert {*FORMATS, WORKBOOK} <= options
     files = {name: f"jack{each.ending}" for name, each in FORMATS.items()}
