@@ -46,7 +46,7 @@ class FreeResponse:
     Parameters
     ----------
     time : ndarray, shape (N,), s
-        The requested times, as far as the motion went.
+        The requested times that the motion reached.
     state : Kinematics
         Of shape (N,).
     energy : ndarray, shape (N,), N length
@@ -212,7 +212,7 @@ def _moved(
     tolerance: float,
     rubbing: _Rubbing,
 ) -> tuple[list[Path], Ending]:
-    """Parts of the motion, in each of which joints with friction turn in one sense, and how it ended."""
+    """Parts of the motion, each without a change of sense in a joint with friction, and its end."""
     now, last, path = float(time[0]), float(time[-1]), list[Path]()
     fastest = abs(omega2)
     while True:

@@ -216,7 +216,7 @@ class ExportOptions:
 
 
 def parameters(options: type[Any]) -> list[Parameter]:
-    """The fields of a class of options as parameters of a command, of which Typer makes its options."""
+    """The fields of a class of options as parameters of a command, from which Typer makes its options."""
     hints = get_type_hints(options, include_extras=True)
     return [
         Parameter(each.name, Parameter.KEYWORD_ONLY, default=each.default, annotation=hints[each.name])

@@ -85,7 +85,7 @@ class Quantity:
 
     @property
     def deviates(self) -> bool:
-        """Whether it is a deviation, a length or an angle, of which zero is best."""
+        """Whether it is a deviation, a length or an angle whose best value is zero."""
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
@@ -246,7 +246,7 @@ class Kind(Enum):
     DIRECTION = auto()  # an angle, or [lo, hi]
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
-    WORD = auto()  # one of several words, each of which allows a range
+    WORD = auto()  # one of several words, each allowing a range
 
     @property
     def is_angle(self) -> bool:

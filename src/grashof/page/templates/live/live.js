@@ -307,7 +307,7 @@ class Live {
     this.tell("not a task");
   }
 
-  // A refusal is told; a server that does not answer is asked again.
+  // A refusal is shown; a request without an answer is sent again.
   failed(error, again) {
     if (error.lines) return this.refused(error.lines);
     this.notice("The server does not answer; it is asked again every two seconds. Is grashof live still running?");
