@@ -128,7 +128,7 @@ def _move(name: str) -> Quantity:
 
 
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
-_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
 _RMS = " (root mean square)"
 _ALL = f"error of positions and angles{_RMS}"
 _WORST = "worst transmission angle over the"

@@ -1,5 +1,5 @@
 // Curves over the driver angle, with a mark that follows it, or over anything else.
-const PEAK = 12; // a rate is drawn up to so many times its typical size, where it grows without bound
+const PEAK = 12; // a rate is drawn up to this multiple of its typical size, where it grows without bound
 
 class Curves extends Picture {
   // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (what the

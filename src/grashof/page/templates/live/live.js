@@ -310,7 +310,7 @@ class Live {
   // A refusal is shown; a request without an answer is sent again.
   failed(error, again) {
     if (error.lines) return this.refused(error.lines);
-    this.notice("The server does not answer; it is asked again every two seconds. Is grashof live still running?");
+    this.notice("The server does not answer; the request is repeated every two seconds. Is grashof live still running?");
     this.tell("no answer");
     setTimeout(again, AGAIN);
   }
