@@ -99,7 +99,7 @@ class ProveOptions:
         float | None, _unset("Only decide whether a design has this many deg.", min=0, max=90)
     ] = None
     gap: _Gap = 0.01
-    time_limit: Annotated[float | None, _unset("Seconds after which the bound so far counts.")] = None
+    time_limit: Annotated[float | None, _unset("Seconds after which the current bound counts.")] = None
     certificate: Annotated[
         Path | None,
         _unset("File for the proof of four poses, for scripts/check_certificate.py.", metavar="FILE"),

@@ -227,7 +227,7 @@ class Live {
   curves(design) {
     const { angles } = travelPath(design);
     $("#transmission", this.root).hidden = false;
-    $("#velocity", this.root).hidden = !this.task.list; // of functions and strokes P means nothing
+    $("#velocity", this.root).hidden = !this.task.list; // P has no meaning for functions and strokes
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.stage.scene.closed || !design.task;
