@@ -136,7 +136,7 @@ class AnalyseOptions:
         float | None,
         _option(
             "Driver angle from which paths are fitted.",
-            show_default="the task motion of a design, or all that the driver does",
+            show_default="the task motion of a design, or the full range of the driver",
         ),
     ] = None
     fit_to_deg: Annotated[float | None, _unset("Driver angle up to which they are.")] = None
@@ -211,7 +211,7 @@ class ExportOptions:
     mm_per_unit: Annotated[float | None, _unset("Where the length unit is not mm, cm, m, in or ft.")] = None
     theta2_deg: Annotated[
         tuple[float, float] | None,
-        _unset("Range of driver angles used; all that the driver reaches by default.", metavar="LOW HIGH"),
+        _unset("Range of driver angles used; the full range by default.", metavar="LOW HIGH"),
     ] = None
 
 

@@ -55,7 +55,7 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
     low, high = study.sweep.ranges[0]
     if study.sweep.turns:
         return low, high, "over the whole turn"
-    part = "all that the driver does" if len(study.sweep.ranges) == 1 else "its first range"
+    part = "the full range of the driver" if len(study.sweep.ranges) == 1 else "its first range"
     return low + INSET, high - INSET, f"over {part}"
 
 
