@@ -1,1 +1,1 @@
-"""Coupler curves: their shape, their special points, what approximates them."""
+"""Coupler curves: their shape, special points and approximations."""

@@ -1,1 +1,1 @@
-"""Enclosures: what a linkage does over intervals of its driver angle, with outward rounding."""
+"""Enclosures of a linkage's motion over intervals of its driver angle, with outward rounding."""

@@ -61,7 +61,7 @@ def bar_lengths(linkage: Linkage) -> dict[int, float]:
 def longest_travel(linkage: Linkage) -> FloatArray:
     """Greatest distance between A and B on the rod of an inverted slider-crank, shape (...).
 
-    A comes as far as r1 + r2 from O4 whether the driver turns or swings; 0 where the linkage never closes.
+    A lies up to r1 + r2 from O4 whether the driver turns or swings; 0 where the linkage never closes.
     """
     farthest = linkage.r1 + linkage.r2
     return np.nan_to_num(np.abs(dyad_of(linkage).close(farthest, np.zeros_like(farthest)).reach))

@@ -34,7 +34,7 @@ _ROUNDS = 50  # of friction that depends on the acceleration, where a driver set
 class Ending(StrEnum):
     """Why a free motion ended."""
 
-    TIME = "the time asked for is over"
+    TIME = "the requested time is over"
     DEAD_POSITION = "the driver came to a dead position"
     AT_REST = "friction brought the driver to rest"
 
@@ -46,7 +46,7 @@ class FreeResponse:
     Parameters
     ----------
     time : ndarray, shape (N,), s
-        The requested times, as far as the motion went.
+        The requested times that the motion reached.
     state : Kinematics
         Of shape (N,).
     energy : ndarray, shape (N,), N length
@@ -119,7 +119,7 @@ def free_response(
     >>> crank_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
     >>> free = free_response(crank_rocker, uniform_bars(crank_rocker, 2.0), [0, 1, 2], 0.0, 5.0)
     >>> bool(np.ptp(free.energy) < 1e-7 * free.energy[0]), str(free.ending)
-    (True, 'the time asked for is over')
+    (True, 'the requested time is over')
     """
     loads = Loads() if loads is None else loads
     at = np.asarray(time, dtype=np.float64)
@@ -212,7 +212,7 @@ def _moved(
     tolerance: float,
     rubbing: _Rubbing,
 ) -> tuple[list[Path], Ending]:
-    """Parts of the motion, in each of which joints with friction turn in one sense, and how it ended."""
+    """Parts of the motion, each without a change of sense in a joint with friction, and its end."""
     now, last, path = float(time[0]), float(time[-1]), list[Path]()
     fastest = abs(omega2)
     while True:

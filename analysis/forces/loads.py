@@ -300,7 +300,7 @@ def spring_pull(spring: Spring, first: PointMotion, second: PointMotion) -> Floa
 
 
 def known_joint_moments(state: Kinematics, loads: Loads, senses: FloatArray | None = None) -> FloatArray:
-    """Moments (J, ...) of joints on their second links, of slides forces, as far as no joint force is needed.
+    """Moments (J, ...) of joints on their second links, of slides forces: the part that needs no joint force.
 
     `senses` (J,) are those in which friction takes the joints to turn, or to slide; by default as they do.
     """

@@ -128,7 +128,7 @@ def _lines(linkage: Linkage) -> dict[str, tuple[str, ...]]:
         for link in linkage.mechanism.links[1:]
         for ends in link.lines
     }
-    if (3, 4) in linkage.mechanism.slides:  # the rod reaches as far as its block
+    if (3, 4) in linkage.mechanism.slides:  # the rod reaches to its block
         named["link AB"] = ("a", "b")
     return dict(sorted(named.items(), key=lambda part: part[0].startswith("line")))
 

@@ -99,7 +99,7 @@ def integrate_motion(
 
     `acceleration` may be NaN where no motion exists, which no panel reaches. An event that is below zero at
     the start counts once it has been above. `tolerance` bounds the error of speed and position within a
-    panel, as a share of their changes so far and of `fastest`, the greatest earlier speed (rad/s).
+    panel, as a share of their changes up to there and of `fastest`, the greatest earlier speed (rad/s).
     Collocation at 16 Gauss-Legendre points of each panel, of order 32 (Hairer, Lubich & Wanner, *Geometric
     Numerical Integration*, sec. II.1); the last terms of the polynomial estimate the error. SolverError if
     panels become too short.

@@ -48,7 +48,7 @@ class _Nested(SpecTable):
 
 
 class _FromFile(_Nested):
-    """A table whose `values` may be in a CSV file beside it; its columns depend on what they are over."""
+    """A table whose `values` may be in a CSV file beside it; its columns depend on their variable."""
 
     columns: ClassVar[Mapping[str, _Kinds]]
 

@@ -185,7 +185,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
         raise ProblemError(
             f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
         ) from None
-    # JSON can spell what no file can hold.
+    # JSON can spell values that no file can.
     heading, unit = (checks.readable(word) if isinstance(word, str) else word for word in (heading, unit))
     document = {"title": heading, "length_unit": unit, "mechanism": kind, **as_document(stated)}
     document["dynamics"] = content.get("dynamics", {})

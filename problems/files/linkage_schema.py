@@ -217,7 +217,7 @@ class LinkageTable(_Checked, MachineTables, _Heading):
     one_loop: ClassVar[Mechanism]  # the kind without a second dyad
 
     def value(self) -> Linkage:
-        """The linkage itself, checked with what belongs to it."""
+        """The linkage itself, checked with its other values."""
         kind = self._kind()
         if (dynamics := self.dynamics_spec(kind)) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known

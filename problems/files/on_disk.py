@@ -116,7 +116,7 @@ def read_by_others(wanted: str) -> Iterator[None]:
             yield
     except ProblemError:
         raise
-    except Exception as error:  # noqa: BLE001  (no library documents what damaged bytes make it raise)
+    except Exception as error:  # noqa: BLE001  (no library documents its errors for damaged bytes)
         said = str(error).split("\n", maxsplit=1)[0].strip()
         raise ProblemError(f"is not {wanted}: {shown(said) if said else type(error).__name__}") from None
 

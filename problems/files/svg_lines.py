@@ -67,7 +67,7 @@ def _plain(content: bytes) -> bytes:
     """The drawing reduced to its lines; refused if it is too large to be read in about a second."""
     budget, depth = Budget(2 * MOST_POINTS, "places", "groups"), 0
     found: ElementTree.Element | None = None
-    # Expat itself limits what entities expand to.
+    # Expat itself limits the expansion of entities.
     for event, element in ElementTree.iterparse(BytesIO(content), events=("start", "end")):  # noqa: S314
         depth += 1 if event == "start" else -1
         if event == "start":

@@ -27,7 +27,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from grashof.problems.values.checks import hint, plain_text
 from grashof.problems.values.errors import ProblemError, listing, shown, shown_key
 
-# Type of a validator's error; its message is what the value must be.
+# Type of a validator's error; its message states the requirement on the value.
 WRONG = "wrong"
 # Tags distinguish the shapes of a value. They enter the location of an error and are left out of its path.
 TABLE, LIST, WORD, NUMBER = "<table>", "<list>", "<word>", "<number>"
@@ -108,7 +108,7 @@ _MOST_ENTRIES = 20_000  # of any list, such as the corners of a drawing
 
 
 def unless(accepted: Callable[[Any], bool], wanted: str) -> partial[Any]:
-    """The check that refuses a value, with what it must be, unless it is accepted."""
+    """The check that refuses a value, and states the requirement, unless it is accepted."""
     return partial(_checked, accepted=accepted, wanted=wanted)
 
 
@@ -119,7 +119,7 @@ def _checked(value: Any, *, accepted: Callable[[Any], bool], wanted: str) -> Any
 
 
 def listed(wanted: str, most: int = _MOST_ENTRIES) -> BeforeValidator:
-    """Validator that refuses what is not a list, and a list that is too long."""
+    """Validator that refuses values other than lists, and lists that are too long."""
     return BeforeValidator(partial(_listed, wanted=wanted, most=most))
 
 

@@ -34,7 +34,7 @@ Zone = Annotated[
 
 
 class TargetsTable(SpecTable):
-    """Targets, and what goes with them. Each key is tried by itself, on plain targets."""
+    """Targets and their options. Each key is checked by itself, on plain targets."""
 
     plain: ClassVar[list[float]]  # a target, but for its x
     fewest: ClassVar[int]

@@ -311,7 +311,7 @@ def with_article(noun: str) -> str:
 
 
 def near_miss(word: str, words: Sequence[str]) -> str | None:
-    """The one of `words` of which `word` may be a misspelling, if any."""
+    """The entry of `words` that `word` may misspell, if any."""
     by_folded = {name.casefold(): name for name in words}
     close = difflib.get_close_matches(word.casefold(), by_folded, n=1)
     return by_folded[close[0]] if close else None
@@ -329,7 +329,7 @@ def readable(text: str) -> str:
 
 
 def no_formula(text: str) -> str:
-    r"""Text that no spreadsheet takes for a formula and runs: a quotation mark before what begins like one.
+    r"""Text that no spreadsheet runs as a formula: a quotation mark before text that begins like one.
 
     Also behind a semicolon, at which many spreadsheets divide the lines of a CSV file.
 

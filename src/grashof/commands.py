@@ -38,7 +38,7 @@ from grashof.problems import (
 
 
 def check(problem: ProblemName) -> None:
-    """Read PROBLEM and print what will be required of a design, without solving."""
+    """Read PROBLEM and print the requirements on a design, without solving."""
     from grashof.output.terminal import folded
     from grashof.synth.proof.curve.required import enclosed
     from grashof.synth.results.explain import advice
@@ -77,9 +77,9 @@ def prove(problem: ProblemName, options: ProveOptions) -> ExitCode:
 
 
 def judge(linkage: LinkageName, problem: ProblemName) -> ExitCode:
-    """Print whether LINKAGE, your own, does what PROBLEM requires, what it misses, and its figures.
+    """Print whether your own LINKAGE meets PROBLEM, the requirements that it misses, and its figures.
 
-    By the judge of every search, from the linkage alone. Exit code 0: it does; 1: it does not; 2: bad input;
+    By the judge of every search, from the linkage alone. Exit code 0: met; 1: missed; 2: bad input;
     3: environment error.
     """
     from grashof.wording.problem import judged_for, verdict_lines

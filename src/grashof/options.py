@@ -99,7 +99,7 @@ class ProveOptions:
         float | None, _unset("Only decide whether a design has this many deg.", min=0, max=90)
     ] = None
     gap: _Gap = 0.01
-    time_limit: Annotated[float | None, _unset("Seconds after which the bound so far counts.")] = None
+    time_limit: Annotated[float | None, _unset("Seconds after which the current bound counts.")] = None
     certificate: Annotated[
         Path | None,
         _unset("File for the proof of four poses, for scripts/check_certificate.py.", metavar="FILE"),
@@ -136,7 +136,7 @@ class AnalyseOptions:
         float | None,
         _option(
             "Driver angle from which paths are fitted.",
-            show_default="the task motion of a design, or all that the driver does",
+            show_default="the task motion of a design, or the full range of the driver",
         ),
     ] = None
     fit_to_deg: Annotated[float | None, _unset("Driver angle up to which they are.")] = None
@@ -211,12 +211,12 @@ class ExportOptions:
     mm_per_unit: Annotated[float | None, _unset("Where the length unit is not mm, cm, m, in or ft.")] = None
     theta2_deg: Annotated[
         tuple[float, float] | None,
-        _unset("Range of driver angles used; all that the driver reaches by default.", metavar="LOW HIGH"),
+        _unset("Range of driver angles used; the full range by default.", metavar="LOW HIGH"),
     ] = None
 
 
 def parameters(options: type[Any]) -> list[Parameter]:
-    """The fields of a class of options as parameters of a command, of which Typer makes its options."""
+    """The fields of a class of options as parameters of a command, from which Typer makes its options."""
     hints = get_type_hints(options, include_extras=True)
     return [
         Parameter(each.name, Parameter.KEYWORD_ONLY, default=each.default, annotation=hints[each.name])

@@ -20,7 +20,7 @@ _ROUNDING = 1e-13  # share of the size: sums of squares that differ by less than
 
 @dataclass(frozen=True, slots=True)
 class Targets:
-    """The linkage as near to each target as it comes: driver angle (N,) in rad, assembly, and errors.
+    """The closest approach of the linkage to each target: driver angle (N,) in rad, assembly, and errors.
 
     NaN where no position or angle is given; inf where it cannot be assembled; `output_error` (rad) is empty
     but for functions.

@@ -41,7 +41,7 @@ class PumpingUnitSpec(TableValue):
         Instead: (crank angle in deg, N) over a turn; or (position, N on the up stroke, N on the down
         stroke) from 0 to 1. Between rows it follows a curve through them.
     over : str
-        What the rows of `values` are over: "crank" or "position".
+        Variable of the rows of `values`: "crank" or "position".
     """
 
     well: str = "right"

@@ -29,7 +29,7 @@ class Parameter:
 
     name: str  # in Python and JSON
     kind: Literal["place", "station", "arm", "length", "distance", "sign", "angle"]
-    column: str = ""  # what its columns in tables begin with, where that is not the name
+    column: str = ""  # prefix of its columns in tables, where that is not the name
 
     @property
     def paired(self) -> bool:

@@ -30,7 +30,7 @@ DIMENSIONS: tuple[str, ...] = (
 ANY_KINDS = f"{listing(list(ONE_LOOP))}, or a list of these"
 
 
-# What makes them in Python, and describes their parameters; six-bars are `SixBar`.
+# Their classes in Python, which describe their parameters; six-bars are `SixBar`.
 CLASSES: dict[str, type[Linkage]] = dict(
     zip(ONE_LOOP, (FourBar, SliderCrank, InvertedSliderCrank), strict=True)
 )

@@ -58,7 +58,7 @@ class SixBar(Linkage):
     Raises
     ------
     ProblemError
-        Hosts other than these, `d` and `r6` together with a slide or neither, or what `FourBar` refuses.
+        Hosts other than these, `d` and `r6` together with a slide or neither, or values `FourBar` refuses.
 
     Notes
     -----

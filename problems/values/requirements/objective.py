@@ -42,7 +42,7 @@ class Objective:
         the problem; it needs dynamics.
     **others : float
         Weights of any other quantity that can be better or worse (`GOALS`), such as
-        ``joint_force_peak``; see `Problem.scale` for what each is counted in.
+        ``joint_force_peak``; see `Problem.scale` for the unit of each.
 
     Raises
     ------

@@ -85,7 +85,7 @@ class Quantity:
 
     @property
     def deviates(self) -> bool:
-        """Whether it is a deviation, a length or an angle, of which zero is best."""
+        """Whether it is a deviation, a length or an angle whose best value is zero."""
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
@@ -128,7 +128,7 @@ def _move(name: str) -> Quantity:
 
 
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
-_FITTED = "what least squares makes small: root mean square of positions and angles together, weighted"
+_FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
 _RMS = " (root mean square)"
 _ALL = f"error of positions and angles{_RMS}"
 _WORST = "worst transmission angle over the"
@@ -246,7 +246,7 @@ class Kind(Enum):
     DIRECTION = auto()  # an angle, or [lo, hi]
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
-    WORD = auto()  # one of several words, each of which allows a range
+    WORD = auto()  # one of several words, each allowing a range
 
     @property
     def is_angle(self) -> bool:

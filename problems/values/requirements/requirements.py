@@ -55,7 +55,7 @@ _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _TARGETS = "from the first target to the last"
 _ADVANTAGE = "mechanical advantage"
-# What structural errors of a slide, in the unit of length, are as quantities.
+# The quantities for structural errors of a slide, in the unit of length.
 TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
 
 

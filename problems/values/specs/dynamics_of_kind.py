@@ -70,7 +70,7 @@ def _angles(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 
 
 def _over(kind: Mechanism, but: str = "") -> list[str]:
-    """What loads may be over: angles of existing links, travel and time."""
+    """The variables of loads: angles of existing links, travel and time."""
     angles = [f"theta{link.number}" for link in kind.links]
     return [word for word in OVER if (word in angles or word not in TURNING) and word != but]
 

@@ -1,4 +1,4 @@
-"""A linkage with what else its file, or the list it comes from, states."""
+"""A linkage with the other contents of its file, or of the list it comes from."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from grashof.problems.values.value_bases import Displayed, check_fields
 
 @dataclass(frozen=True, slots=True)
 class LinkageSpec(Displayed):
-    """A linkage with what else its file states.
+    """A linkage with the other contents of its file.
 
     Parameters
     ----------
     linkage : Linkage
     name, title, source, length_unit : str
     output_arm : float, length, optional
-        Radius about O4 of what the output link drives, such as a horsehead: its stroke and torque
+        Radius about O4 of the part that the output link drives, such as a horsehead: its stroke and torque
         factor are reported.
     dynamics : DynamicsSpec, optional
-        Masses, speed, gravity and what else acts; it need not have masses.
+        Masses, speed, gravity and other loads; it need not have masses.
     pumping_unit : PumpingUnitSpec, optional
         Where the linkage is one; `output_arm` is then that of its horsehead.
     problem : Problem, optional
-        Of a design out of a list: what it was found for.
+        Of a design out of a list: the task it was found for.
     cylinder : Cylinder, optional
         That drives it.
     """
@@ -74,7 +74,7 @@ class LinkageSpec(Displayed):
 
 @dataclass(frozen=True, slots=True)
 class ListedDesign:
-    """A design of a candidates list, with what the list states of its targets."""
+    """A design of a candidates list, with the list's data on its targets."""
 
     spec: LinkageSpec
     rank: int

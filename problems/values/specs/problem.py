@@ -349,7 +349,7 @@ class Problem(ReadOnly):
 
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
-# Whether a problem states what a quantity needs, and the error where it does not; other needs are always met.
+# Test that a problem states the data for a need, and the error otherwise; other needs are always met.
 _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
     Needs.DYNAMICS: (lambda problem: problem.dynamics is not None, "dynamics is missing"),
     Needs.MANUFACTURING: (lambda problem: problem.manufacturing is not None, "manufacturing is missing"),

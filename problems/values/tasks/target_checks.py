@@ -45,7 +45,7 @@ def driver_timing(values: npt.ArrayLike | None, count: int, kind: str, target: s
     """Driver rotations from the first of `count` targets, shape (count,), rad; `ProblemError` for others.
 
     Zero at the first target, then growing or falling throughout, over at most one turn. Messages name the
-    table of problem files and what it calls a target, and are in degrees.
+    table of problem files and its word for a target, and are in degrees.
     """
     if values is None:
         return None

@@ -32,7 +32,7 @@ class Task(ReadOnly, ABC):
     __slots__ = ()
 
     kind: ClassVar[str]  # its table in problem files
-    target: ClassVar[str]  # what a target is called in messages
+    target: ClassVar[str]  # word for a target in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
     without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that do not apply to it
     no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty if it can
@@ -192,7 +192,7 @@ class Task(ReadOnly, ABC):
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> Self:
         """Some of the targets in order, `index` (K,), moved to other positions (K, 2) and angles (K,).
 
-        What a target leaves free stays free.
+        Free values of a target stay free.
         """
 
     @property

@@ -83,7 +83,7 @@ def linkage2(model: Model) -> str:
 
 
 def _guide(model: Model, scene: Scene, slide: Slide) -> FloatArray:
-    """Ends of a guide on the ground that is somewhat longer than the way of its slider, shape (2, 2)."""
+    """Ends of a guide on the ground that is somewhat longer than the travel of its slider, shape (2, 2)."""
     low, high = scene.reach(slide)
     ends = np.array([low, high]) + _LONGER * (high - low) * np.array([-1, 1])
     along = np.array([np.cos(slide.angle), np.sin(slide.angle)])

@@ -1,4 +1,4 @@
-// What the scripts of the pages have besides each other.
+// Globals of the page scripts.
 
 interface Window {
   grashof: Readonly<{ state: () => any }>;

@@ -103,10 +103,10 @@ def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Balanced, str]:
     kind = linkage.mechanism
     if len(kind.dyads) == 1 and not output_turns(kind):
         half = balance_reciprocating(linkage, masses, 0.5)
-        what = "what turns with the crank and half of what goes to and fro"
+        balanced = "the rotating and half of the reciprocating masses"
         return _Balanced(
             half.masses, {2: half.crank_weight}
-        ), f"the counterweight at r2 is against {what}; {same}"
+        ), f"the counterweight at r2 balances {balanced}; {same}"
     full = balance_force(linkage, masses)
     place = "r4" if plain(kind) else "r2"
     weights = {2: full.crank_weight, 4: full.output_weight}

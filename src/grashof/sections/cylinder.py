@@ -21,7 +21,7 @@ KEY, _TITLE = "cylinder", "Cylinder"
 _SAMPLES = 181
 _NOTES = (
     "over the task motion; the lever angle is that between the cylinder and the arm of its pivot, on "
-    "coupler and slider 90 deg less the angle between the cylinder and the way of its pivot",
+    "coupler and slider 90 deg less the angle between the cylinder and the path of its pivot",
 )
 _FORCES = "positive forces push; mass and friction of the cylinder itself are left out"
 

@@ -217,5 +217,5 @@ def flywheel(study: LinkageStudy) -> Section | None:
     places = np.degrees(theta2).round(9)
     plot = Plot("flywheel-speed", "speed of the driver with the flywheel", "rpm", {"speed": speed}, places)
     columns = pd.DataFrame({"theta2_deg": places, "speed_rpm": speed})
-    notes = ("its inertia comes besides that of the links; it holds for small fluctuations",)
+    notes = ("its inertia is additional to that of the links; valid for small fluctuations",)
     return Section("flywheel", "Flywheel", facts, {"flywheel": columns}, (plot,), notes)

@@ -44,7 +44,7 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
     asked, problem = study.asked, study.spec.problem
     if asked.fit_from_deg is not None and asked.fit_to_deg is not None:
         start, end = _requested(study, asked.fit_from_deg, asked.fit_to_deg)
-        return start, end, "over the part asked for"
+        return start, end, "over the requested part"
     if problem is not None and not problem.task.closed:
         done = problem.task, problem.requirements
         verdict = verify(study.linkage, *done, problem=problem, cylinder=study.spec.cylinder)
@@ -55,7 +55,7 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
     low, high = study.sweep.ranges[0]
     if study.sweep.turns:
         return low, high, "over the whole turn"
-    part = "all that the driver does" if len(study.sweep.ranges) == 1 else "its first range"
+    part = "the full range of the driver" if len(study.sweep.ranges) == 1 else "its first range"
     return low + INSET, high - INSET, f"over {part}"
 
 
@@ -184,8 +184,8 @@ def _notes(study: LinkageStudy, paths: list[FittedPath], words: str) -> Iterator
     back = [path.label for path in paths if path.turns_back]
     if back:
         yield (
-            f"x turns back along the path of {', '.join(back)}: y is no function of x there, and no degree "
-            "mends it; the fits of x and y over theta2 are right"
+            f"x turns back along the path of {', '.join(back)}: y is not a function of x there; no degree "
+            "corrects this; the fits of x and y over theta2 are right"
         )
     if study.masses is None:
         yield "the file states no masses: points halfway between joints"

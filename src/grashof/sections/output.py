@@ -60,7 +60,7 @@ def function_section(study: LinkageStudy) -> Section | None:
     way = "along the slide" if task.travels else "in the sense of the driver"
     between = "between pairs the wanted output is the cubic spline through them"
     notes = (
-        f"error is output less what is wanted, {way}",
+        f"error is generated less wanted output, {way}",
         between if task.law is None else f"wanted is the law {task.law.name}",
     )
     return Section("function", "Function", tuple(_function_facts(task, verdict, unit)), tables, plots, notes)
@@ -191,9 +191,9 @@ def _ratios(study: LinkageStudy, state: Kinematics) -> Columns:
 def _holding_plots(columns: Columns, n: int) -> Iterator[Plot]:
     for key, what in (("torque", "torque on link 2"), ("moment", f"moment on link {n}")):
         column = "holding_torque" if key == "torque" else f"holding_moment_on_{n}"
-        yield curves(columns, f"holding-{key}", f"what holds it at rest: {what}", "N m", {key: column})
+        yield curves(columns, f"holding-{key}", f"holding at rest: {what}", "N m", {key: column})
     forces = {"along its path": "holding_force_at_p", "x": "holding_force_x", "y": "holding_force_y"}
-    yield curves(columns, "holding-force", "what holds it at rest: force at P", "N", forces)
+    yield curves(columns, "holding-force", "holding at rest: force at P", "N", forces)
 
 
 def _ratio_facts(study: LinkageStudy) -> Iterator[Fact]:

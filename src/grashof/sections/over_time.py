@@ -65,7 +65,7 @@ def _notes(study: LinkageStudy, history: History) -> tuple[str, ...]:
     if history.complete:
         return ()
     end = f"the history ends after {history.time[-1]:.6g} s"
-    return (f"{end}, before the dead position that the driver comes to: it moves {study.reach}",)
+    return (f"{end}, before the dead position that the driver reaches: it moves {study.reach}",)
 
 
 def sawtooth(time: FloatArray, angle_deg: FloatArray) -> tuple[FloatArray, FloatArray]:

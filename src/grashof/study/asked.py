@@ -21,7 +21,7 @@ _MOST_DEGREES = 1e6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """The options of an analysis: what it reports beyond the usual.
+    """The options of an analysis: its additional results.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ class Fact:
     key : str
         Its name in files.
     label : str
-        What people read.
+        Label for the reader.
     value : float, int, str or bool
     unit : str
     aside : bool

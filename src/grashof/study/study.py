@@ -37,7 +37,7 @@ class LinkageStudy:
 
     @property
     def spec(self) -> LinkageSpec:
-        """The linkage with what its file states."""
+        """The linkage with the contents of its file."""
         return self.sweep.spec
 
     @property

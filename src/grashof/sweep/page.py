@@ -135,7 +135,7 @@ def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
         ),
         Heading("status", "status", text=True),
         Heading("designs", "designs", better=1),
-        *(named or [Heading("note", "what stood in the way", text=True)]),
+        *(named or [Heading("note", "reason for no design", text=True)]),
     ]
 
 

@@ -92,7 +92,7 @@ class Sweep:
             return None
         decides = next(iter(solved.values()))["decides"]
         values = {number: one["designs"][0].get(decides["column"]) for number, one in solved.items()}
-        # Six digits: a search leaves smaller differences open, of which the first decides.
+        # Six digits: a search leaves smaller differences open, and the first decides.
         known = {number: float(f"{float(x):.6g}") for number, x in values.items() if x is not None}
         return max(known, key=lambda each: decides["better"] * known[each], default=None)
 

@@ -169,9 +169,9 @@ class StudyFile(Table):
     problem : str
         The problem that is varied: a name of the catalogue or a file, relative to the study.
     problems : str
-        Instead: a folder, all problem files of which are solved.
+        Instead: a folder whose problem files are all solved.
     table : str
-        With `problem`: a CSV file, each row of which holds the targets of a problem of its own.
+        With `problem`: a CSV file; each row gives the targets of one problem.
     designs : int
         Best designs that the table lists of each combination.
     parquet : bool

@@ -1,4 +1,4 @@
-"""Statements on a list: what is proven of it, and what intervals of the driver angle verify."""
+"""Statements on a list: its proof, and its verification over intervals of the driver angle."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _line(proof: Proof, known: str) -> str:
 
 
 def _all_line(proof: Proof, known: str) -> str:
-    """Statement for five poses or pairs, of which all linkages are known."""
+    """Statement for five poses or pairs, whose linkages are all known."""
     dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
     if proof.claim is Claim.NONE:
         return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."

@@ -77,7 +77,7 @@ class Plate:
     ----------
     name : str
     joints : tuple of str
-        What each hole is for.
+        Purpose of each hole.
     holes : ndarray, shape (n, 2), mm
         Centres.
     corners : ndarray, shape (n, 2), mm
@@ -86,7 +86,7 @@ class Plate:
     hole : float, mm
         Diameter, and the width of slots.
     slots : tuple of (str, ndarray of shape (2, 2)), mm
-        What each slot is for, and the centres of its ends.
+        Purpose of each slot, and the centres of its ends.
     """
 
     name: str

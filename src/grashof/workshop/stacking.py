@@ -67,7 +67,7 @@ class Pin:
 
 
 class ReturnCrank(NamedTuple):
-    """A driver in two plates on `pin`, of which the return crank, `turned` (rad), holds `far`."""
+    """A driver in two plates on `pin`; its return crank, `turned` (rad), carries `far`."""
 
     pin: str
     far: str

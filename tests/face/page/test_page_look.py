@@ -120,7 +120,7 @@ def test_a_page_without_designs_uses_its_width(opened: Open, name: str) -> None:
     assert left["x"] + left["width"] <= right["x"]
     assert right["x"] + right["width"] > 1400
     assert beside["height"] > 0.3 * drawing["height"]
-    for heading in ("What was asked", "What was searched"):
+    for heading in ("Requirements", "Record of the search"):
         assert page.get_by_role("heading", name=heading).count() == 1
 
 

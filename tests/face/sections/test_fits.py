@@ -30,8 +30,8 @@ def test_the_eleven_points_of_the_luggage_report(sections: Any) -> None:
         assert row["r2"] == pytest.approx(r2, abs=5e-4)
     assert len(quality) == 4 * (2 * 4 + 2 * 3)
     assert section.tables["fits-points"]["theta2_deg"].tolist() == pytest.approx(np.linspace(first, last, 11))
-    assert "11 points over the part asked for" in section.notes[0]
-    assert "link 2, the centre of link 3, the centre of link 4, P: y is no function of x" in section.notes[1]
+    assert "11 points over the requested part" in section.notes[0]
+    assert "link 2, the centre of link 3, the centre of link 4, P: y is not a function" in section.notes[1]
     facts = {fact.key: fact.value for fact in section.facts}
     assert facts["fit_regression_of_theta2_error"] < 0.02
     assert facts["fit_newton_y_of_x_error"] > 7

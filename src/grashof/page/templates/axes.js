@@ -1,4 +1,4 @@
-// What all plots have: pens, numbers along axes, lines that end at the frame, rows between samples.
+// Common to all plots: pens, numbers along axes, lines that end at the frame, rows between samples.
 const PENS = 8; // the styles of lines; the next eight have the same colours, dotted
 const SPOTS = [
   "M-3.5 0a3.5 3.5 0 1 0 7 0a3.5 3.5 0 1 0 -7 0Z",
@@ -47,7 +47,7 @@ function numbered({ at, decimals }) {
 
 const longest = (labels) => LETTER * Math.max(1, ...labels.map(({ text }) => text.length));
 
-// Ticks whose numbers do not touch, along so many pixels.
+// Ticks whose numbers do not touch, along a length in pixels.
 function ticksAlong(low, high, length, degrees, least = 48) {
   let about = length / least;
   for (;;) {
@@ -77,7 +77,7 @@ function inBox([x0, y0], [x1, y1], { left, right, top, bottom }) {
   return [from > 0 ? at(from) : [x0, y0], to < 1 ? at(to) : [x1, y1]];
 }
 
-// A path through the points, null between its pieces, as far as it lies in a box.
+// A path through the points, null between its pieces, clipped to a box.
 function cutPath(points, box) {
   const kept = [];
   for (let k = 1; k < points.length; k += 1) {

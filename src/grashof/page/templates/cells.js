@@ -4,7 +4,7 @@ const CELLS = { least: 14, wide: 46, dark: 0.55 }; // px from which a cell has i
 class Cells {
   svg; columns; designs; across; up; note; onPick;
 
-  // axes: the keys across and up; measure: the key of the first choice of what colours the cells.
+  // axes: the keys across and up; measure: the key of the first choice for the colour of the cells.
   constructor(root, { columns, designs, axes, measure, onPick }) {
     Object.assign(this, { svg: $("svg", root), note: $("figcaption", root), columns, designs, onPick, chosen: 0 });
     this.visible = new Set(designs.keys());

@@ -1,9 +1,9 @@
 // Curves over the driver angle, with a mark that follows it, or over anything else.
-const PEAK = 12; // a rate is drawn up to so many times its typical size, where it grows without bound
+const PEAK = 12; // a rate is drawn up to this multiple of its typical size, where it grows without bound
 
 class Curves extends Picture {
-  // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (what the
-  // places are), `angles` (driver angles in deg at the places), `most` (size up to which values are drawn),
+  // panel: { title, unit, series: [{ label, values }] } with values at `places`; besides `over` (the name
+  // of the places), `angles` (driver angles in deg at the places), `most` (size up to which values are drawn),
   // `limits` and `points`. options: `bounded`, the `bold` parts of the places, target `marks`, the
   // `window` of places that is shown, and `scaled`: the bold parts fill the frame.
   show(panel, options = {}) {

@@ -1,4 +1,4 @@
-// What hands do to a drawing: they drag the driver or another joint, move the drawing, and bring it closer.
+// Dragging and zooming: the driver or another joint is dragged, the drawing is moved or enlarged.
 const STRETCH = 40 / DEG; // a joint that is dragged takes the driver no farther at a time
 
 // Driver angle near the one now at which a joint is nearest to a place.

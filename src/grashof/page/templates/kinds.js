@@ -1,4 +1,4 @@
-// A linkage is a driver and dyads: how each closes its gap, and what the links look like. Angles in rad.
+// A linkage is a driver and dyads: how each closes its gap, and the look of the links. Angles in rad.
 // Past a dead position, where only rounding leads, the root counts as 0, so a loop is always closed.
 const root = (value) => Math.sqrt(Math.max(value, 0));
 const unitVector = (x, y) => {

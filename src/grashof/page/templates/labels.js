@@ -1,8 +1,8 @@
 // Names beside points, where they cover neither each other nor another point.
 const LABEL = { high: 13, letter: 7.5, gap: 7 }; // px
 const WAYS = Array.from({ length: 8 }, (_, k) => [Math.cos((k * Math.PI) / 4), Math.sin((k * Math.PI) / 4)]);
-const FAR = 60; // px²: what the opposite of the wanted way costs, beside what is covered
-const STAYS = 12; // px²: what the way of the last time saves, so that names do not flicker
+const FAR = 60; // px²: cost of the side opposite to the wanted one, beside the covered area
+const STAYS = 12; // px²: saving of the previous side, so that names do not flicker
 
 class Labels {
   taken;

@@ -48,7 +48,7 @@ function pointSpeed(linkage, state) {
   return Number.isFinite(speed) ? speed : null;
 }
 
-// The two pivots of a cylinder, the end of its body and what holds it on its link, in a position.
+// The two pivots of a cylinder, the end of its body and its mounting on its link, in a position.
 function cylinderAt(linkage, { on, base, point, closed }, state) {
   const { dyads, links } = kindOf(linkage);
   const number = ["driver", "coupler", "output"].indexOf(on) + 2;

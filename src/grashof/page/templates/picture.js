@@ -21,7 +21,7 @@ class Picture {
     });
   }
 
-  // What it looks like, and what follows the driver on it: a matter of each kind of plot.
+  // Its look, and the marks that follow the driver: different for each kind of plot.
   paint(_svg, _box, _named = false) {}
 
   pointers() {}
@@ -39,7 +39,7 @@ class Picture {
     this.refresh();
   }
 
-  // Draws what is in sight and not up to date.
+  // Draws the visible plots that are out of date.
   refresh(always = false) {
     if (this.drawn || !this.panel || !(this.seen || always)) return;
     if (!repaint(this)) return;

@@ -97,7 +97,7 @@ function listenToKeys(stage, player) {
 }
 
 // On the whole page the space bar plays and pauses, and the arrows to the left and right turn the
-// driver, unless what has the focus needs them.
+// driver, unless the element with the focus needs them.
 function listenOnPage(player) {
   document.addEventListener("keydown", (event) => {
     if (event.defaultPrevented) return;

@@ -1,6 +1,6 @@
 // Plots and drawings as files: pictures that need no style sheet, and tables.
 const SHEET = { width: 720, curves: 400, tracks: 620, margin: 14, line: 18 };
-// What becomes an attribute, of lines and of letters, with what goes without saying.
+// Styles that become attributes, of lines and of letters, with their defaults.
 const SAVED = {
   fill: "",
   "fill-opacity": "1",
@@ -24,7 +24,7 @@ const FINE = 2; // pixels of a picture to one of the screen
 // As `no_formula` in Python: no cell is a formula to a spreadsheet, also where it divides at semicolons.
 const FORMULA = /(^|;)(?=\s*[=+\-@＝＋－＠]|[\t\r\n])/g;
 
-// Text without what XML cannot hold.
+// Text without the characters that XML forbids.
 const plain = (text) => String(text).replace(/[\u0000-\u0008\u000b\u000c\u000e-\u001f\ufffe\uffff]/g, "?");
 
 // A plot as SVG of its own: white, with title, names of the axes and a legend.
@@ -54,7 +54,7 @@ function savedDrawing(drawn) {
   return savedSheet(holder, svg, width, height);
 }
 
-// Where what is saved has the light colours of paper.
+// Where saved drawings have the light colours of paper.
 function sheet() {
   const holder = document.createElement("div");
   holder.className = "sheet";
@@ -131,7 +131,7 @@ function styleInlined(svg) {
   }
 }
 
-// A plot as CSV: the driver angle or what else it goes over, then every line with its full name.
+// A plot as CSV: the driver angle or its other variable, then every line with its full name.
 function savedCsv({ title, unit, over, driver, places, angles, series, points = [] }) {
   const columns = [];
   const column = (words, values) => columns.push([words, values]);

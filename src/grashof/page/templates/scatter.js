@@ -2,7 +2,7 @@
 class Scatter {
   svg; columns; designs; called; onPick;
 
-  // wanted: keys of the first choice for each axis; called: what each of the designs is.
+  // wanted: keys of the first choice for each axis; called: the word for a design.
   constructor(root, { columns, designs, wanted = {}, called = "design", onPick }) {
     Object.assign(this, { svg: $("svg", root), columns, designs, called, onPick, chosen: 0 });
     this.selects = Object.fromEntries($$("select", root).map((select) => [select.dataset.axis, select]));
@@ -32,7 +32,7 @@ class Scatter {
     });
   }
 
-  // What a file of it is headed by: nothing is a line of its own.
+  // Heading of its file: empty, since it has no lines.
   get panel() {
     const [up, across] = ["y", "x"].map((axis) => this.column(axis).label);
     return { title: `${up} against ${across}`, series: [] };

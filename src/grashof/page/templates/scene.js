@@ -1,4 +1,4 @@
-// What is drawn of a problem and of a linkage: places, and what goes with them as text.
+// The drawing of a problem and of a linkage: places and their texts.
 // Corners of the body that stands at a place in a direction.
 function bodyAt(body, [x, y], angle) {
   const [cos, sin] = [Math.cos(angle), Math.sin(angle)];

@@ -1,4 +1,4 @@
-// The page of a search: what is chosen is drawn, marked and described everywhere.
+// The page of a search: the chosen design is drawn, marked and described everywhere.
 class SearchPage {
   designs; scene; torqueUnit; found; values; name; columns; loci;
 
@@ -60,7 +60,7 @@ class SearchPage {
     this.player.set(this.design.turns ? countedIn(this.player, theta2) : theta2);
   }
 
-  // The driver goes as far as it can, or only through the task.
+  // The driver moves over its full range, or only through the task.
   travel({ low, high, turns, direction, task }) {
     const choice = $("#only-task");
     choice.disabled = !task || this.scene.closed;
@@ -95,7 +95,7 @@ class SearchPage {
     this.torque.show({ ...torque, series: [{ label: "T", values: design.torque }] }, options);
   }
 
-  // Wanted and generated output of a function, and what lies between them.
+  // Wanted and generated output of a function, and the error between them.
   outputs(design) {
     const empty = [null, null];
     const none = { title: "output", unit: "", turned: [0, 1], wanted: empty, generated: empty, error: empty };
@@ -176,7 +176,7 @@ class SearchPage {
     listenOnPage(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
   }
 
-  // What the page shows, as files; of the table every digit of what is listed now.
+  // The contents of the page as files; the table as listed now, with every digit.
   saves() {
     const design = () => `${this.found ? "design" : "closest-miss"}-${this.design.figures.rank}`;
     const heading = () => `${$("h1").textContent}, ${$("#named").textContent} (${this.design.id})`;

@@ -22,9 +22,9 @@ class Stage {
       ghosts: false,
       close: false,
       view: null,
-      behind: null, // { points, draw }: what lies behind the drawing
-      beside: () => {}, // draws what goes with the linkage
-      drawnOver: () => {}, // draws what lies over all
+      behind: null, // { points, draw }: the background of the drawing
+      beside: () => {}, // draws additions to the linkage
+      drawnOver: () => {}, // draws the top layer
     });
     onResize(svg, () => this.draw());
     if (onDrive) listenToJoints(this);
@@ -61,7 +61,7 @@ class Stage {
     this.drawnOver();
   }
 
-  // All that is to be seen, or the view that was chosen.
+  // The view of everything, or the view that was chosen.
   scale(width, height, seen) {
     this.whole = this.fitted(width, height, seen);
     const { unit, middle } = this.view || this.whole;
@@ -100,7 +100,7 @@ class Stage {
     this.see({ unit, middle });
   }
 
-  // Moved by so many px.
+  // Moved by a distance in px.
   pan([dx, dy]) {
     const { unit, middle } = this.view || this.whole;
     this.see({ unit, middle: [middle[0] - dx / unit, middle[1] + dy / unit] });
@@ -112,7 +112,7 @@ class Stage {
     this.draw();
   }
 
-  // The part that is seen now, so that it stays while what is drawn changes.
+  // The part that is seen now, so that it stays while the drawing changes.
   hold() {
     this.view ||= this.whole;
   }
@@ -162,7 +162,7 @@ class Stage {
   areas() {
     const { scene } = this;
     const [width, height] = [this.svg.clientWidth, this.svg.clientHeight];
-    const beyond = 20; // px: so far out of sight goes a side that is open or far away
+    const beyond = 20; // px: distance beyond the view of a side that is open or far away
     for (const corners of scene.keepOut || []) {
       add(this.svg, "path", { d: through(corners.map(this.at), true), class: "kept-out" });
     }

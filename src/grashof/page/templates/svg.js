@@ -33,7 +33,7 @@ function through(points, closed = false) {
   return parts.join("") + (closed ? "Z" : "");
 }
 
-// Round numbers between two limits, about so many of them, and how many decimals they need.
+// Round numbers between two limits, `about` of them, and how many decimals they need.
 function ticks(low, high, about, steps = [1, 2, 5, 10]) {
   const rough = (high - low) / Math.max(about, 1);
   if (!(rough > 0) || !Number.isFinite(rough)) return { at: [low], decimals: 3 };
@@ -56,7 +56,7 @@ function degreeTicks(low, high, about) {
 
 const minus = (text) => text.replaceAll("-", "−");
 
-// So many decimals; what rounds to zero has no sign.
+// Fixed decimals; a value that rounds to zero has no sign.
 const fixed = (value, decimals) => minus((Number(value.toFixed(decimals)) + 0).toFixed(decimals));
 
 function figure(value, digits = 4) {

@@ -93,7 +93,7 @@ class SweepPage {
     this.player.set(theta2);
   }
 
-  // By a column, the other way round when it is sorted already; what is not known goes last.
+  // By a column, the other way round when it is sorted already; unknown values go last.
   sort(place) {
     const header = this.headers[place];
     const now = header.getAttribute("aria-sort");

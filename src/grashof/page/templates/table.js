@@ -34,7 +34,7 @@ class DesignTable {
     this.filter();
   }
 
-  // By a header, the other way round when it is sorted already; what is not known goes last.
+  // By a header, the other way round when it is sorted already; unknown values go last.
   sort(header) {
     const rising = header.getAttribute("aria-sort") === "ascending";
     const first = header.getAttribute("aria-sort") === "none" ? header.dataset.first : null;
@@ -170,7 +170,7 @@ function thumbnail(design, width = 66, height = 44) {
   return svg;
 }
 
-// A value with so many decimals, or with few digits; an error that is rounding is said to be.
+// A value with fixed decimals, or with few digits; an error that is only rounding is marked so.
 function rounded(value, decimals, noise) {
   if (typeof value !== "number") return figure(value);
   if (value !== 0 && Math.abs(value) <= noise) return "≈ 0";

@@ -47,7 +47,7 @@ class Tracks extends Picture {
     this.nameAxes(svg, box, name("x"), name("y"));
   }
 
-  // From where to where the tracks go along an axis, as far as they are shown.
+  // The range of the visible tracks along an axis.
   reach(axis) {
     const { series, points, most, middle } = this.panel;
     const near = (x, y) =>

@@ -6,7 +6,7 @@ class Backdrop {
     Object.assign(this, { stage, picture: null, lines: null, at: [0, 0], unit: 1, marks: null });
   }
 
-  // A picture of so many px, in the middle of what is seen.
+  // A picture of a size in px, in the middle of the visible part.
   showPhoto(href, width, height) {
     const { stage } = this;
     const { clientWidth, clientHeight } = stage.svg;
@@ -43,7 +43,7 @@ class Backdrop {
     return [this.at[0] + this.unit * x, this.at[1] + this.unit * y];
   }
 
-  // Scaled about the first of two places, so that they are so far apart.
+  // Scaled about the first of two places, to a distance between them.
   scale([from, to], distance) {
     const factor = distance / (Math.hypot(to[0] - from[0], to[1] - from[1]) || 1);
     this.at = this.at.map((value, axis) => from[axis] + factor * (value - from[axis]));

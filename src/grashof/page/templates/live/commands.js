@@ -90,7 +90,7 @@ class Commands {
     this.mode("scale");
   }
 
-  // Two clicks on what lies behind, then the distance that they are apart.
+  // Two clicks on the backdrop, then the distance between them.
   mode(mode) {
     const { live } = this;
     live.handles.setMode(mode);
@@ -128,7 +128,7 @@ class Commands {
     await this.ask("file", body, ({ name: file, text, type }) => download(file, text, type));
   }
 
-  // A job aside: what comes of it goes to `use`, a refusal is told.
+  // A side job: its result goes to `use`, a refusal is shown.
   async ask(what, body, use) {
     const { document, name } = this.live.task;
     const onLine = (line) => {

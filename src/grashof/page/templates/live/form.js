@@ -1,4 +1,4 @@
-// The task as a form: targets in a table, limits as sliders, what is made best, kinds of linkage.
+// The task as a form: targets in a table, limits as sliders, the objective, kinds of linkage.
 const GOALS = [
   ["transmission", "transmission angle"],
   ["compactness", "small size"],
@@ -68,7 +68,7 @@ class Form {
     });
   }
 
-  // A number typed into the table; what is no number is put back.
+  // A number typed into the table; other text is undone.
   typed(input) {
     const value = Number(input.value);
     const k = Number(input.closest("tr").dataset.target);

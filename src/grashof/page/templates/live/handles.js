@@ -1,4 +1,4 @@
-// What of a task can be taken by hand on the drawing: targets, angles, corners, regions.
+// The parts of a task that can be dragged on the drawing: targets, angles, corners, regions.
 const ARM = 46; // px: how far from a target the handle of its angle is
 const FREEHAND = 12; // points that a line drawn by hand becomes
 
@@ -52,7 +52,7 @@ class Handles {
     return Number((Math.round(wrapped(degrees / DEG) * DEG / step) * step).toPrecision(12));
   }
 
-  // Every handle: name, where it is, what it looks like, and what moving it to a place does to the task.
+  // Every handle: name, place, look, and the effect on the task of moving it to a place.
   list() {
     return [...this.ofTargets(), ...this.ofPolygons(), ...this.ofRegions(), ...this.ofBody()];
   }
@@ -259,7 +259,7 @@ class Handles {
     }
   }
 
-  // Arrow keys move what has the focus by a step, with shift ten times; Delete removes it, L locks it.
+  // Arrow keys move the handle with the focus by a step, with shift ten times; Delete removes it, L locks it.
   key(event) {
     const handle = this.focused && this.list().find(({ name }) => name === this.focused);
     if (event.key === "Escape" && this.mode !== "move") return this.setMode("move");

@@ -25,7 +25,7 @@ class Listing {
     });
   }
 
-  // Designs in their order; `lost` tells what a followed design missed, `waiting` are not followed.
+  // Designs in their order; `lost` states the misses of a followed design, `waiting` are not followed.
   show({ designs, columns, lost, phase, found }) {
     const following = phase === "track";
     const shown = columns.filter(({ key }) => designs.some(({ figures }) => figures[key] !== null)).slice(0, SHOWN_COLUMNS);

@@ -227,7 +227,7 @@ class Live {
   curves(design) {
     const { angles } = travelPath(design);
     $("#transmission", this.root).hidden = false;
-    $("#velocity", this.root).hidden = !this.task.list; // of functions and strokes P means nothing
+    $("#velocity", this.root).hidden = !this.task.list; // P has no meaning for functions and strokes
     const places = angles.map((angle) => angle * DEG);
     const marks = design.theta2.map((angle) => within(design, angle) * DEG);
     const whole = this.stage.scene.closed || !design.task;
@@ -307,10 +307,10 @@ class Live {
     this.tell("not a task");
   }
 
-  // A refusal is told; a server that does not answer is asked again.
+  // A refusal is shown; a request without an answer is sent again.
   failed(error, again) {
     if (error.lines) return this.refused(error.lines);
-    this.notice("The server does not answer; it is asked again every two seconds. Is grashof live still running?");
+    this.notice("The server does not answer; the request is repeated every two seconds. Is grashof live still running?");
     this.tell("no answer");
     setTimeout(again, AGAIN);
   }

@@ -1,4 +1,4 @@
-// The task of a live page as its problem file: what can be changed by hand, undone and done again.
+// The task of a live page as its problem file: changes by hand, undo and redo.
 const HISTORY = 200; // steps back, at most
 const REGIONS = ["o2", "o4", "a", "b"];
 const FEWEST = { motion: 2, path: 3 };
