@@ -245,7 +245,7 @@ class Checker(CirclePoints):
             self.quartered(f"pairs dropped by {reason}", np.arange(len(pairs)), self.pair(pairs, reason))
 
     def below(self) -> Bools:
-        """Which rectangles are those that pairs begin with, or parts of them."""
+        """Mask of the rectangles that pairs begin with, or that are parts of such ones."""
         made = self.first_pieces.copy()
         for k, parent in enumerate(self.parents):
             made[k] |= parent >= 0 and made[parent]
@@ -274,7 +274,7 @@ def differences(data: dict[str, Any], path: str) -> list[str]:
 
 
 def refused(name: str) -> None:
-    """Raise ValueError: a number is none of JSON."""
+    """Raise ValueError: a number is not valid in JSON."""
     raise ValueError(f"{name} is not a number")
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Ints: TypeAlias = NDArray[np.int64]
 Test: TypeAlias = Callable[..., Bools]  # of parts: k, s, ds, t, dt
 
-DEPTH, MOST = 10, 20_000  # levels of quarters, and how many parts may be left after one
+DEPTH, MOST = 10, 20_000  # levels of quarters, and the most parts left after one
 NEXT = 4 * UNIT  # by which parts overlap: no gaps between them by rounding
 
 
@@ -28,7 +28,7 @@ class CirclePoints:
     def __init__(self, data: dict[str, Any]) -> None:
         size, poses = float(data["size"]), np.array(data["poses"], float)
         origin = complex(*poses[0, :2])
-        self.poses, self.turned = [], []  # rotations and places, and what rotations may be off by
+        self.poses, self.turned = [], []  # rotations and places, and error bounds of rotations
         for x, y, angle in poses:
             turn = radians(angle - poses[0, 2])
             self.poses.append((complex(cos(turn), sin(turn)), (complex(x, y) - origin) / size))
@@ -47,7 +47,7 @@ class CirclePoints:
         self.tube = (tubes[:, 0] + 1j * tubes[:, 1], tubes[:, 2] + 1j * tubes[:, 3], *tubes[:, 4:].T)
         middle, _, half, *_ = self.tube
         self.ends = 1 + 2e-13 * (np.abs(middle) + half) / np.maximum(half, HAIR)
-        self.rest = np.zeros(len(boxes))  # how far from the middle of tubes the curve can be
+        self.rest = np.zeros(len(boxes))  # greatest distance of the curve from the middle of tubes
         self.parents, self.halves = np.array(data["parents"]), np.zeros((len(boxes), 2), int)
         if not (np.isfinite(boxes).all() and np.isfinite(tubes).all() and np.isfinite(poses).all()):
             raise ValueError("numbers that are not finite")
@@ -78,7 +78,7 @@ class CirclePoints:
         return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
     def centre(self, z: Vector) -> Vector:
-        """Where the centre of the circle is; no farther than the longest dyad where that is not known."""
+        """Centre of the circle; no farther than the longest dyad where that is not known."""
         x, y = z
         best = Poly(x.c, x.r + self.longest), Poly(y.c, y.r + self.longest)
         for (ax, ay, k), (bx, by, m) in combinations(self.rows(z), 2):
@@ -96,7 +96,7 @@ class CirclePoints:
         return x + Poly.of(m.real), y + Poly.of(m.imag)
 
     def quartered(self, name: str, which: Ints, test: Test) -> None:
-        """Parts of things that a test leaves, quartered until nothing is left; else those are a fault."""
+        """Quarter the parts that a test leaves until none is left; ValueError where some remain."""
         none: Floats = np.zeros(len(which))
         full = none + 1
         parts, enough = (which, none, full, none, full), max(MOST, len(which))
@@ -145,7 +145,7 @@ class CirclePoints:
         return zero_free(self.cubic(self.in_rectangle(*part)))
 
     def narrowed(self, k: Ints, low: Floats, high: Floats, e: Floats, rounds: int = 5) -> Floats:
-        """How far from the middle of tubes the curve can be, where it is at most e away."""
+        """Greatest distance of the curve from the middle of tubes, where it is at most e away."""
         s = Poly.of((low + high) / 2, (high - low) / 2 + NEXT * (1 + np.abs(low) + np.abs(high)))
         for _ in range(rounds):
             f = self.cubic(self.on_tube(k, s, Poly.of(0.0 * e, 0.0, e)))
@@ -156,7 +156,7 @@ class CirclePoints:
         return e
 
     def contained(self, k: Ints, s: Floats, ds: Floats, t: Floats, dt: Floats) -> Bools:
-        """The curve in parts of rectangles is in the tube; how far from its middle is noted."""
+        """The curve in parts of rectangles is in the tube; its distance from the middle is noted."""
         z = self.in_rectangle(k, s, ds, t, dt)
         good = zero_free(self.cubic(z))
         m, u, length, tilt, bow = (part[k] for part in self.tube)
@@ -185,7 +185,7 @@ class CirclePoints:
     def place(
         self, k: Ints, s: Floats, ds: Floats, t: Floats, dt: Floats, rounds: int = 2
     ) -> tuple[Vector, Bools]:
-        """Places in parts of tubes that hold all of the curve there; and which of them hold nothing of it.
+        """Places in parts of tubes that contain all of the curve there, and which of them contain none of it.
 
         The cubic is c0 + c1 s + rest + e (c2 + wobble): so e is within `left` of -(c0 + c1 s) / c2.
         """

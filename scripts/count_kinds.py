@@ -37,7 +37,7 @@ _LISTS = ast.Tuple | ast.List | ast.Set
 
 
 def last(node: ast.AST | None) -> str:
-    """Last part of a dotted name, or of the table of an index; empty of anything else."""
+    """Last part of a dotted name, or of the table of an index; empty for anything else."""
     if isinstance(node, ast.Subscript):
         return last(node.value)
     return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
@@ -176,7 +176,7 @@ def counted() -> dict[str, dict[str, dict[str, Any]]]:
 
 
 def totals(found: dict[str, dict[str, dict[str, Any]]]) -> dict[str, dict[str, int]]:
-    """The figures: of files that ask, circles and large things their number, else how many each file has."""
+    """The figures: numbers of files that ask, circles and large things, else the count of each file."""
     of_files = ("asks", "circles", "large")
     return {
         what: {

@@ -1,6 +1,6 @@
 """Polynomials of degree 3 in two parameters of [-1, 1] with remainders, for scripts/check_certificate.py.
 
-A remainder holds all terms left out and all rounding: of each operation at most as much as IEEE 754 allows.
+A remainder bounds all omitted terms and all rounding, in each operation as much as IEEE 754 allows.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Poly:
         return Poly(c, over + self.r * (other.size + other.r) + self.size * other.r)
 
     def inverse(self) -> Poly:
-        """One over it; of no use where it may vanish."""
+        """Reciprocal; of no use where it may vanish."""
         return self._series(lambda v: 1 / v, (-1, 1, -1), lambda w: w**4 / (1 - w))
 
     def root(self) -> Poly:

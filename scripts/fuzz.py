@@ -1,4 +1,4 @@
-"""Bad input at scale: mutated problem files, linkage files and lists, each refused in clear lines or right.
+"""Bad input at scale: mutated problem files, linkage files and lists, each valid or clearly refused.
 
     python scripts/fuzz.py                    # 10 000 mutants
     python scripts/fuzz.py --show FILE        # examine a finding again
@@ -68,7 +68,7 @@ Work = Callable[[], bool]
 
 
 class Finding(Exception):  # noqa: N818  (it is reported, too)
-    """A promise that a file breaks: its kind, and what happened."""
+    """A property that a file violates: its kind, and the evidence."""
 
     def __init__(self, kind: str, what: str) -> None:
         super().__init__(what)
@@ -80,7 +80,7 @@ class TooLongError(BaseException):
 
 
 def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Finding | None:
-    """The promise that a file breaks, if any; `work` decides whether it is searched or reported on, too."""
+    """The property that a file violates, if any; `work` decides whether to search or report on it, too."""
     figures["files"] += 1
     try:
         with warnings.catch_warnings():
@@ -246,7 +246,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", maxsplit=1)[0])
     parser.add_argument("--mutants", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--share", type=float, default=0.1, help="of what loads, for more than loading")
+    parser.add_argument("--share", type=float, default=0.1, help="share of loaded files to search or report")
     parser.add_argument("--out", type=Path, default=Path("fuzz-findings"), help="folder for findings")
     parser.add_argument("--show", type=Path, help="a finding to examine again; its name begins with its kind")
     given = parser.parse_args(arguments)

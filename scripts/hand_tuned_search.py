@@ -4,9 +4,9 @@
 
 The report guesses a dyad (a link W that turns by beta with the driver, an arm Z that turns with the box),
 improves the guess by a quasi-Newton method until the closure equations have no residual, does so again for
-the second dyad, and looks at their linkage. It says that four guesses failed and the fifth worked.
-Here each of them is run and judged by `grashof.analysis.verify`; then many random guesses are, every one
-paired with every other.
+the second dyad, and examines their linkage. It says that four guesses failed and the fifth worked.
+Here each of them is run and judged by `grashof.analysis.verify`, then many random guesses, each paired with
+every other.
 """
 
 import argparse
@@ -35,13 +35,13 @@ from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 
 STARTS, JUDGED, RESAMPLED = 600, 100, 1000
 TOLERANCE = 1e-5  # of the size of the task: a quasi-Newton method ends at some 1e-6 of a root of squares
-REACH, TURNED = 6.0, 300.0  # of random guesses, m and deg: as far as the report's
-APART = 1e-3  # of the size: dyads so close are one
+REACH, TURNED = 6.0, 300.0  # ranges of random guesses, m and deg: those of the report
+APART = 1e-3  # of the size: closer dyads count as one
 GOOD = 30.0  # deg: the transmission angle that textbooks require
 
 
 class Guess(NamedTuple):
-    """Guesses of both dyads, (W_x, W_y, Z_x, Z_y) and three turns in deg, and what the report says."""
+    """Guesses of both dyads, (W_x, W_y, Z_x, Z_y) and three turns in deg, and the report's words."""
 
     name: str
     left: tuple[float, ...]
@@ -74,7 +74,7 @@ GUESSES = (
 
 @dataclass(frozen=True, slots=True)
 class Dyad:
-    """A dyad that is to pass the poses: W and Z in the first pose, turns of W to the others (rad).
+    """A dyad meant to pass the poses: W and Z in the first pose, turns of W to the others (rad).
 
     `residual`, a length, is the root of the sum of squares of the gaps at the poses.
     """
@@ -246,7 +246,7 @@ def share(every: BoolArray, seed: int = 0) -> tuple[float, float, float]:
 
 
 def agreement(problem: Problem, dyads: Sequence[Dyad], pairs: Pairs, count: int, seed: int = 0) -> int:
-    """On how many of `count` random exact pairs `verify` agrees."""
+    """Number of `count` random exact pairs on which `verify` agrees."""
     # The gaps of dyads are at most ten times those of the linkage where it comes nearest to the poses.
     wanted = replace(problem.requirements, tolerance=10 * TOLERANCE)
     chosen = np.random.default_rng(seed).choice(np.argwhere(pairs.exact), count)

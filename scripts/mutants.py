@@ -1,6 +1,6 @@
-"""Mutated files for `fuzz.py`: problems, linkages and lists of designs that nobody should write.
+"""Mutated files for `fuzz.py`: malformed problems, linkages and lists of designs.
 
-A mutant comes from a file that is right, its seed: keys are dropped, added and renamed, values replaced by
+A mutant comes from a valid file, its seed: keys are dropped, added and renamed, values replaced by
 hostile ones, lists made too long or too deep; in some files the bytes are damaged as well.
 """
 
@@ -30,7 +30,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 @dataclass(frozen=True, slots=True)
 class Seed:
-    """A file that is right, as parsed."""
+    """A valid file, as parsed."""
 
     kind: Kind
     document: dict[str, Any]
@@ -38,7 +38,7 @@ class Seed:
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """A file that may be wrong, and the changes that made it of its seed."""
+    """A file that may be invalid, and the changes that made it from its seed."""
 
     kind: Kind
     content: bytes
@@ -248,7 +248,7 @@ class Mutator:
 
 
 def _json_text(document: dict[str, Any]) -> str:
-    """The same as JSON, with numbers of thousands of digits, which Python writes on demand alone."""
+    """The same as JSON, with numbers of thousands of digits, which Python writes only on request."""
     before = sys.get_int_max_str_digits()
     sys.set_int_max_str_digits(0)
     try:
@@ -258,7 +258,7 @@ def _json_text(document: dict[str, Any]) -> str:
 
 
 def toml_text(document: dict[str, Any]) -> str:
-    """A document as TOML, whatever it holds: a line for each key, then the tables."""
+    """A document of any content as TOML: a line for each key, then the tables."""
     plain = {key: value for key, value in document.items() if not isinstance(value, dict)}
     lines = [f"{_word(key)} = {_value(value)}" for key, value in plain.items()]
     for name, table in document.items():

@@ -1,6 +1,6 @@
-"""Make the files of `point_families` in synth/data anew: all solutions of each kind for general points.
+"""Regenerate the files of `point_families` in synth/data: all solutions of each kind for general points.
 
-Takes some minutes for each. From another seed come other points, and as many solutions.
+Each takes some minutes. Another seed gives other points and the same number of solutions.
 """
 
 import argparse

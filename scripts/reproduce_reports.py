@@ -3,8 +3,8 @@
     python scripts/reproduce_reports.py --out reports
 
 Prints two tables of published and right values, and writes a folder with the counterpart of each figure and
-table of the reports, a page of them all (index.html), and their numbers as CSV. What the reports print stands
-as text; every right value is computed by `grashof`.
+table of the reports, a page of them all (index.html), and their numbers as CSV. The printed values of the
+reports are given as text; every right value is computed by `grashof`.
 """
 
 import argparse

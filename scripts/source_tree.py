@@ -1,4 +1,4 @@
-"""The source of the package as a tree: modules, layers, rooms, and what imports what."""
+"""The source of the package as a tree: modules, layers, rooms, and their imports."""
 
 import re
 from collections.abc import Mapping, Set
@@ -57,7 +57,7 @@ def imports_of_rooms() -> dict[str, set[str]]:
 
 
 def circle(arrows: Mapping[str, Set[str]]) -> list[str]:
-    """Some circle of arrows, empty where there is none."""
+    """A circle of arrows, empty where there is none."""
     left = dict(arrows)
     while True:
         reached = set().union(*left.values())

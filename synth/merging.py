@@ -73,7 +73,7 @@ class Shards:
 
     @property
     def lacking(self) -> str:
-        """The shards not done, in words; empty where all are."""
+        """The shards not done, in words; empty where all are done."""
         done = {shard.number for shard in self.done}
         numbers = [str(number) for number in range(1, self.of + 1) if number not in done]
         if not numbers:
@@ -111,7 +111,7 @@ def merge_shards(
     progress: Callable[[Progress], object] | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> Result:
-    """The list of a search whose shards are in a folder, whatever their number.
+    """The list of a search whose shards, of any number, are in a folder.
 
     `partial` accepts that some are not done; `workers`, `progress` and `stop` are as in `synthesize`.
     ProblemError where shards are missing or not done, or not of one search made with these versions.

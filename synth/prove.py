@@ -57,11 +57,11 @@ def prove(
     at_least : float, deg, optional
         Only decide whether a design has at least this transmission angle.
     gap : float, deg
-        Up to which the bounds are brought together, 0.0001 to 90.
+        Difference to which the bounds are brought together, 0.0001 to 90.
     constraints : sequence of callable
         Your own, as for `synthesize`; the bound ignores them.
     time_limit, stop
-        As for `synthesize`; the bound so far holds.
+        As for `synthesize`; the bound reached by then is valid.
     certificate : str or Path, optional
         File for the certificate of four poses, to be checked by ``scripts/check_certificate.py``; it is
         not written where no bound was reached.
@@ -79,7 +79,7 @@ def prove(
     Notes
     -----
     Branch and bound over pairs of pieces of Burmester's curve, of three poses of squares of the plane; of
-    five targets a search among all dyads; of a stroke over families of one number.
+    five targets a search among all dyads; of a stroke over one-parameter families.
     See "Proofs" in the documentation.
 
     Examples

@@ -100,7 +100,7 @@ class Plan:
         return tuple(chain.from_iterable(self.searched))
 
     def ledger(self, scaled: ScaledProblem, chunks: int) -> Ledger:
-        """The ledger of `chunks` chunks of a problem, none of which ends it early."""
+        """The ledger of `chunks` chunks of a problem, without an early end."""
         search = replace(self.search, starts=max(1, chunks * self.starts), effort=1.0)
         ledger = Ledger(scaled, search, "all its chunks are done")
         ledger.plan_more()

@@ -68,8 +68,8 @@ def synthesize(
     workers : int
         Processes. The result does not depend on it; a search of a second or two gains nothing.
     executor : concurrent.futures.Executor, optional
-        Where to work instead; not shut down. `workers` states how many it has, which is how much is begun
-        ahead. Threads gain nothing: one of them solves at a time.
+        Where to work instead; not shut down. `workers` is its number of workers, which sets the amount of
+        work begun ahead. Threads gain nothing: one of them solves at a time.
     time_limit : float, s, optional
         The search ends soon after it.
     progress : callable, optional
@@ -83,7 +83,7 @@ def synthesize(
     keep_record : bool
         Leave the record of a complete search, too, until its list is saved.
     gap : float, deg
-        Up to which proofs bring their bounds together, 0.0001 to 90.
+        Difference to which proofs bring their bounds together, 0.0001 to 90.
     prove : bool
         Give proofs minutes where they need them, not seconds.
 

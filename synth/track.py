@@ -54,7 +54,7 @@ def track(
     Notes
     -----
     One solve of some 10 ms each; no search, so that better designs elsewhere are not seen. A design moves no
-    farther than necessary where all targets are to be met, and in least squares where it has more error than
+    farther than necessary where all targets must be met, and in least squares where it has more error than
     another one in exchange for its size or transmission: its error may then be as large as before, or as many
     times the least error. Others move to the least error near them.
 

@@ -47,7 +47,7 @@ SHARED: dict[str, dict[str, Any]] = {
 def searched(
     name: str, count: int, seed: int, *, wanted: Requirements | None = None, enough: int | None = None
 ) -> Iterator[str]:
-    """One search for each of some seeds: the designs of the first, and times of all."""
+    """Search once for each of some seeds; report the designs of the first and the times of all."""
     problem = load(name)
     problem = replace(problem, requirements=wanted or problem.requirements)
     synthesize(problem, enough=1, effort=0.2)  # programmes are built
@@ -67,7 +67,7 @@ def searched(
 
 
 def triplets(count: int, seed: int) -> Iterator[str]:
-    """All linkages through nine points near a circle, in any order: triplets of cognates among them."""
+    """Find all linkages through nine points near a circle, in any order; count triplets of cognates."""
     problem = load("nine-points")
     for number in range(count):
         result, seconds = timed(partial(synthesize, problem, enough=200, seed=seed + number))
@@ -83,9 +83,9 @@ def triplets(count: int, seed: int) -> Iterator[str]:
 
 
 def processes(name: str, count: int, seed: int, *, workers: int = 2) -> Iterator[str]:
-    """Time of a search on two processes over that on one, and that of two searches at once, for each.
+    """Time of a search on two processes over that on one, and the same for two searches at once.
 
-    The second is the limit of the machine: no way to share one search can do better.
+    The second is the limit of the machine: no division of one search can do better.
     """
     times: dict[int, list[float]] = {1: [], workers: []}
     problem, tables, limit = load(name), set(), []

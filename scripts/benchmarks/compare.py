@@ -2,9 +2,9 @@
 
     pip install '.[bench]' && python scripts/benchmarks/compare.py --out benchmark
 
-One after another in one process, single-threaded. Of every run: processor time to the first design that the
-judge accepts within 1 % of the least error that any run found (of exact tasks: to rounding), how many
-distinct ones there are, and which share of all that was returned is accepted. Writes `runs.json`, `table.md`
+Packages run one after another in one process, single-threaded. Each run yields the processor time to the
+first design that the judge accepts within 1 % of the least error of any run (for exact tasks: to rounding),
+the number of distinct ones, and the accepted share of the designs returned. Writes `runs.json`, `table.md`
 and `profile.png`, the performance profiles of Dolan and More (2002). A run that is in `runs.json` is kept, so
 that some packages can have more seeds than others.
 """
@@ -61,7 +61,7 @@ def tasks() -> dict[str, Problem]:
 
 
 def judged(problem: Problem, linkage: Linkage) -> float:
-    """The error of a linkage that meets all requirements, length or rad; infinite of others.
+    """The error of a linkage that meets all requirements, length or rad; infinite for others.
 
     Exactness is required afterwards, so least squares counts here by its error. The greatest error of a
     function is that over the full range, not at the pairs alone.
@@ -107,7 +107,7 @@ def _stop(*_: object) -> None:
 
 
 def is_exact(problem: Problem) -> bool:
-    """Whether every target is to be met."""
+    """Whether every target must be met."""
     return problem.requirements.is_exact(problem.task)
 
 
@@ -140,7 +140,7 @@ def table(frame: pd.DataFrame) -> str:
     """A row for each task and package.
 
     The time to the first design is that expected with restarts: the time that all seeds spend until then, or
-    in vain, over the number of seeds with a design. Else medians over the seeds.
+    in vain, over the number of seeds with a design. The other values are medians over the seeds.
     """
     lines = [
         "| task | package | least error / size | first, s | in all, s | seeds | distinct | usable |",
@@ -163,7 +163,7 @@ def table(frame: pd.DataFrame) -> str:
 
 
 def stages(problems: dict[str, Problem]) -> str:
-    """Where Grashof's time goes, wall seconds of the first seed."""
+    """Time of each stage of Grashof, wall seconds of the first seed."""
     seconds = {task: synthesize(problem, seed=0).seconds for task, problem in problems.items()}
     names = list(dict.fromkeys(name for each in seconds.values() for name in each))
     lines = [f"| task | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
@@ -174,7 +174,7 @@ def stages(problems: dict[str, Problem]) -> str:
 
 
 def draw_profile(frame: pd.DataFrame, path: Path) -> None:
-    """Share of runs that a package does within a multiple of the time of the fastest package."""
+    """Draw the share of runs that each package completes within a multiple of the time of the fastest one."""
     from matplotlib.figure import Figure
 
     times = frame.pivot_table(index=["task", "seed"], columns="peer", values="first", aggfunc="first")

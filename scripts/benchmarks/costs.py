@@ -1,4 +1,4 @@
-"""How cost grows, one axis at a time: targets, starts of a search, its effort, length of a list.
+"""Growth of cost along one axis at a time: targets, starts of a search, its effort, length of a list.
 
 Prints processor time and peak memory (above that of the imports) of a process for each size, and the exponent
 with which each grows: the slope of a line through the logarithms. ``--count`` is the largest size.
@@ -68,7 +68,7 @@ DRAWN: dict[str, Callable[[np.random.Generator, int], Problem]] = {
 
 
 def job(axis: str, name: str, size: int) -> Callable[[], object]:
-    """The work to be measured, with all that it needs at hand."""
+    """The work to be measured, with its inputs prepared."""
     if axis == "targets":
         return partial(synthesize, DRAWN[name](np.random.default_rng([61, size]), size))
     problem = load(name)
@@ -100,7 +100,7 @@ def measured(axis: str, name: str, size: int) -> tuple[float, float]:
 
 
 def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
-    """Slope of the line through the logarithms; NaN of fewer than two costs above zero."""
+    """Slope of the line through the logarithms; NaN for fewer than two costs above zero."""
     known = np.array([(size, cost) for size, cost in zip(sizes, costs, strict=True) if cost > 0])
     if len(known) < 2:
         return np.nan
@@ -109,7 +109,7 @@ def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
 
 
 def curve(axis: str, name: str, largest: int, seed: int) -> Iterator[str]:
-    """The cost of each size, and how it grows; problems are the same whatever the seed."""
+    """The cost of each size, and its growth; the problems do not depend on the seed."""
     del seed
     # Least squares begin with 12 targets: fewer can all be met.
     sizes = SIZES.get(axis, TARGETS if name == "met poses" else TARGETS[1:])

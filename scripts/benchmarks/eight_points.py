@@ -76,7 +76,7 @@ def arrived(kind: str, points: ComplexArray, rng: np.random.Generator) -> int:
 
 
 def measure(kind: str, number: int) -> tuple[Through[Any], float, float]:
-    """Linkages through planted points, the seconds it took, and how far the planted linkage is."""
+    """Linkages through planted points, the seconds taken, and the distance to the planted linkage."""
     points, planted = planted_points(kind, np.random.default_rng([8, number]))
     through, took = timed(lambda: THROUGH[kind](points, np.random.default_rng(number)), process_time)
     return through, took, missed(planted, through)

@@ -2,7 +2,7 @@
 
 Of points and poses the unknowns are O2, O4, r2, r3, r4, the coupler point, the body's angle and the driver
 angle at every target; of a function r2, r3, r4 over the ground, and where driver and output begin. Choices,
-such as the assembly, are drawn at random for every start. A limit holds where it is not positive.
+such as the assembly, are drawn at random for every start. A limit is met where its value is not positive.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class CouplerFormulation:
     scale: float
     "Divisor of the residuals."
     minimax: bool = False
-    "Whether the greatest residual is made least instead of the sum of squares."
+    "Whether the greatest residual is minimised instead of the sum of squares."
 
     @classmethod
     def of(cls, task: Task, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
@@ -194,7 +194,7 @@ Formulation = CouplerFormulation | FunctionFormulation
 
 
 def _transmission(square: FloatArray, r3: float, r4: float, wanted: Requirements) -> FloatArray:
-    """Lack of transmission angle, or of assembly, at these squared distances from A to O4."""
+    """Shortfall of the transmission angle, or of assembly, at these squared distances from A to O4."""
     cosine = (r3**2 + r4**2 - square) / (2 * r3 * r4)
     most: float = np.cos(np.radians(wanted.transmission_min_deg))
     return np.concatenate([cosine - most, -cosine - most])

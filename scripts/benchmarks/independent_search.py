@@ -3,10 +3,10 @@
 Everything is an unknown: pivots, lengths, coupler point, and the driver angle at every target. The loop is
 closed by the elbow formula, every limit is a residual once it is overstepped, and Levenberg-Marquardt
 improves many random starts at once, with differences for derivatives. Sequential quadratic programming
-(SLSQP of scipy) brings the best under their limits, and `grashof.analysis.judge.verify` judges them.
+(SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
-It is plain, a reference for the package's own search. It knows free and timed points met in order, and poses
-with position and angle; no areas to keep out of and no constraints of one's own.
+It is plain and serves as a reference for the package's own search. It covers free and timed points met in
+order, and poses with position and angle, but neither areas kept out nor user constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -80,7 +80,7 @@ class Designs:
         return Designs(*(getattr(self, name)[rows] for name in self.__slots__))
 
     def nudged(self) -> "Designs":
-        """Each design, and n more with one unknown after the other a little greater; all in one batch."""
+        """Each design, and n copies with one unknown each slightly increased, all in one batch."""
         count, unknowns = self.x.shape
         many = self[np.repeat(np.arange(count), unknowns + 1)]
         nudge = NUDGE * np.vstack([np.zeros(unknowns), np.eye(unknowns)])
@@ -89,7 +89,7 @@ class Designs:
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the joints of a batch are at every target: complex of shape (B, N), lengths of shape (B, 1)."""
+    """Joints of a batch at every target: complex of shape (B, N), lengths of shape (B, 1)."""
 
     o2: ComplexArray
     o4: ComplexArray
@@ -139,7 +139,7 @@ def misses(aim: Aim, at: Places) -> FloatArray:
 
 
 def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
-    """By how much each limit is overstepped, negative inside; shape (B, K)."""
+    """Excess over each limit, negative inside; shape (B, K)."""
     wanted, rows = aim.wanted, list[FloatArray]()
 
     def within(value: FloatArray, limits: tuple[float, float], middle: float = 0.0) -> None:
@@ -301,7 +301,7 @@ def distinct(aim: Aim, designs: Designs, cost: FloatArray) -> Designs:
 
 
 def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
-    """A design brought under its limits, and its sum of squares; infinite where that fails.
+    """A design brought within its limits, and its sum of squares; infinite where that fails.
 
     `steady` requires the driver angles nearest to their targets where limits depend on them.
     """

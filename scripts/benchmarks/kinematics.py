@@ -1,7 +1,7 @@
 """Kinematics and dynamics of one four-bar against a plain closed form in NumPy, pylinkage and MuJoCo.
 
 ``--count`` is the number of driver angles. The two packages come with ``pip install '.[bench]'``; one that is
-not there is left out.
+not installed is left out.
 """
 
 from collections.abc import Callable, Iterator

@@ -32,7 +32,7 @@ def problem_of(text: str, name: str) -> Problem:
 
 
 def tasks(path: Path) -> list[dict[str, Any]]:
-    """Tasks of a file: name, TOML, and the least error known, null where there is none."""
+    """Tasks of a file: name, TOML, and the least known error, null where none is known."""
     found: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["tasks"]
     return found
 
@@ -56,7 +56,7 @@ def ratio_to(best: float | None, error: float, problem: Problem) -> float:
 
 
 def summary(ratios: list[float]) -> str:
-    """How many ratios are near 1, the worst one, and tasks without a design."""
+    """The number of ratios near 1, the worst one, and tasks without a design."""
     known = np.array([ratio for ratio in ratios if np.isfinite(ratio) and ratio > 0])
     missed, only = np.count_nonzero(np.isinf(ratios)), np.count_nonzero(np.equal(ratios, 0))
     near, worst = np.count_nonzero(known <= NEAR), known.max() if known.size else np.nan

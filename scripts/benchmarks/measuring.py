@@ -1,4 +1,4 @@
-"""Shared by the benchmarks: cases, and times in words."""
+"""Cases of the benchmarks, and times in words."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Pages: how long that of a search takes to make, and the live page from a move to the list.
+"""Time to make the page of a search, and time of the live page from a move to the list.
 
 The live page is measured over HTTP, without a browser; its processor time and memory are read from /proc.
 """
@@ -102,7 +102,7 @@ def live() -> Iterator[Live]:
 
 
 def moved(document: dict[str, Any], number: int, step: float = 0.004) -> dict[str, Any]:
-    """A target a little elsewhere, to and fro."""
+    """A target moved slightly, back and forth."""
     found: dict[str, Any] = json.loads(json.dumps(document))
     targets = found["motion"]["poses"] if "motion" in found else found["path"]["points"]
     size = float(np.ptp(np.array(targets)[:, :2], axis=0).max())

@@ -1,4 +1,4 @@
-"""Planted tasks: how many a search solves, and in what time.
+"""Planted tasks: the number that a search solves, and the time taken.
 
 A task is solved where a verified design is within 1e-6 sizes of every target.
 """
@@ -67,7 +67,7 @@ def closed_points(rng: np.random.Generator, count: int, kind: str) -> Problem:
 def stated_poses(rng: np.random.Generator, kind: str, poses: int, parts: str, stated: str) -> Problem:
     """Poses with free parts or without, and limits that the planted linkage keeps.
 
-    Free are the angle of one pose, and of four or more poses also the position of another one.
+    The angle of one pose is free and, with four or more poses, also the position of another one.
     """
     while True:
         task, linkage = planted_motion(rng, poses, mechanism=kind)
@@ -110,7 +110,7 @@ def _at(place: complex) -> Box:
 def solved(
     draw: Draw, series: Sequence[int], count: int, seed: int, *, share: float = 0.0, **options: Any
 ) -> Iterator[str]:
-    """How many tasks are solved, and in what time; a failure below this share."""
+    """Number of tasks solved, and the time taken; a failure below this share."""
     met, seconds = 0, list[float]()
     with suppress(ProblemError):  # programmes are built
         synthesize(draw(np.random.default_rng([*series, seed])), **options)

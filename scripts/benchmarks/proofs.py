@@ -1,4 +1,4 @@
-"""Proofs: tasks whose best design is proven, or that there is none; processor time after imports."""
+"""Proofs: tasks whose best design, or the absence of any, is proven; processor time after imports."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -109,19 +109,19 @@ def five_pairs(number: int) -> bool:
 
 
 def four_pairs(number: int) -> bool:
-    """Whether the best four-bar through four random pairs is proven, or that there is none."""
+    """Whether the best four-bar through four random pairs, or its absence, is proven."""
     made = bounds_of_pairs(ScaledProblem.of(random_function(number, 4)), Proving())
     return made is not None and made.closed
 
 
 def three_pairs(number: int) -> bool:
-    """Whether the best of a list through three random pairs is proven, or that there is none."""
+    """Whether the best of a list through three random pairs, or its absence, is proven."""
     proof = synthesize(random_function(number, 3)).proof
     return proof is not None and proof.claim in (Claim.BEST, Claim.NONE)
 
 
 def stroke(number: int) -> bool:
-    """Whether the best crank-rocker of a random swing and time ratio is proven, or that there is none."""
+    """Whether the best crank-rocker of a random swing and time ratio, or its absence, is proven."""
     rng = np.random.default_rng(6000 + number)
     task = StrokeTask(swing=np.radians(rng.uniform(20, 120)), time_ratio=rng.uniform(1, 1.6))
     made = bounds_of(ScaledProblem.of(Problem(task=task)), Proving())
@@ -129,7 +129,7 @@ def stroke(number: int) -> bool:
 
 
 def of_poses(draw: Callable[[int], Problem], count: int, seed: int) -> Iterator[str]:
-    """Claims proven of four poses; tasks that stay open, each with its reason."""
+    """Claims proven for four poses; tasks that stay open, each with its reason."""
     claims, seconds = Counter[Claim](), []
     for number in range(seed, seed + count):
         proof, took = timed(lambda: proven(draw(number)), process_time)  # noqa: B023
@@ -155,7 +155,7 @@ def compared(count: int, seed: int) -> Iterator[str]:
 
 
 def decided(decide: Callable[[int], bool], count: int, seed: int) -> Iterator[str]:
-    """How many tasks are decided, and in what time."""
+    """Number of tasks decided, and the time taken."""
     runs = [timed(partial(decide, number), process_time) for number in range(seed, seed + count)]
     yield f"{sum(done for done, _ in runs)} of {count} decided; {spread([took for _, took in runs])}"
 

@@ -46,7 +46,7 @@ class Item:
 
     @property
     def stem(self) -> str:
-        """How its files begin."""
+        """Common beginning of the names of its files."""
         return f"{self.report}-{self.id}"
 
 

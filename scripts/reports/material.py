@@ -23,7 +23,7 @@ from grashof.study.study import LinkageStudy
 from grashof.study.sweep import dead_positions_unwarned
 
 WIDTH, HEIGHT = 8.5, 4.2
-PUBLISHED = "as published"  # how the names of lines end that are the report's
+PUBLISHED = "as published"  # ending of the names of the report's lines
 _RED, _DOTS = "#b03a2e", ((1, 1.2), (4, 1.2, 1, 1.2))
 
 
@@ -45,7 +45,7 @@ class Analysis:
 
     @classmethod
     def of(cls, spec: LinkageSpec, **asked: Any) -> "Analysis":
-        """The analysis of a linkage, asked as `grashof analyse` is."""
+        """The analysis of a linkage, requested as by `grashof analyse`."""
         study = LinkageStudy.of(spec, Asked(**asked))
         with dead_positions_unwarned():
             sections = sections_of(study)
@@ -64,7 +64,7 @@ class Analysis:
 
 
 def lines(plot: Plot, wanted: Sequence[str] = (), besides: Mapping[str, FloatArray] | None = None) -> Plot:
-    """Some lines of a plot, or all, and others besides; a single number is a level."""
+    """Some or all lines of a plot, and additional ones; a single number is a level."""
     chosen = {label: values for label, values in plot.series.items() if not wanted or label in wanted}
     count = 0 if plot.places is None else len(plot.places)
     more = {label: np.broadcast_to(np.asarray(values), count) for label, values in (besides or {}).items()}

@@ -36,7 +36,7 @@ from reports.material import HEIGHT, WIDTH, Analysis, Made, lines, shown
 _DENSE = 7201
 # N: polished-rod loads, up and down; assumed, as the report has none. They change while the head rests.
 ROD_UP, ROD_DOWN, SOFT = 20e3, 9e3, 0.1
-_BESIDE = 0.05  # m: so near a cross its name is that of the dot
+_BESIDE = 0.05  # m: nearer to a cross its name is that of the dot
 _CROSS: dict[str, Any] = {
     "linestyle": "none", "marker": "x", "markersize": 7, "markeredgewidth": 1.6, "color": "#b03a2e",
     "zorder": 9,
@@ -156,7 +156,7 @@ class Pumpjack:
 
     @cached_property
     def stroke_times(self) -> tuple[float, float]:
-        """How long the horsehead goes up and down in a turn, s; it rises while theta4 grows."""
+        """Times for which the horsehead rises and falls in a turn, s; it rises while theta4 grows."""
         stroke = output_stroke(self.linkage)
         at_least = stroke.theta2[np.argmin(stroke.theta4 % TURN)]
         at_greatest = stroke.theta2[np.argmax(stroke.theta4 % TURN)]
@@ -178,7 +178,7 @@ class Pumpjack:
     # The items.
 
     def dimensions(self) -> Made:
-        """The catalogue's row, and what of it the report simulates."""
+        """The catalogue's row, and the part of it that the report simulates."""
         given, unit = published.CATALOGUE, load_linkage_spec("lufkin-c912d")
         base = self.linkage.o4 - self.linkage.o2
         own = {
@@ -223,7 +223,7 @@ class Pumpjack:
         return shown(lines(plot, wanted, {f"{name} as published": getattr(self.wrong, published_as)}))
 
     def strokes(self) -> Made:
-        """The horsehead's height over time, and how long it takes up and down."""
+        """The horsehead's height over time, and the times of its strokes up and down."""
         time, travel, speed = self._head()
         plots = (
             Plot("head", "travel of the horsehead", "m", {"travel": travel}, time, "time (s)"),
@@ -260,7 +260,7 @@ class Pumpjack:
         return Made(tables={"": pd.DataFrame(rows), "total": totals})
 
     def centres(self) -> Made:
-        """The centres of the links and of the system at 90 deg, and where the report has them."""
+        """The centres of the links and of the system at 90 deg, and their places in the report."""
         state = self.state(90.0)
         right = {
             name: state.point(link, self.bars.of(link).centre).position
@@ -332,7 +332,7 @@ class Pumpjack:
 
 
 def _mark(axes: Axes, right: dict[str, FloatArray], theirs: dict[str, tuple[float, float]]) -> None:
-    """Centres as dots, and as crosses where the report has them."""
+    """Draw centres as dots, and the report's as crosses."""
     for number, (name, place) in enumerate(right.items()):
         marker = "o" if not name.startswith("system") else "Ds"[name != "system"]
         axes.plot(

@@ -53,7 +53,7 @@ def best_cylinder(
 
 
 def _reverses(plane: Plane) -> bool:
-    """Whether a link with a pivot or a slide on the ground turns back, and with it all cylinders on it."""
+    """Whether a link with a pivot or a slide on the ground reverses, and with it all cylinders on it."""
     way = plane.turn if plane.turn.any() else np.real(np.conj(plane.axis) * plane.slide)
     return bool(way.min() < 0 < way.max())
 
@@ -85,7 +85,7 @@ def _in_closed_form(plane: Plane, room: Room, theta: FloatArray) -> tuple[comple
 def best_on_arm(
     pivot: complex, start: float, end: float, room: Room
 ) -> tuple[ComplexArray, ComplexArray] | None:
-    """Points (K,) of a link about a pivot, and bases (K,), of cylinders of the best lever angle there is.
+    """Points (K,) of a link about a pivot, and bases (K,), of cylinders of the best possible lever angle.
 
     Those of the longest arm come first; None where the limits allow none. The link turns from start to end,
     rad. Over a range R of the arm the worst angle between cylinder and arm is at most 90 deg - R / 2, reached
@@ -149,7 +149,7 @@ def best_on_slide(
 
 
 def _bases(room: Room) -> ComplexArray:
-    """A grid of bases all over their box."""
+    """A grid of bases over their box."""
     sides = zip(room.low, room.high, strict=True)
     axes = [np.linspace(low, high, _GRID if high > low else 1) for low, high in sides]
     base: ComplexArray = np.add.outer(axes[0], 1j * axes[1]).ravel()
@@ -178,7 +178,7 @@ def _on_line(
 
 
 def _along(along: complex, place: Any) -> Any:
-    """How far places are along a direction."""
+    """Coordinates of places along a direction."""
     return np.real(np.conj(along) * place)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems import CylinderSpec, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 
-INSET = 1e-7  # share: limits are kept with this to spare, so that the judge finds them kept
+INSET = 1e-7  # share by which limits are tightened, so that the judge finds them met
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -20,11 +20,11 @@ class Plane:
 
     origin: ComplexArray  # (M,): O2, A, and O4 or B of a slider
     axis: ComplexArray  # (M,): the unit vector along u
-    slide: ComplexArray  # (M,): how the origin moves
-    turn: FloatArray  # (M,): how the link turns
+    slide: ComplexArray  # (M,): velocity of the origin, up to a factor for each sample
+    turn: FloatArray  # (M,): angular velocity of the link, up to the same factor
     joints: ComplexArray  # (J,): the link's own points, in its frame
     middle: complex  # in its frame: its pivot of the ground, or half way from A to B
-    reach: float  # from there to pivots: as far as it is long, a slider or block as far as link 2 is
+    reach: float  # greatest distance from there to pivots: the link's length, or r2 for a slider or block
     power: FloatArray | None = None  # (M,): of the drive, N length; None without limit of force
 
 
@@ -123,7 +123,7 @@ class Room:
     low: FloatArray  # corners (2,) of the box in which its base may be
     high: FloatArray
     closed: Limits
-    ratio: float  # most of the greatest length over the closed one
+    ratio: float  # limit of the greatest length over the closed one
     force: float
 
     @classmethod
@@ -160,7 +160,7 @@ class Room:
         return np.stack(columns, axis=1)
 
     def beyond(self, found: Performance) -> FloatArray:
-        """How far cylinders are beyond the limits, in logarithms; shape (K,), 0 where all are kept."""
+        """Excess of cylinders over the limits, in logarithms; shape (K,), 0 where all are met."""
         return np.asarray(np.maximum(-self.left(found), 0.0).sum(axis=1))
 
     def kept(self, points: ComplexArray, bases: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

@@ -1,4 +1,4 @@
-"""The best cylinder near a given one: the least lever is made greatest within all limits."""
+"""The best cylinder near a given one: the least lever is maximised within all limits."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Pivots = tuple[complex, complex]  # of the link, and the base
 
 
 def by_quadratic(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
-    """The least lever t made greatest with all levers at least t, by quadratic programmes (SLSQP).
+    """Pivots that maximise the least lever t, with all levers at least t, by quadratic programmes (SLSQP).
 
     The resulting pivots may be beyond the limits.
     """
@@ -55,7 +55,8 @@ def by_linear(plane: Plane, room: Room, pivots: Pivots) -> Pivots:
     """The same by linear programmes in a region of trust.
 
     Where as many levers and limits meet as there are unknowns, this converges as Newton's method does (Madsen
-    1975, minimax); a limit that is overstepped costs in proportion, so that it may begin, and end, beyond.
+    1975, minimax); a limit that is overstepped costs in proportion, so the search may begin, and end, outside
+    the limits.
     """
     scale, trust = _Scale.of(plane, room), _FIRST
     x = np.clip(scale.unknowns(pivots), *scale.bounds)

@@ -18,11 +18,11 @@ _BLOCK = 500
 _BEST, _APART = 2000, 0.12  # parents are among the best, and this far apart as a share of the room
 _HOPELESS = -0.5  # a lower score cannot be repaired
 _POLISHED, _AGAIN = 8, 3
-# Cylinders polished to the end, and how often linear programmes follow quadratic ones.
+# Cylinders polished to the end, and the repetitions of linear after quadratic programmes.
 _FINISHED, _TURNS = 2, 2
-_GAIN = 1e-9  # of the sine of the lever angle, below which a programme more is not worth it
+_GAIN = 1e-9  # gain in the sine of the lever angle below which another programme is not worthwhile
 COARSE, FINE = 4, 2  # steps between samples that suffice to compare, and to polish
-_OVER = 0.15  # share of their box by which bases are drawn beyond it, to be put on its sides, as the best are
+_OVER = 0.15  # share of their box by which bases are drawn beyond it, then moved onto its sides
 _MORE = 4  # times the samples, where a first search came near but found none
 _SEEDS = 16  # times that each joint is tried
 

@@ -29,7 +29,7 @@ class Candidate(Displayed):
     linkage : Linkage
     verdict : Verdict
     problem : Problem
-        That it is for.
+        The problem that it solves.
     start : int
         Number of the start that it came from.
     iterations : int
@@ -97,7 +97,7 @@ class Candidate(Displayed):
     def error(self, problem: Problem) -> float:
         """The error of the design, in sizes of the task.
 
-        The greatest position error where every target is to be met, or else the root mean square that
+        The greatest position error where every target must be met, or else the root mean square that
         least squares minimises. Of a function rad, or shares of the full travel.
         """
         if problem.task.has_output.any():
@@ -107,7 +107,7 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / problem.task.size
 
     def _output_error(self, problem: Problem) -> float:
-        """Error of a function: the greatest at the pairs that are to be met, or by its norm."""
+        """Error of a function: the greatest at the pairs that must be met, or by its norm."""
         unit = problem.task.output_unit
         if problem.requirements.is_exact(problem.task):
             return float(self.verdict.output_error.max()) / unit
@@ -116,7 +116,7 @@ class Candidate(Displayed):
         return float(np.sqrt(self.verdict.square / len(problem.task))) / unit
 
     def objective(self, problem: Problem) -> float:
-        """Score by the objective, whatever the error; greater is better."""
+        """Score by the objective, regardless of the error; greater is better."""
         score = sum(
             weight * goal.better * self.values[goal.key] / problem.scale(goal)
             for goal, weight in problem.goals

@@ -17,7 +17,7 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.synth.cylinder.choice import best_cylinder
 
 _SAMPLES = 129
-_NEAR = np.array([1e-3, 3e-3, 0.01, 0.03, 0.1])  # rad, about what may be close to a dead position
+_NEAR = np.array([1e-3, 3e-3, 0.01, 0.03, 0.1])  # rad, about angles that may be close to a dead position
 _OWN = ("driver.cylinder", "cylinder_")  # defects that a cylinder may mend
 _OF_LINK2 = {"same_branch", "order"}  # and one on link 3 or 4 alone
 
@@ -27,7 +27,7 @@ def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylind
     left = {each.requirement for each in verdict.defects if not each.requirement.startswith(_OWN)}
     if problem.driver is None:
         return None
-    if left - _OF_LINK2 or (left and verdict.branch_ok):  # it has other defects anyhow
+    if left - _OF_LINK2 or (left and verdict.branch_ok):  # it has other defects anyway
         return None
     ends = motion_ends(problem.task, verdict) if verdict.branch_ok else None
     moved = travel(linkage, verdict.theta2, verdict.assembly, ends)

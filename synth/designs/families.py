@@ -95,7 +95,7 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
     """Index of the best design of those like each one, all of one kind.
 
     Alike are designs less than 5 % apart in all dimensions, and on paths those that trace the same coupler
-    curve (cognates); also when the one has first to be mirrored or turned as the task allows (`symmetries`).
+    curve (cognates); also after a reflection or rotation that the task allows (`symmetries`).
     All members of a family are like its best one; a design like another member alone is not in it.
     Signatures (n, 9), best first, have pivots measured from the middle of the task.
     """
@@ -115,7 +115,7 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
 
 
 def _alike_in_shape(curves: FloatArray, others: FloatArray) -> BoolArray:
-    """Whether any of the curves (k, 9) may be like each of others (n, 9)."""
+    """Whether each of others (n, 9) may be like any of the curves (k, 9)."""
     # by invariants of rotations and reflections: far fewer are left for the full comparison
     (one, reach), (other, others_reach) = _shape(curves), _shape(others)
     differ = np.abs(one[:, None] - other).max(axis=-1)

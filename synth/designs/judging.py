@@ -16,7 +16,7 @@ from grashof.synth.designs.driving import cylinder_for
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import overdue
 
-ROUNDING = 1e-6  # share, rad, sizes: how far verdicts of two processors may differ
+ROUNDING = 1e-6  # share, rad, sizes: greatest difference of verdicts between processors
 MISSED = {"within", "angle_within_deg", "exact"}  # requirements of defects where a target is missed
 
 

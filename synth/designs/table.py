@@ -71,7 +71,7 @@ COLUMNS = tuple(name for quantity in LISTED for name in (*_BEFORE.get(quantity.k
 OWN = Quantity(
     "objective", "objective", Unit.RATIO, better=-1, digits=4, about="less is better", full="own objective"
 )
-# Every column in words; of nearest misses also what they miss.
+# Every column in words; for nearest misses also the misses.
 NAMES: dict[str, str] = {
     **{column: name for column, (name, _) in _WORDS.items()},
     **{quantity.column: quantity.full for quantity in (*LISTED, OWN)},
@@ -109,7 +109,7 @@ def rows_of(
 
 
 def rows_of_nearest(problem: Problem, nearest: Sequence[Candidate]) -> list[Row]:
-    """Closest misses as rows, with what they miss in a last column."""
+    """Closest misses as rows, with their misses in a last column."""
     rows = rows_of(problem, nearest)
     for row, candidate in zip(rows, nearest, strict=True):
         row["misses"] = "; ".join(str(each) for each in candidate.verdict.defects)

@@ -20,7 +20,7 @@ class SizedLoop:
     e3: ComplexArray  # (N,), direction of the coupler
     e4: ComplexArray  # (N,), direction of O4B, or across what slides
     rod: FloatArray  # (N,), from A to B along e3
-    # (N,) each: for every dimension (see `Closure.dimensions`) how far B, moved with it, leaves its place
+    # (N,) each: for every dimension (see `Closure.dimensions`) displacement of B, moved with it
     # along e4
     moved: tuple[FloatArray | float, ...]
     o4: complex  # of a slider-crank the point of the slide's line that lies r3 ahead of B at the first angle
@@ -45,7 +45,7 @@ class Closure(ABC):
 
     @abstractmethod
     def by_ground(self, e4: ComplexArray, b: ComplexArray) -> tuple[FloatArray | float, ...]:
-        """Of the first four dimensions `SizedLoop.moved`; with B from O2."""
+        """`SizedLoop.moved` of the first four dimensions, with B from O2."""
 
     @abstractmethod
     def o4(self, dimensions: FloatArray, b: complex) -> complex:

@@ -100,7 +100,7 @@ class ClosingDyad(ABC):
     def gap(self, at: PlacedLoop, a: Vector, b: Vector, across: Vector) -> Any:
         """The residual of the closure, with B and `across` where link 3 has a direction.
 
-        Of the two equations theta4, or the travel of the slide, is eliminated.
+        The two equations are reduced to one without theta4, or the travel of the slide.
         """
 
     @abstractmethod
@@ -369,6 +369,6 @@ def coupler_of(
 
 
 def root_or_zero(square: FloatArray) -> FloatArray:
-    """The root, zero of negative squares: links that do not reach each other come as near as possible."""
+    """The root, zero for negative squares: links that do not reach each other come as near as possible."""
     root: FloatArray = np.sqrt(np.maximum(square, 0.0))
     return root

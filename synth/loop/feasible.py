@@ -1,8 +1,8 @@
 """Lengths that are feasible by construction.
 
 O2A is seen under an angle phi from the ground line, as in `ClosingDyad.reach`. Random numbers choose shares
-of the possible lengths; the loop closes at every phi that is demanded, and its transmission angle mu is at
-least the one demanded there, without trial and error.
+of the possible lengths; the loop closes at every phi demanded, with at least the transmission angle mu
+demanded there, without trial and error.
 """
 
 from __future__ import annotations
@@ -85,8 +85,8 @@ def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Si
 
     which is possible where near / far >= tan(h). A margin requires T >= (1 + margin) / (1 - margin) far and
     |D| <= near - margin (T + far) (Grashof's criterion, McCarthy & Soh 2011, section 2.2, with a margin).
-    T is greatest by the right sides at D = 0, and least where the limits of |D| meet; that there are such T
-    limits near / far, and so r2. Derived here; tests show that no loops are left out.
+    T is greatest by the right sides at D = 0, and least where the limits of |D| meet; their existence limits
+    near / far, and so r2. Derived here; tests show that no loops are left out.
     """
     margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
     sine, cosine = np.sin(half), np.cos(half)
@@ -113,7 +113,7 @@ def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Si
 def _of_slider(shares: FloatArray, _longer: BoolArray, demand: Demand) -> Sizes:
     """|offset - r2 cos(phi)| <= cos(mu) r3; with a margin r2 + |offset| <= (1 - margin) / (1 + margin) r3.
 
-    Of r2 / (r2 + r3) a share is taken, of the offset's range that is left then another.
+    One number is a share of r2 / (r2 + r3), another a share of the remaining range of the offset.
     """
     widest = np.minimum(np.cos(demand.transmission), (1 - demand.margin) / (1 + demand.margin))
     apart = np.subtract(demand.most, demand.least)

@@ -153,7 +153,7 @@ class Instant(ABC):
         return self.crank.left + moved if number == 3 else moved
 
     def velocity(self, number: int, arm: Vector) -> Vector:
-        """The same by the time, in mean speeds of the driver."""
+        """The first derivative by time, in mean speeds of the driver."""
         velocity: Vector = self.driver.pace * self.moved(number, arm)
         return velocity
 
@@ -164,7 +164,7 @@ class Instant(ABC):
         return bend - self.crank if number == 3 else bend
 
     def acceleration(self, number: int, arm: Vector) -> Vector:
-        """The second derivative by the time, in squares of them."""
+        """The second derivative by time, in squares of the driver's mean speed."""
         driver = self.driver
         acceleration: Vector = driver.pace**2 * self.bent(number, arm) + driver.gain * self.moved(number, arm)
         return acceleration
@@ -214,11 +214,11 @@ class SliderCrankInstant(Instant):
         return (self.crank.left + self.rates.speed3 * self.coupler.left).dot(self.output)
 
     def bar(self, number: int) -> tuple[Any, Vector] | None:
-        """The slider is none."""
+        """The slider is not a bar."""
         return None if number == 4 else Instant.bar(self, number)
 
     def turn(self, number: int) -> Any:
-        """That of the slider is theta4, across the slide."""
+        """The angle of the slider is theta4, across the slide."""
         across = self.output.left
         return np.arctan2(across.y, across.x) if number == 4 else Instant.turn(self, number)
 
@@ -278,7 +278,7 @@ class InvertedInstant(Instant):
         return -self.crank.left.dot(self.coupler) - self.rates.speed3 * self.lengths[3]
 
     def bar(self, number: int) -> tuple[Any, Vector] | None:
-        """The rod reaches to the farthest place of B on it, and to P; the block is none."""
+        """The rod reaches to the farthest place of B on it, and to P; the block is not a bar."""
         if number == 2:
             return Instant.bar(self, number)
         low, high = self.ends

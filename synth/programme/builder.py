@@ -42,7 +42,7 @@ class _Unknown:
 class Builder:
     """Unknowns, parameters and rows, each declared once with the functions that fill them."""
 
-    slack: ca.SX | None = None  # by which rows may be missed that a start relaxes
+    slack: ca.SX | None = None  # amounts by which rows that a start relaxes may be missed
     _unknowns: dict[str, _Unknown] = field(default_factory=dict)
     _parameters: list[tuple[ca.SX, Fill]] = field(default_factory=list)
     _rows: list[tuple[ca.SX, Fill]] = field(default_factory=list)
@@ -69,7 +69,7 @@ class Builder:
         self.row(*expressions, limits=always(*ZERO))
 
     def require(self, parts: tuple[str, ...], *expressions: ca.SX) -> None:
-        """Rows that must not be negative, but by the slack where a start relaxes one of the parts."""
+        """Rows that must not be negative, except by the slack where a start relaxes one of the parts."""
         if self.slack is not None:
             give = self.slack * self.parameter(lambda _, start: float(start.terms.relaxes(*parts)))
             expressions = tuple(expression + give for expression in expressions)

@@ -76,7 +76,7 @@ class Targets:
     points: list[ca.SX]  # (2,) each, sizes
     turns: ca.SX  # (N,), rad; angles of the body, moved by whole turns to be nearest to the start
     weights: ca.SX  # (2 N,), of the squared distances, then of the squared turns
-    error_scale: ca.SX  # one over the squares that the start misses its targets by
+    error_scale: ca.SX  # reciprocals of the squared misses of the targets at the start
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Targets:
@@ -284,7 +284,7 @@ def require_own(
 
 
 def own_goal(build: Builder, form: Form, x: Unknowns, places: Positions, objective: OwnObjective) -> ca.SX:
-    """The user's own objective, in units of what it is at the start."""
+    """The user's own objective, in units of its value at the start."""
     unit = build.parameter(lambda scaled, start: magnitude_at(scaled, start, objective))
     return ca.SX(on_symbols(objective, symbolic_design(build, form, x, places))) / unit
 
@@ -333,14 +333,14 @@ def _target_weights(scaled: ScaledProblem, start: Start) -> FloatArray:
 
 
 def _square(scaled: ScaledProblem, start: Start) -> float:
-    """Weighted squares that the start misses its targets by."""
+    """Weighted squared misses of the targets at the start."""
     order = np.argsort(start.visit)
     turned = np.array(start.theta3)[order] + start.body_angle
     return float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
 
 
 def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
-    """How far each target may be missed, drawn in a little: sizes, then rad."""
+    """Permitted miss of each target, slightly tightened: sizes, then rad."""
     zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
     kept = 1 - ZONE_INSET - start.terms.tightened_by("within")
     return (np.minimum(zones, MOST_ZONE) * kept)[:, list(start.visit)].ravel()

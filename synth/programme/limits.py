@@ -186,7 +186,7 @@ def _most(form: Form, key: str) -> Fill:
 
 
 def _share(form: Form, key: str) -> Fill:
-    """Weight of a goal; those of all add up to 1."""
+    """Weight of a goal; all weights add up to 1."""
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0

@@ -40,7 +40,7 @@ MENDING = 60  # iterations of a near miss mended in place, which takes a dozen w
 PATIENCE = (250, 400)  # iterations where the error is bounded: for trade-offs, and where the user requires it
 SLIGHT = 1e-6  # weight of the error beside the slack
 SOLVED = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
-EXCHANGES = 4  # times at most that a solve is repeated
+EXCHANGES = 4  # most repetitions of a solve
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
 
 
 def _as_it_is(start: Start, status: str) -> Solve:
-    """A start in place of a solve."""
+    """A solve that leaves its start unchanged."""
     points = (start.o2, start.o4, start.a, start.b, start.p)
     return Solve(points, start.theta2, start.theta3, start.body_angle, status, 0)
 
@@ -156,7 +156,7 @@ def _stated(
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:
         cost += own_goal(build, form, x, places, own_objective)
-    if form.fits:  # the error comes first; the rest only settles what the error leaves open
+    if form.fits:  # the error comes first; the rest decides only where the error leaves freedom
         cost = targets.error_scale * square(form, x, places, targets) - 1e-8 * x.tau
     if form.stay:
         names = form.kind.linkage.mechanism.pivots

@@ -24,18 +24,19 @@ class Terms:
     """The goal and the bounds of a solve, besides the requirements."""
 
     objective: Objective | None = field(default_factory=Objective)  # None: the user's own
-    radius: float = np.inf  # how far it may move each coordinate of the pivots
+    radius: float = np.inf  # limit on the change of each coordinate of the pivots
     stay: bool = False  # move no farther than the requirements make it, whatever the objective
     settled: bool = False  # the targets leave no freedom: the design is there already, or nowhere near
-    # Requirements (fields), or parts ("o2.x"), that it may miss, but as little as possible; all others hold.
+    # Requirements (fields), or parts ("o2.x"), that it may miss, but as little as possible; it keeps all
+    # others.
     relaxed: tuple[str, ...] = ()
     # Further shares of the motion at which a quantity along it is bounded, by the key of the quantity.
     peaks_at: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    # By how much the limits of each field are tightened, in the units of `Defect.miss`.
+    # Amounts by which the limits of each field are tightened, in the units of `Defect.miss`.
     more: Mapping[str, float] = field(default_factory=dict)
     loose: bool = False  # driver angles need not be those that the judge will find
     most_error: float = np.inf  # root mean square error up to which the objective decides
-    zoned: bool = False  # the objective decides while each target is missed by no more than it may
+    zoned: bool = False  # the objective decides while each target is missed by no more than is allowed
 
     @property
     def bounded(self) -> bool:
@@ -48,7 +49,7 @@ class Terms:
         return {} if self.objective is None else self.objective.goals
 
     def tightened_by(self, field: str) -> float:
-        """By how much the limits of a field are tightened."""
+        """Amount by which the limits of a field are tightened."""
         return self.more.get(field, 0.0)
 
     def relaxes(self, *parts: str) -> bool:
@@ -76,7 +77,7 @@ class Start:
     assembly: int
     kind: Kind
     body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
-    expected_error: float = 0.0  # root mean square error of a least-squares search here, with what limits add
+    expected_error: float = 0.0  # root mean square error of a least-squares search here, limits included
     terms: Terms = field(default_factory=Terms)
 
     @classmethod

@@ -45,7 +45,7 @@ class Form:
     closed: bool  # the task motion is a full turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
     stay: bool  # the distance from the start is the objective
-    elastic: bool  # requirements may be missed; how far is the objective
+    elastic: bool  # requirements may be missed; the amount is the objective
     # Targets, in the order of visit, at which the driver has the angle of the least miss, as for the judge;
     # of timed targets, that of all together.
     nearest: tuple[bool, ...]
@@ -93,7 +93,7 @@ class Form:
             most_error=bool(np.isfinite(start.terms.most_error)),
             zoned=start.terms.zoned,
         )
-        # One programme for motions short and long, and whatever acts.
+        # One programme serves short and long motions, whatever loads act.
         if not made.along:
             return replace(made, grid=0, loading=None, motor=None)
         heavy = any(QUANTITIES[key].needs is Needs.DYNAMICS for key in made.along)
@@ -143,6 +143,6 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
 
 
 def points_held(scaled: ScaledProblem) -> tuple[str, ...]:
-    """Points that the programme can hold in free regions, without a P that exact targets fix."""
+    """Points that the programme can keep in free regions, except a P that exact targets fix."""
     held = (name for name in points_kept_out(scaled.wanted) if name in scaled.kind.linkage.mechanism.points)
     return tuple(name for name in held if name != "p" or not scaled.exact)

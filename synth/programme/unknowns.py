@@ -87,7 +87,7 @@ class Unknowns:
 
 
 def _lengths(build: Builder, kind: Kind) -> ca.SX:
-    """r1, r2, r3, r4 as far as the kind has them, and its offset."""
+    """Those of r1, r2, r3, r4 that the kind has, and its offset."""
     has = [k for k, name in enumerate(("r1", "r2", "r3", "r4")) if name in kind.linkage.mechanism.lengths]
     found = build.unknown("r", len(has), lambda _, start: np.array(start.lengths)[has], always(SHORTEST, FAR))
     if len(has) == 4:
@@ -115,7 +115,7 @@ def _pivot(kind: Kind, name: str) -> tuple[Fill, Fill]:
 
 
 def _first_fixed(scaled: ScaledProblem, start: Start) -> tuple[FloatArray, FloatArray]:
-    """Driver angles are free, but at the first target where it is required."""
+    """Driver angles are free, except a required one at the first target."""
     low, high = np.full(len(start.visit), -LIFTED), np.full(len(start.visit), LIFTED)
     required = scaled.wanted.theta2_start_deg
     if required is not None and not start.terms.relaxes("theta2_start_deg"):
@@ -146,7 +146,7 @@ def _double_crank(scaled: ScaledProblem, start: Start) -> float:
 
 
 def inset(limits: Limits) -> Limits:
-    """Limits drawn in by `INSET`, where there is room between them."""
+    """Limits tightened by `INSET`, where there is room between them."""
     low, high = limits
     return (low + INSET, high - INSET) if high - low > 4 * INSET else limits
 

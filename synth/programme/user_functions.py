@@ -232,7 +232,7 @@ def _refuse_no_amounts(name: str, kind: _Kind, value: Any) -> None:
 @contextmanager
 def numpy_on_symbols() -> Iterator[None]:
     """NumPy functions give symbols of symbols, and do not warn."""
-    # CasADi from 3.8 on warns whoever calls a NumPy function on symbols that a later version may give arrays.
+    # CasADi from 3.8 on warns callers of NumPy functions on symbols that a later version may return arrays.
     # The mode is that of the process: it is restored, and left alone where it is not the default.
     options = ca.GlobalOptions
     if not hasattr(options, "setNumpyMode") or options.getNumpyMode() != _WARNS:

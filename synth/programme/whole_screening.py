@@ -61,7 +61,7 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
 
 
 def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """Greatest depth (n,), sizes, of what must keep out, over sampled angles: the judge looks closer."""
+    """Greatest depth (n,), sizes, inside areas kept out, over sampled angles; the judge is more precise."""
     wanted = scaled.wanted
     kind = scaled.kind.linkage.mechanism
     names = [name for name in points_kept_out(wanted) if name in kind.moving]
@@ -85,7 +85,7 @@ def depth_on_the_way(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 
 def _body(scaled: ScaledProblem) -> ComplexArray:
-    """Points along the outline of the body that keeps out, in its frame; none where it need not."""
+    """Points along the outline of the body, in its frame, where it must keep out of areas; else none."""
     outline = scaled.problem.task.body
     if "body" not in scaled.wanted.keep_out_for or outline is None:
         return np.zeros(0, dtype=np.complex128)

@@ -1,4 +1,4 @@
-"""Which proofs there are: each knows the problems that it is for."""
+"""The available proofs, each with the problems that it covers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_c
 
 
 def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
-    """Bounds of the best design; None where no proof is for the problem, or it would take minutes.
+    """Bounds of the best design; None where no proof covers the problem, or it would take minutes.
 
     With `at_least`, deg, it only decides whether a design has that much.
     """
@@ -39,7 +39,7 @@ def bounds_after(
 ) -> Bounds | None:
     """Bounds proven at the end of a search: where minutes are given, bounds above its best design.
 
-    `before` is what was proven before it, and `designs` are what it found.
+    `before` are the bounds proven before it, and `designs` its designs.
     """
     best = max((one.values[quantity_of(scaled.problem).key] for one in designs), default=0.0)
     pairs = bounds_of_pairs(scaled, proving, float(best))

@@ -42,7 +42,7 @@ INVERSE = frozenset({"mechanical_advantage"})
 
 
 def value_of(key: str, peak: Any) -> Any:
-    """The value of a quantity whose greatest magnitude is known, and the other way round."""
+    """The value of a quantity whose greatest magnitude is known, and vice versa."""
     return 1 / peak if key in INVERSE else peak
 
 

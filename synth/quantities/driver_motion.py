@@ -81,7 +81,7 @@ def pieces(places: FloatArray, values: FloatArray) -> FloatArray:
     return coefficients
 
 
-def as_they_come(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+def meeting_order(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
     """The order in which a driver meets targets on the shortest arc that contains them all.
 
     From its angles (n, N) in rad: that order (n, N), the angles in it, unwrapped and counter-clockwise, and

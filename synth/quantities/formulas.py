@@ -50,7 +50,7 @@ class Part:
     name: str  # such as "r3" or "o2.x"
     of: Callable[[Any], Any]  # from a `View`
     axis: str = ""  # of the box that limits it; empty for other limits
-    # 2 or 4 for what the dyad of the driver (O2, A) or the driven one (O4, B) decides by itself
+    # 2 or 4 where the dyad of the driver (O2, A) or the driven one (O4, B) alone decides it
     dyad: int | None = None
     squared: bool = False  # `of` gives the square, which has no kink at zero
     per: Callable[[Any], Any] | None = None  # what `of` is divided by, so that a limit can be a product

@@ -32,7 +32,7 @@ LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
 
 
 _LENGTHS = ("r1", "r2", "r3", "r4")
-_ONLY: dict[type, Any] = {}  # the one value of each kind
+_ONLY: dict[type, Any] = {}  # the one instance of each kind
 
 
 class LoopOf(Protocol):
@@ -40,7 +40,7 @@ class LoopOf(Protocol):
 
     @property
     def r4(self) -> FloatArray:
-        """Or the offset, shape (n,)."""
+        """r4 or the offset, shape (n,)."""
 
     @property
     def e3(self) -> ComplexArray:
@@ -64,7 +64,7 @@ class Kind(ABC):
     generators: ClassVar[type[Generators]]  # those that generate functions
 
     def __new__(cls) -> Self:
-        """The only one, so that kinds are compared by identity, in every process."""
+        """The only instance, so that kinds are compared by identity, in every process."""
         if cls not in _ONLY:
             _ONLY[cls] = object.__new__(cls)
         return cast("Self", _ONLY[cls])
@@ -74,7 +74,7 @@ class Kind(ABC):
 
     @property
     def mechanism(self) -> str:
-        """As files name it."""
+        """Name of the kind in files."""
         return self.linkage.mechanism.word
 
     @abstractmethod

@@ -124,7 +124,7 @@ class FourBarKind(_Pivoted):
 
 
 def _any_of_two(a: FloatArray, b: FloatArray) -> Shapes:
-    """r2 = exp(a) and the offset b, whatever the driver can do; the other length is 1."""
+    """r2 = exp(a) and the offset b, with any rotatability; the other length is 1."""
     r2, zero = np.exp(a), np.zeros_like(a)
     return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
 

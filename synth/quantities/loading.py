@@ -76,7 +76,7 @@ class Loading:
 
     @classmethod
     def of(cls, problem: Problem) -> Loading | None:
-        """That of a problem; None where it has no dynamics."""
+        """The loading of a problem; None where it has no dynamics."""
         spec = problem.dynamics
         if spec is None:
             return None

@@ -34,7 +34,7 @@ class ScaledProblem:
     exact: bool  # every target is met; otherwise least squares
     kind: Kind  # the first that the problem requests
     constraints: tuple[Constraint, ...] = ()  # the user's own
-    zones: FloatArray | None = None  # (2, N); how far the position and the angle of each target may be missed
+    zones: FloatArray | None = None  # (2, N); permitted misses of the position and the angle of each target
     own_objective: OwnObjective | None = None  # the user's own in place of the problem's
     of_use: float = 0.0  # least squares: designs up to this error are useful, even far from the best
 
@@ -156,7 +156,7 @@ class ScaledProblem:
 
 
 def _turning(wanted: Requirements, task: Task) -> Requirements:
-    """The requirements of a closed task, which takes a full turn of the driver, whatever its rotatability."""
+    """The requirements of a closed task, which takes a full turn of the driver for any rotatability."""
     if wanted.rotatability is not Rotatability.ANY or not task.closed:
         return wanted
     return replace(wanted, rotatability=Rotatability.FULL_CRANK, rotatability_margin=0.0)

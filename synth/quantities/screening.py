@@ -1,4 +1,4 @@
-"""Screened linkages of a search, and how far each violates the requirements."""
+"""Screened linkages of a search, and their violations of the requirements."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_
 
 @dataclass(frozen=True, slots=True)
 class Screened:
-    """Linkages in the frame of the search, and how far each violates the requirements."""
+    """Linkages in the frame of the search, and their violations of the requirements."""
 
     points: ComplexArray  # (n, 5), sizes; O2, O4, and A, B, P at the first target
     visit: IntArray  # (n, N); targets in the order in which the driver meets them
     theta2: FloatArray  # (n, N), rad, in that order, each step in the driver's sense and less than a turn
     direction: FloatArray  # (n,), sense of the driver
     assembly: FloatArray  # (n,), sign of sin(theta4 - theta3) that fits most targets
-    # (n, len(GROUPS)); by how much each requirement is missed, zero when met: sizes, radians or ratios
+    # (n, len(GROUPS)); amount by which each requirement is missed, zero when met: sizes, radians or ratios
     violations: FloatArray
     transmission: FloatArray  # (n,), rad; worst over the task or the cycle, as required
     coupler: ComplexArray  # (n, N), sizes; from A to B at every target, in the order of the targets
@@ -137,7 +137,7 @@ class Many(View):
 
 
 def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[tuple[str, FloatArray]]:
-    """How far limits are overstepped at the worst target, (n,), by what one dyad decides, or both (None)."""
+    """Excess over limits at the worst target, (n,), of the parts that one dyad decides, or both (None)."""
     missed: dict[str, FloatArray] = {}  # the parts of a quantity add up at every target
     for name, part in parts_of(wanted.limited, view.kind.formulas):
         if part.dyad == dyad:

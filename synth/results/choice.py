@@ -22,7 +22,7 @@ from grashof.synth.search.searches import error_of_use
 
 NEAR = 1.6  # times the error that is allowed: solves begin from least-squares designs up to it
 SAME_LEAST, NO_ERROR = 1.001, 1e-9  # times the least error, or errors, that count as the least one
-LEVEL, AT = 5.0, 0.01  # deg of transmission: steps of lists, and how near designs come to them
+LEVEL, AT = 5.0, 0.01  # deg of transmission: steps of lists, and the tolerance of designs to them
 LOCAL = "least error nearby"
 SEEDS = 12  # designs from which solves begin
 

@@ -43,7 +43,7 @@ class Explanation:
 
     note: str
     nearest: tuple[Candidate, ...] = ()  # the closest misses, the smallest first
-    designs: tuple[Candidate, ...] = ()  # that meet all requirements, come upon in looking for near ones
+    designs: tuple[Candidate, ...] = ()  # that meet all requirements, found in the search for near ones
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ def _miss(near: _Near, size: float) -> float:
 
 
 def _ways_note(why: str, words: list[str], given: str = "") -> str:
-    """The note that names single requirements, each of which would do together with `given`."""
+    """The note that names single requirements, each sufficient together with `given`."""
     reason = f"no design: {why}" if why else "no design meets all requirements"
     alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
     return f"{reason}; {alone}: {_BETWEEN.join(words)}"

@@ -1,4 +1,4 @@
-"""Zones that are too small: the size that would do."""
+"""Zones that are too small, and the size that would suffice."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def nearest_zones(
     need = min((_need(problem, one) for one in known), key=np.max, default=np.ones(2))
     nearest = tried(HALF, [start.under(relaxed=("within",)) for start in starts], need)
     share, last = CLOSER
-    # smaller as long as a design is found, by less where none is
+    # reduced while a design is found, by less where none is
     while nearest is not None and share <= last and not run.ended():
         need = _need(problem, nearest)
         if need.max() <= 1:

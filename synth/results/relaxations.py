@@ -1,4 +1,4 @@
-"""Single requirements that prevent a design, and by how much each would have to be relaxed."""
+"""Single requirements that prevent a design, and the relaxation that each would need."""
 
 from __future__ import annotations
 
@@ -47,8 +47,7 @@ def relaxations(
     `known` are designs that were rejected. The judge has accepted each design under the relaxed requirement
     and all others. Without the requirement a search finds linkages that meet all others; from the nearest of
     them the elastic programme minimises the miss. Fixed numbers of draws and solves bound the time, so that
-    the seed decides. Nothing is searched where it is proven that there is no design even without the
-    requirement.
+    the seed decides. Nothing is searched where a proof excludes designs even without the requirement.
     """
     found = list[Relaxation]()
     for key in limiting(scaled.problem, scaled.constraints):

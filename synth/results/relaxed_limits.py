@@ -1,4 +1,4 @@
-"""Relaxed requirements: how loose each may get, and the limits under which a design would be accepted."""
+"""Relaxed requirements: the loosest reasonable ones, and those under which a design would be accepted."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class Result(Displayed):
     history : RunHistory, optional
         The course of the search.
     proof : Proof, optional
-        What is proven of the list.
+        Proof about the list.
     loci : Loci, optional
         Places of the joints, where all linkages are enclosed.
     """
@@ -110,7 +110,7 @@ class Result(Displayed):
         return replace(self, candidates=tuple(each for each in self.candidates if each.id in kept))
 
     def first_of_each(self, most: int) -> list[int]:
-        """Numbers of `most` families: the first ones, of a list of kinds of linkage an equal share of each.
+        """Numbers of `most` families: the first ones, with an equal share for each kind of linkage.
 
         A share that a kind cannot fill goes to the first of the others.
         """

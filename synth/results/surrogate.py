@@ -49,7 +49,7 @@ class Surrogate:
         return self.least == 0
 
     def most_error(self, most: float, size: float) -> float:
-        """Error of the surrogate, its sizes, that makes `most` of all targets, whose task has this size."""
+        """Error of the surrogate, its sizes, for an error `most` of all targets, whose task has this size."""
         if self.is_itself:
             return most
         added = KEPT * float(np.sqrt(max(most**2 - self.least**2, 0.0)))

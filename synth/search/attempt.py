@@ -110,7 +110,7 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> dict[str, float]:
-    """How much the next solve is tightened, by field; empty unless one alone is narrowly missed."""
+    """Amounts by which the next solve is tightened, by field; empty unless one alone is narrowly missed."""
     missed = {defect.requirement for defect in candidate.verdict.defects} if candidate is not None else set()
     if candidate is None or not missed:
         return {}

@@ -19,9 +19,9 @@ from grashof.synth.theory.stopping import raise_if_stopped, stop_requested
 
 CHUNK = "chunk"  # kind of step
 CHUNKS = 4  # of a search of effort 1 in shards, among which its solves are divided
-AHEAD = 3  # chunks begun for each process before it is known that they are wanted
-# Solves between two looks at the verified designs, fixed, so that workers change nothing: of exact designs,
-# and of least squares, where every look may spare solves.
+AHEAD = 3  # chunks begun for each process before they are known to be needed
+# Solves between two checks of the verified designs, fixed, so that workers change nothing: of exact designs,
+# and of least squares, where every check may save solves.
 BATCH, BATCH_LEAST_SQUARES = 16, 8
 EARLY = 2  # first solves after which progress is reported; nothing is decided there
 LAST = 8  # solves at most of a search that is stopped before it has a design
@@ -35,7 +35,7 @@ def chunk(scaled: ScaledProblem, number: int, enough: int, seed: int, starts: in
 def _made_by(work: Work, scaled: ScaledProblem, number: int, enough: int, seed: int, starts: int) -> Chunk:
     search = Search(starts=starts, enough=enough, seed=seed)
     ledger = Ledger(scaled, search, "")
-    ledger.plan_more()  # nothing but the number of starts ends it
+    ledger.plan_more()  # only the number of starts ends it
     effort, of_pass = divmod(number, finder_for(scaled).rounds_a_pass)
     found = work.made(screen, scaled, effort, of_pass, enough, seed)
     if found is not None:
@@ -58,7 +58,7 @@ def chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int)
 
 
 def begin_chunks(scaled: ScaledProblem, run: Run, numbers: Sequence[int], starts: int) -> None:
-    """Begin some that will be wanted, one for each process, while there is little else to do."""
+    """Begin some that will be needed, one for each process, while there is little else to do."""
     if not run.journal.recorded:
         for number in numbers[: run.work.width]:
             run.work.begin(chunk, scaled, number, *arguments(run.search, starts))

@@ -34,15 +34,15 @@ KINDS: tuple[Any, ...] = (
 
 
 class Finder(Protocol):
-    """A kind of search: how it finds starts, and what it knows of the problems that it suits."""
+    """A kind of search: its way to find starts, and its knowledge of the problems that it suits."""
 
     @property
     def beginning(self) -> str:
-        """First stage of the search, as shown to those who wait."""
+        """First stage of the search, as shown to users."""
 
     @property
     def freedom(self) -> bool:
-        """Whether targets that are met leave a programme anything to decide."""
+        """Whether targets that are met leave freedom to a programme."""
 
     @property
     def cognates(self) -> bool:

@@ -1,4 +1,4 @@
-"""The history of a run, and when it has to end."""
+"""The history of a run, and the condition under which it ends."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ class RunHistory:
     begun: datetime  # of the search, in ``run.json`` of the run with its files, as `ended`
     ended: datetime
     ending: StopReason
-    resumed: int = 0  # how often it was resumed from its record
+    resumed: int = 0  # number of times it was resumed from its record
     steps_recorded: int = 0  # screenings, solves and chunks taken from the record
     record_lost: str = ""  # why the record ended before the search; empty where it did not
-    processes_lost: int = 0  # how often a process was lost and replaced
+    processes_lost: int = 0  # number of processes lost and replaced
     starts_crashed: tuple[int, ...] = ()  # numbers of the starts that end the process that solves them
     drawings_left_out: int = 0
     why_left_out: str = ""  # empty where all are drawn
@@ -49,10 +49,10 @@ def now() -> datetime:
 
 @dataclass(slots=True)
 class StopCondition:
-    """When a search has to end, and why; once it has to, that does not change."""
+    """The condition under which a search ends, and the reason; once met, it stays met."""
 
     time_limit: float | None  # s, from now on
-    stop: Callable[[], bool] | None  # ends it by True
+    stop: Callable[[], bool] | None  # ends it by returning True
     ending: StopReason = StopReason.COMPLETE
     begun: datetime = field(default_factory=now)  # UTC
     _since: float = field(default_factory=perf_counter)

@@ -63,16 +63,16 @@ class Journal:
                 self.begin()
 
     def done(
-        self, kind: str, of: Any, problem: Problem, do: Callable[[], T], holds: Callable[[object], bool], /
+        self, kind: str, of: Any, problem: Problem, do: Callable[[], T], is_valid: Callable[[object], bool], /
     ) -> T:
-        """The result of the next step: as recorded, where that `holds`, else done now and recorded.
+        """The result of the next step: as recorded, where that `is_valid`, else computed now and recorded.
 
         The step is of a `kind`, with `of` (see `plain`); its designs are for `problem`.
         """
         if not self._open:
             return do()
         name = step_name(kind, of)
-        found = self._next(name, problem, holds)
+        found = self._next(name, problem, is_valid)
         if found is not None:
             known: T = found[0]
             return known
@@ -116,7 +116,7 @@ class Journal:
         self._open = False
         remove_record(self._folder)
 
-    def _next(self, name: str, problem: Problem, holds: Callable[[object], bool]) -> tuple[Any] | None:
+    def _next(self, name: str, problem: Problem, is_valid: Callable[[object], bool]) -> tuple[Any] | None:
         while not self._recorded and self._unread:
             path = self._unread.popleft()
             self._recorded.extend(_steps(path))
@@ -126,7 +126,7 @@ class Journal:
         step = self._recorded.popleft()
         try:
             known = (restored(step["result"], problem),) if step["step"] == name else None
-            if known is not None and holds(known[0]):
+            if known is not None and is_valid(known[0]):
                 self._read.append(step)
                 self.taken += 1
                 if not self.recorded:

@@ -25,7 +25,7 @@ STALE = 20  # consecutive rounds without a new exact design after which it ends
 # Least squares: rounds that found the best design, or rounds in all, after which the search ends.
 AGREEING, MOST_ROUNDS = 3, 8
 SAME = 1e-3  # share: errors closer to the best one are the best one
-COPY = 0.1  # of the expected_error: starts closer at all targets end alike
+COPY = 0.1  # of the expected_error: starts closer at all targets lead to the same design
 COPY_FLOOR = 1e-3  # sizes: where limits bind, closer than that at least
 EXACT_ERROR = 1e-7  # sizes: a negligible error
 # Designs that a search remembers, or twice as many as are enough, and misses of each kind.

@@ -23,7 +23,7 @@ from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.ledger import Chunk, Tally
 
-# What may be written and read: values alone, so that a file is data.
+# Types that may be written and read: values alone, so that a file is data.
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (

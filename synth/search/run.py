@@ -39,7 +39,7 @@ class Progress:
     starts : int, optional
         Most solves, if known.
     enough : int
-        How many distinct verified designs are enough.
+        Number of distinct verified designs that is enough.
     designs : tuple of Candidate
         Those found so far, best first: accepted under the requirements of this search
         (`Candidate.problem`), all targets met or least squares, before a choice is made of them.
@@ -69,7 +69,7 @@ class Run:
     seconds: dict[str, float] = field(default_factory=lambda: {"screening": 0.0, "solving": 0.0})  # by stage
     since: float = field(default_factory=perf_counter)  # when it began, s
     crashed: list[int] = field(default_factory=list)  # numbers of starts that end the process solving them
-    proving: Proving = field(default_factory=Proving)  # how far proofs go
+    proving: Proving = field(default_factory=Proving)  # limits of proofs
 
     @property
     def times(self) -> dict[str, float]:
@@ -88,8 +88,8 @@ class Run:
         if not starts:
             return []
         of = (first, *starts)
-        holds = partial(are_attempts, scaled, starts)
-        made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first), holds)
+        is_valid = partial(are_attempts, scaled, starts)
+        made = self.step("solve", of, scaled, lambda: self.work.attempts(scaled, starts, first), is_valid)
         for number, one in enumerate(made, first):
             if one.status == CRASHED:
                 self.crashed.append(number)
@@ -126,19 +126,19 @@ class Run:
         of: tuple[Any, ...],
         scaled: ScaledProblem,
         do: Callable[[], T],
-        holds: Callable[[object], bool],
+        is_valid: Callable[[object], bool],
     ) -> T:
-        """The result of a step of the search, as recorded where that `holds`, or done now."""
+        """The result of a step of the search, as recorded where that `is_valid`, or computed now."""
 
         def done() -> T:
             result = do()
             self.ended()  # a result that was cut short is not recorded
             return result
 
-        return self.journal.done(kind, of, scaled.problem, done, holds)
+        return self.journal.done(kind, of, scaled.problem, done, is_valid)
 
     def begin(self, scaled: ScaledProblem, starts: Sequence[Proposal]) -> None:
-        """Begin solves that may be wanted, where that costs no time."""
+        """Begin solves that may be needed, where that costs no time."""
         if not self.journal.recorded:
             self.work.begin_attempts(scaled, starts)
 

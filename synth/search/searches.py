@@ -23,7 +23,7 @@ from grashof.synth.search.workers import LARGER
 from grashof.synth.theory.stopping import StopRequested
 
 _LOG = logging.getLogger(__name__)
-MANY = 64  # starts; of fewer none is spent on a first quick pass
+MANY = 64  # starts below which none is spent on a first quick pass
 FEW = 8  # exact designs: with fewer, zones are filled from those of least squares, too
 CONTINUED = 3  # times at most that the solve of the least error is continued
 
@@ -41,7 +41,7 @@ def problems_in_turn(scaled: ScaledProblem) -> tuple[ScaledProblem, ...]:
     """The problems that are searched: as stated, or without zones, and then, perhaps, by least squares."""
     problems = [asked_first(scaled.problem)]
     first = scaled.of_problem(problems[0])
-    if scaled.bounded and first.exact and len(scaled.targets) > 2:  # two leave nothing to make small
+    if scaled.bounded and first.exact and len(scaled.targets) > 2:  # two leave no error to minimise
         problems.append(scaled.problem.without_zones())
     return tuple(replace(scaled.of_problem(each), of_use=error_of_use(scaled)) for each in problems)
 

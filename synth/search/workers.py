@@ -26,11 +26,11 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.theory.stopping import StopRequested, stop_requested, stop_when
 
 _LOG = logging.getLogger(__name__)
-# Solves begun for each process before it is known that they are wanted: of least squares, and exact ones,
-# which are bundled.
+# Solves begun for each process before they are known to be needed: of least squares, and exact ones, which
+# are bundled.
 AHEAD, AHEAD_EXACT, BUNDLE = 4, 16, 4
 LARGER = 2  # times the draws and starts of a usual round: rounds that more effort adds
-LOOK = 0.1  # s between two looks whether to stop
+LOOK = 0.1  # s between two checks whether to stop
 CRASHED = "Crashed"  # status of a start that ends the process that solves it
 
 STOP, OVER = 1, 2  # orders to the processes: to accept the current results, and to end
@@ -85,15 +85,15 @@ class Work:
         return make(scaled, *which)
 
     def begin_attempts(self, scaled: ScaledProblem, starts: Sequence[Proposal], /) -> None:
-        """Begin attempts that may be wanted; here none."""
+        """Begin attempts that may be needed; here none."""
 
     def begin(self, make: Make[Any], scaled: ScaledProblem, /, *which: float) -> bool:
-        """Begin work that `made` may want; whether it was not begun before. Here none."""
+        """Begin work that `made` may need; whether it was not begun before. Here none."""
         return False
 
 
 class OnExecutor(Work):
-    """On an executor, `width` at a time; work that may be wanted is begun early, and dropped if it is not."""
+    """On an executor, `width` at a time; work that may be needed is begun early, and dropped if it is not."""
 
     def __init__(self, executor: Executor, width: int) -> None:
         self._executor, self.width, self.lost = executor, width, 0
@@ -291,18 +291,18 @@ def new_state() -> Any:
 
 
 def processes(count: int, state: Any) -> ProcessPoolExecutor:
-    """Processes that end once `state` is `OVER`, whatever they do then, and with this one."""
+    """Processes that end once `state` is `OVER`, even in the middle of work, and with this one."""
     context = get_context("spawn")
     return ProcessPoolExecutor(count, mp_context=context, initializer=_begin_worker, initargs=(state,))
 
 
 def begun(executor: Executor, count: int) -> Future[int]:
-    """Begin all processes of an executor; done once the first of them is there."""
+    """Begin all processes of an executor; return once the first of them runs."""
     if sys.platform == "win32":
         return executor.submit(abs, 0)
     resource_tracker.ensure_running()  # begun with them otherwise, it would let Ctrl-C through again
     # Ctrl-C reaches every process of a terminal: where it comes before a process can ignore it, that one
-    # would end with a traceback. So it waits in them, and here for as long as they are begun.
+    # would end with a traceback. So it waits in them, and here while they are begun.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         first, *_ = [executor.submit(abs, 0) for _ in range(count)]  # each begins one

@@ -3,7 +3,7 @@
 With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a linkage is a shape and its driver angles at the
 targets. P = z0 + z1 Q + z2 e, with the origin Q and direction e of the link that carries it, is linear in
 z0, z1, z2, which are solved for exactly (variable projection, see `loop_search`). The first loop of a drawn
-shape closes by construction; those of which another one does not are left out.
+shape closes by construction; shapes with another loop that does not are left out.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Shapes:
 
     @property
     def width(self) -> int:
-        """How many numbers there are."""
+        """Number of columns."""
         return sum(1 + row.paired for row in self.rows)
 
     def given(self, columns: Sequence[Any]) -> dict[str, Any]:
@@ -75,7 +75,7 @@ class Shapes:
         return made
 
     def drawn(self, rng: np.random.Generator, count: int, transmission: float) -> FloatArray:
-        """Random shapes, (count, width); in the first loop the driver turns fully, and mu is so much, rad."""
+        """Random shapes, (count, width); first loops are full cranks with mu from `transmission` up, rad."""
         loop = self.mechanism.loops[0]
         longer, shares = rng.random(count) < LONGER, rng.random((count, 3))
         sizes = feasible(DYADS[loop.dyad.kind], shares, longer, Demand.turning(transmission))
@@ -90,7 +90,7 @@ class Shapes:
 
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
-    """Random linkages whose loops close all round the turn, of `count` that are tried."""
+    """Random linkages whose loops close all round the turn, out of `count` tried."""
     drawn = shapes.drawn(rng, count, float(np.radians(target.wanted.transmission_min_deg)))
     sides = rng.choice([-1.0, 1.0], (count, len(shapes.mechanism.loops)))
     for positions in (FEW, ROUND):  # most that close in a few close in all
@@ -170,7 +170,7 @@ def _by_all(vector: Vector, by_angle: FloatArray) -> tuple[ComplexArray, Complex
 def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared.
 
-    The errors are those of positions, angles of the body and outputs, as far as the targets have them.
+    The errors are those of positions, angles of the body and outputs, where the targets have them.
     """
 
     def model(some: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -32,7 +32,7 @@ class SearchTargets:
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
     kind: Kind
     closed: bool = False  # the task motion is a full turn
-    # (N,), rad: how far the last link has turned from the first target on, in the driver's sense
+    # (N,), rad: rotation of the last link from the first target, in the driver's sense
     outputs: FloatArray | None = None
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
@@ -78,7 +78,7 @@ class SearchTargets:
 
     @property
     def steps(self) -> FloatArray:
-        """How far it is from each target to the next, shape (N - 1,), sizes; never quite zero."""
+        """Distance from each target to the next, shape (N - 1,), sizes; never quite zero."""
         given = self.weights > 0
         step = np.abs(np.diff(self.points)) * (given[1:] & given[:-1])
         given = self.turn_weights > 0
@@ -89,7 +89,7 @@ class SearchTargets:
 
     @property
     def unknowns(self) -> int:
-        """Proportions, and driver angles or what they are made of."""
+        """Proportions, and driver angles or the numbers that they are made of."""
         if self.timed:
             return self.kind.proportions + 1
         return self.kind.proportions + len(self.points) + self.wanted.order

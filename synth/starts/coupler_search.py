@@ -26,7 +26,7 @@ TIMED = (600, ((60, 6), (20, 60)))
 FEW_POINTS = 48  # of a longer path decide which linkages are worth the rest
 EXACT = 1e-16  # sizes squared: such an error is left to the solver
 FOUND = 1e-5  # sizes: rms error of a start for an exact task
-PLACED = 3  # targets with places, which fix where a linkage stands
+PLACED = 3  # targets with places, which fix the place of a linkage
 ANCHORS = 6  # choices of others in a round where there are fewer
 AROUND, LATER = 0.7, (0.2, 1.5)  # where they are: sizes, and rad after the last target
 NEAR = 20  # linkages near the requirements are enough
@@ -34,7 +34,7 @@ NEAR = 20  # linkages near the requirements are enough
 
 @dataclass(frozen=True, slots=True)
 class CouplerSearch:
-    """Targets that no theory leads to directly."""
+    """Targets that theory does not solve directly."""
 
     scaled: ScaledProblem
 
@@ -145,7 +145,7 @@ def _searched(
 
 
 def _anchored(target: SearchTargets, count: int, rng: np.random.Generator) -> SearchTargets:
-    """Some targets and, after them, points at random that P passes, too: these fix where a linkage stands."""
+    """Some targets and, after them, points at random that P passes, too: these fix its place."""
     middle = (target.weights * target.points).sum() / max(target.weights.sum(), 1e-300)
     points = middle + AROUND * (rng.normal(size=count) + 1j * rng.normal(size=count))
     later = target.timing[-1] + np.cumsum(rng.uniform(*LATER, count)) if target.timed else np.zeros(count)
@@ -174,7 +174,7 @@ def leaves_freedom(scaled: ScaledProblem) -> bool:
 
 
 def _equalities(wanted: Requirements) -> int:
-    """How many numbers the requirements fix: coordinates of pivots, and angles."""
+    """Number of values that the requirements fix: coordinates of pivots, and angles."""
     sides = [side for box in (wanted.o2, wanted.o4) if box is not None for side in (box.x, box.y)]
     fixed = [wanted.angle_of(name) is not None for name in ("ground_angle_deg", "theta2_start_deg")]
     return sum(low == high for low, high in sides) + sum(fixed)

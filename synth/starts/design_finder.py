@@ -33,7 +33,7 @@ class DesignFinder(ABC):
         """Nothing: impossible tasks are refused where they are stated."""
 
     def degenerate(self) -> str:
-        """No such task is without a linkage."""
+        """Empty: every such task needs a linkage."""
         return ""
 
     def relaxed(self, _rng: np.random.Generator) -> Sequence[Start | Linkage]:
@@ -45,7 +45,7 @@ class DesignFinder(ABC):
         return ""
 
     def onward(self, _designs: Sequence[Candidate]) -> Sequence[Linkage]:
-        """Linkages that designs lead to, which are looked at last."""
+        """Linkages that designs lead to, which are examined last."""
         return []
 
     @property
@@ -75,4 +75,4 @@ class DesignFinder(ABC):
     def closest_to(
         self, required: ScaledProblem, key: str, rng: np.random.Generator
     ) -> Sequence[Start | Linkage]:
-        """Linkages that keep these limits, and miss the additional one of `required` by least."""
+        """Linkages that keep these limits, and miss the additional one of `required` by the least amount."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.quantities.driver_motion import as_they_come, follow
+from grashof.synth.quantities.driver_motion import follow, meeting_order
 from grashof.synth.quantities.kinds import FOUR_BAR
 from grashof.synth.quantities.screening import (
     GROUPS,
@@ -57,7 +57,7 @@ def screen(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
 def near_misses(
     motion: Displacements, body: complex, dyads: Dyads, wanted: Requirements, pairs: int
 ) -> Screened:
-    """All pairs of (thinned) dyads and how far each violates the requirements, feasible or not."""
+    """All pairs of (thinned) dyads and the violations of each, feasible or not."""
     driver, driven = _sides(motion, body, dyads, wanted)
     stride = max(1, int(np.ceil(len(driver) / np.sqrt(pairs))))
     driver, driven = driver[::stride], driven[::stride]
@@ -71,7 +71,7 @@ def near_misses(
 def judged_pairs(
     motion: Displacements, body: complex, drivers: Dyads, driven: Dyads, wanted: Requirements
 ) -> Screened:
-    """Given pairs, entry by entry, and how far each violates the requirements."""
+    """Given pairs, entry by entry, and the violations of each."""
     driver, _ = _sides(motion, body, drivers, wanted)
     _, other = _sides(motion, body, driven, wanted)
     return _judged(motion, body, driver, other, wanted)
@@ -94,10 +94,10 @@ def _sides(motion: Displacements, body: complex, dyads: Dyads, wanted: Requireme
 
 
 def _visiting_order(angle: FloatArray, ordered: bool) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Order of the poses along the driver's motion, angles along it, its sense, and how far from in order."""
+    """Order of the poses along the driver's motion, angles, its sense, and the departure from order."""
     count = angle.shape[1]
     if not ordered:
-        return *as_they_come(angle), np.zeros(len(angle))
+        return *meeting_order(angle), np.zeros(len(angle))
     visit = np.broadcast_to(np.arange(count), angle.shape)
     step = (np.diff(angle, axis=1)) % TURN
     forward = step.sum(axis=1)

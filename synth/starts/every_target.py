@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.quantities.driver_motion import as_they_come
+from grashof.synth.quantities.driver_motion import meeting_order
 from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
@@ -33,7 +33,7 @@ class _Model:
     gap: FloatArray  # (n, N, 3), as own
     common: FloatArray  # (n, N, 3, C)
     own: FloatArray
-    over: FloatArray  # (n, L): how far limits are overstepped
+    over: FloatArray  # (n, L): excess over limits
     by_over: FloatArray  # (n, L, C + 2), derivatives by what all share and the driver angles at the ends
     ends: IntArray  # (n, 2), of the motion
 
@@ -86,7 +86,7 @@ def _with_angles(target: SearchTargets, batch: Batch, places: int) -> Batch:
 
 
 def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
-    """How linkages stand to every target: where they are placed, or else fit best."""
+    """Misses of every target, linearised: of linkages as placed, or else where they fit best."""
     count = len(target.points)
     free = replace(target, wanted=replace(target.wanted, order=False))
     inner = replace(batch, unknowns=batch.unknowns[:, : 3 + count])
@@ -134,7 +134,7 @@ def _ends(target: SearchTargets, loop: Loop) -> IntArray:
     """Targets whose driver angles limits may depend on: those at both ends of the motion; shape (n, 2)."""
     ends = np.broadcast_to([0, len(target.points) - 1], (len(loop.r2), 2))
     if target.jumbled:
-        ends = as_they_come(np.nan_to_num(loop.theta2))[0][:, [0, -1]]
+        ends = meeting_order(np.nan_to_num(loop.theta2))[0][:, [0, -1]]
         if target.wanted.theta2_start_deg is not None:
             ends[:, 0] = 0
     return ends
@@ -143,7 +143,7 @@ def _ends(target: SearchTargets, loop: Loop) -> IntArray:
 def _overstepped(
     target: SearchTargets, loop: Loop, z: ComplexArray, ends: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """How far limits are overstepped (n, L); by what all share and the angles at both ends (n, L, 11)."""
+    """Excess over limits (n, L); its derivative by what all share and the angles at both ends (n, L, 11)."""
     n, count = loop.theta2.shape
     by_theta2 = np.zeros((n, count, 11))
     by_theta2[np.arange(n)[:, None], ends, [9, 10]] = 1
@@ -186,7 +186,7 @@ def _stepped(target: SearchTargets, batch: Batch, model: _Model, damping: FloatA
 
 
 def _weights(own: FloatArray) -> FloatArray:
-    """How much each driver angle resists being moved, shape (n, N)."""
+    """Resistance of each driver angle to being moved, shape (n, N)."""
     square: FloatArray = (own**2).sum(axis=2)
     least: FloatArray = np.maximum(square, 1e-12 * square.max(axis=1, keepdims=True)) + 1e-300
     return least

@@ -163,7 +163,7 @@ class DyadPairs(ExactPoses, ABC):
         return fully_screened(scaled, screen(self.motion, scaled.targets[0], dyads, scaled.wanted, most))
 
     def near_pairs(self, dyads: Dyads) -> Screened:
-        """Pairs, feasible or not, and how far each violates all requirements but the user's own."""
+        """Pairs, feasible or not, and the violations of each, except of the user's own requirements."""
         return near_misses(self.motion, self.scaled.targets[0], dyads, self.scaled.wanted, NEAR_PAIRS)
 
     def near(self, rng: np.random.Generator) -> Screened:
@@ -228,7 +228,7 @@ class FewPoses(DyadPairs):
         return joined(stated_dyads(scaled, self.motion), traced)
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """That a fixed ground pivot is not a centre point of four poses; empty where it may be one."""
+        """A note that a fixed ground pivot is not a centre point of four poses; empty where it may be one."""
         scaled, dyads = self.scaled, self.dyads(rng)
         for name, pivot in fixed_pivots(scaled.wanted).items():
             apart = float(np.abs(dyads.ground - pivot).min(initial=np.inf))
@@ -251,7 +251,7 @@ class ManyPoses(DyadPairs):
         return scaled.motion is not None and len(scaled.targets) > 4
 
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """A single round of all linkages that there are; a second one would hold the same."""
+        """A single round of all linkages; a second one would be the same."""
         if number or size > 1:
             return None
         dyads = self.dyads(rng)
@@ -280,7 +280,7 @@ class ManyPoses(DyadPairs):
         return found
 
     def obstacle(self, rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """How many dyads meet the poses."""
+        """The number of dyads that meet the poses, in words."""
         count, dyads = len(self.scaled.targets), self.dyads(rng)
         guides = len(five_pose_guides(self.motion)) if count == 5 else 0
         sliding = f"; {counted(guides, 'dyad')} would have to be a slider" if guides else ""
@@ -297,7 +297,7 @@ def translate(motion: Displacements) -> bool:
 
 
 def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:
-    """The first of some poses that a later one is equal to, and the first of those; None where all differ.
+    """The first pose that a later one equals, and the first such later one; None where all differ.
 
     Positions in sizes and rotations of absolute value 1, each (n,).
     """

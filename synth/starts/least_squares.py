@@ -1,7 +1,7 @@
 """Starts of least squares: linkages feasible by construction, placed best on the targets.
 
 Where the best of them break a limit, places become unknowns, and oversteps of limits count as errors that
-grow from stage to stage: so the search ends where the programme does, whichever limits are active.
+grow from stage to stage: so the search ends where the programme does, for any active limits.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ MOST_CURVES = 6  # starts of such a round
 # Times the least error: starts with a greater expected error are not solved; where the search may shift the
 # ends of the motion, it is a little off.
 NEAR_BEST, NEAR_BEST_SHIFTED = 1.6, 2.0
-SAME_ERROR = 1e-3  # share: a feasible linkage so near to the best one shows that no limit binds
+SAME_ERROR = 1e-3  # share: a feasible linkage nearer to the best one shows that no limit binds
 SAME_CURVE = 0.1  # of the rms error: two linkages closer at every target are one
 # Where limits bind: numbers of the best distinct ones that continue, their steps, and the weight of the
 # limits (in sizes).
@@ -53,11 +53,11 @@ LONG, LONG_STEPS = 24, 20  # linkages of a thinned task that are improved on all
 LAST_STEPS = 200  # and the best of them until little is gained
 LAST_WEIGHT = 300.0  # of limits, which then are kept but for rounding
 COPY = 0.01  # sizes: two linkages closer at three targets are one
-# Starts of a round: the best, some of the others, and some of before the limits bear fully; fewer on
+# Starts of a round: the best, some of the others, and some from before the limits apply fully; fewer on
 # tasks of more targets than `AMPLE`, whose solves take longer.
 BEST, OTHERS, EARLY = 12, 4, 8
 AMPLE, FEWEST = 24, 0.25
-# No residual of the search stands for these.
+# No residual of the search represents these.
 UNLIMITED = (
     *("order", "same_branch", "keep_out", "constraints"),
     *(
@@ -266,7 +266,7 @@ def _some(rng: np.random.Generator, every: IntArray, count: int) -> list[int]:
 
 
 def _ends_bind(scaled: ScaledProblem) -> bool:
-    """Whether a limit depends on where the driver is at single targets."""
+    """Whether a limit depends on the driver angle at single targets."""
     wanted = scaled.wanted
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     return bool(over_task and wanted.transmission_min_deg > 0)

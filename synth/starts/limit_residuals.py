@@ -1,4 +1,4 @@
-"""Limits as residuals of the batched search: how far each is overstepped, and its derivative."""
+"""Limits as residuals of the batched search: the excess over each, and its derivative."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class Placement(View):
 
 
 def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatArray]:
-    """How far every limit is overstepped, (n, L), and the derivative by the unknowns, (n, L, M).
+    """Excess over every limit, (n, L), and its derivative by the unknowns, (n, L, M).
 
     Lengths of links and their ratio by their logarithms, places and coupler arms in sizes, angles in rad, the
     transmission by |cos mu|.
@@ -155,7 +155,7 @@ def _outside(row: Dual, limits: Limits) -> Dual:
 
 
 def _turned(row: Dual, limits: Limits, period: float) -> Dual:
-    """By how much angles lie beyond a range, within half a period."""
+    """Amount by which angles exceed a range, within half a period."""
     over = turned_beyond(row.value, limits, period)
     fixed = limits[0] == limits[1]
     return Dual(over, lambda: row.slope if fixed else np.where((over != 0)[..., None], row.slope, 0.0))
@@ -167,7 +167,7 @@ def _where(rows: BoolArray, row: Dual) -> Dual:
 
 
 def _transmission_rows(target: SearchTargets, loop: Relative) -> Iterator[Dual]:
-    """How far |cos mu| exceeds its limit: with O2A along the ground line, and at the ends."""
+    """Excess of |cos mu| over its limit: with O2A along the ground line, and at the ends."""
     wanted, theta2 = target.wanted, loop.theta2
     least = np.radians(wanted.transmission_min_deg)
     if least <= 0 and wanted.rotatability is not Rotatability.ANY:

@@ -16,7 +16,7 @@ import numpy as np
 from grashof.problems import Rotatability
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.quantities.driver_motion import as_they_come
+from grashof.synth.quantities.driver_motion import meeting_order
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
 from grashof.synth.starts.closed_loop import (
@@ -102,14 +102,14 @@ def drawn_gaps(target: SearchTargets, count: int, rng: np.random.Generator) -> F
 
 
 def place(target: SearchTargets, batch: Batch) -> Placed:
-    """Where the linkages of a batch fit the points best."""
+    """The linkages of a batch, placed where they fit the points best."""
     loop = Loop.of(target, batch)
     z, _, _, error = project(target, loop)
     return _standing(target, loop, z, error)
 
 
 def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatArray) -> Placed:
-    """Where linkages stand with given z0, z1, z2 (n, 3); `error` is that of the points alone."""
+    """Linkages placed by given z0, z1, z2 (n, 3); `error` is that of the points alone."""
     z0, z1, z2 = z.T
     ground = z1 / loop.r2
     a = z0[:, None] + z1[:, None] * loop.e2
@@ -128,14 +128,14 @@ def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatAr
 
 
 def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, direction: FloatArray) -> Screened:
-    """Placed linkages and how far each violates the requirements."""
+    """Placed linkages and the violations of each."""
     a, b, theta2 = placed.a, placed.b, placed.theta2
     if scaled.problem.task.returns:
         a, b = (np.concatenate([points, points[:, :1]], axis=1) for points in (a, b))
         theta2 = np.concatenate([theta2, theta2[:, :1] + TURN * direction[:, None]], axis=1)
     visit = np.broadcast_to(np.arange(theta2.shape[1]), theta2.shape)
     if not target.wanted.order:
-        visit, theta2, direction = as_they_come(theta2)
+        visit, theta2, direction = meeting_order(theta2)
     p = placed.p[:, 0]
     found = Configurations(placed.o2, placed.o4, a, b, visit, theta2, direction, scaled.kind)
     violations = violations_apart(found, p, placed.p, scaled.wanted)
@@ -278,7 +278,7 @@ def with_places(target: SearchTargets, batch: Batch) -> Batch:
 
 
 def standing(target: SearchTargets, batch: Batch) -> Placed:
-    """Where the linkages of a batch with places stand."""
+    """The linkages of a batch with places, as placed."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         loop, z = _loop_and_places(target, batch)
         fit = z[:, :1] + z[:, 1:2] * loop.e2 + z[:, 2:] * loop.e3

@@ -1,10 +1,10 @@
 """Parallelogram linkages for poses that are pure translations of each other.
 
 With r1 = r3 and r2 = r4 the coupler keeps its angle, and every point of the body moves on a circle of
-radius r2: the driver stands at theta2 where P stands at C + r2 exp(i theta2). So three poses or more
-have to lie on one circle, whose centre C is given by them; two poses leave C free on their bisector.
-At theta2 = theta1 and theta1 + pi all four joints lie on one line, the change points, past which the
-linkage may continue as an antiparallelogram: the task motion has to lie between them.
+radius r2: the driver is at theta2 where P is at C + r2 exp(i theta2). So three poses or more have to lie on
+one circle, whose centre C is given by them; two poses leave C free on their bisector. At theta2 = theta1 and
+theta1 + pi all four joints lie on one line, the change points, past which the linkage may continue as an
+antiparallelogram: the task motion has to lie between them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from grashof.problems.values.arrays import (
 )
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.whole_screening import fully_screened
-from grashof.synth.quantities.driver_motion import as_they_come, shorter_way
+from grashof.synth.quantities.driver_motion import meeting_order, shorter_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import (
     GROUPS,
@@ -44,9 +44,9 @@ BRED, CHILDREN, GENERATIONS = 12, 100, 12  # of the best
 SAMPLES, FEW = 30_000, 40
 NEARBY = 5.0  # sizes: no farther away than limits demand
 WIDTH, SHRINK = 0.3, 0.6  # of their variation, in sizes and shares, less and less
-MOST, SPACING = 3000, 0.25  # among which the best are chosen, and how much they differ
+MOST, SPACING = 3000, 0.25  # among which the best are chosen, and their least difference
 FARTHEST = 100.0  # sizes
-FAULTY = 1e6  # taken off the score of what violates a requirement
+FAULTY = 1e6  # subtracted from the score of a linkage that violates a requirement
 ROUNDING = 1e-10  # sizes, rad
 SHORTEST = 1e-6  # sizes, of a coupler
 
@@ -200,14 +200,14 @@ def _cranks(scaled: ScaledProblem, samples: int, rng: np.random.Generator) -> Co
 
 
 def _on_bisector(chord: complex, radius: FloatArray, side: IntArray | FloatArray) -> ComplexArray:
-    """From a point on the bisector of a chord, left (+1) or right (-1) of it, to the chord's begin."""
+    """From a point on the bisector of a chord, left (+1) or right (-1) of it, to the start of the chord."""
     height = np.sqrt(np.maximum(radius**2 - abs(chord) ** 2 / 4, 0.0))
     return np.asarray(-chord / 2 - 1j * side * height * chord / abs(chord), dtype=np.complex128)
 
 
 def _arc(scaled: ScaledProblem, crank: ComplexArray) -> tuple[FloatArray, FloatArray]:
     """Middle and half width of the shortest arc that holds all driver angles, shape (n,), rad."""
-    _, theta2, _ = as_they_come(np.angle(crank[:, None] + scaled.targets - scaled.targets[0]))
+    _, theta2, _ = meeting_order(np.angle(crank[:, None] + scaled.targets - scaled.targets[0]))
     return theta2[:, [0, -1]].mean(axis=1), (theta2[:, -1] - theta2[:, 0]) / 2
 
 
@@ -243,7 +243,7 @@ def _kept(scaled: ScaledProblem, drawn: _Drawn) -> _Drawn:
 
 
 def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
-    """How far each violates the requirements; a motion up to a change point leaves the branch."""
+    """The violations of each; a motion up to a change point leaves the branch."""
     wanted, count = scaled.wanted, len(drawn)
     moved = scaled.targets - scaled.targets[0]
     a, b = drawn.a[:, None] + moved, (drawn.a + drawn.coupler)[:, None] + moved
@@ -254,7 +254,7 @@ def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
     if wanted.order:
         theta2, direction = shorter_way(angle)
     else:
-        visit, theta2, direction = as_they_come(angle)
+        visit, theta2, direction = meeting_order(angle)
     found = Configurations(o2, o4, a, b, visit, theta2, direction, scaled.kind)
     violations = violations_apart(found, p, np.broadcast_to(scaled.targets, a.shape), wanted)
     violations[:, GROUPS.index("order")] += np.maximum(np.ptp(theta2, axis=1) - TURN, 0)
@@ -268,7 +268,7 @@ def _judged(scaled: ScaledProblem, drawn: _Drawn) -> Screened:
 
 
 def _distinct_best(scaled: ScaledProblem, drawn: _Drawn, found: Screened) -> tuple[_Drawn, FloatArray]:
-    """The best that differ, to be varied, and what they are worth."""
+    """The best that differ, to be varied, and their worth."""
     worth = _worth(scaled, found)
     points = np.concatenate([found.points[:, :3].real, found.points[:, :3].imag], axis=1)
     top = np.argsort(-worth, kind="stable")[:MOST]

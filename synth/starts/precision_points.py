@@ -39,7 +39,7 @@ class PrecisionPoints(CouplerSearch):
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
-        """Whatever has to be met."""
+        """All targets that have to be met exactly."""
         return scaled.exact
 
     def round(self, _number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
@@ -63,7 +63,7 @@ class EveryLinkage(PrecisionPoints, ABC):
 
     @classmethod
     def suits(cls, scaled: ScaledProblem) -> bool:
-        """As many points as determine the linkages, to be met exactly."""
+        """Exactly the number of points that determines the linkages, to be met exactly."""
         if not isinstance(scaled.kind.dyad, cls.dyad) or not scaled.exact or scaled.timed:
             return False
         if not scaled.problem.task.only_points:
@@ -75,7 +75,7 @@ class EveryLinkage(PrecisionPoints, ABC):
         return bool(apart.min() > 1e-9)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """A round of the search, which for points in order is most often sooner there; then all linkages."""
+        """A round of the search, which for points in order usually finishes first; then all linkages."""
         if number < self.rounds_a_pass - 1:
             return searched_round(self.scaled, enough, rng)
         # these are not computed again, however large the round
@@ -91,7 +91,7 @@ class EveryLinkage(PrecisionPoints, ABC):
         return Round(starts, {"feasible finds": feasible, THROUGH: every, FOLLOWED: followed})
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
-        """That none of all linkages does it; empty where they were not computed."""
+        """A note that no linkage meets the requirements; empty where they were not computed."""
         every = counts.get(THROUGH, 0)
         return f"none of the {every} linkages through the points meets all requirements" if every else ""
 

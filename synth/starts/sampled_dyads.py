@@ -77,7 +77,7 @@ def stated_dyads(scaled: ScaledProblem, motion: Displacements) -> Dyads:
 
 
 def with_stated_joints(scaled: ScaledProblem, dyads: Dyads) -> Dyads:
-    """Those of some dyads whose joint may be A or B, as far as their places on the body are limited."""
+    """Those of some dyads whose joint may be A or B, by the limits of their places on the body."""
     boxes = scaled.wanted.a_on_body, scaled.wanted.b_on_body
     places = (dyads.moving - scaled.targets[0]) * np.exp(-1j * scaled.turns[0])
     inside = [

@@ -18,8 +18,8 @@ POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
 MISSES, MISS_SPACING = 40, 0.05  # starts from near misses, the nearest first
-FEW = 512  # points all pairs of which are compared
-OTHERS = 10.0  # weight of what else is missed, where one requirement may be
+FEW = 512  # points up to which all pairs are compared
+OTHERS = 10.0  # weight of other misses, where one requirement may be missed
 NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 
 
@@ -78,7 +78,7 @@ def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, e
 
 
 def closest_starts(scaled: ScaledProblem, linkages: Screened, group: str, most: int) -> list[Start]:
-    """Starts from linkages that miss one requirement by little, and no other one if that can be."""
+    """Starts from linkages that miss one requirement by little, and no other one if possible."""
     violations = linkages.violations[:, GROUPS.index(group)]
     others = linkages.violations.sum(axis=1) - violations
     return _distinct_starts(scaled, linkages, -violations - OTHERS * others - linkages.error, most)
@@ -93,7 +93,7 @@ def _spread(
     scaled: ScaledProblem, linkages: Screened, score: FloatArray, signatures: FloatArray, enough: int,
     closer: float,
 ) -> list[Start]:  # fmt: skip
-    """Linkages as far apart as can be, or closer, with neighbourhoods that do not overlap."""
+    """Linkages as far apart as possible, or closer, with neighbourhoods that do not overlap."""
     wanted = enough + (2 * enough + 4) // 5
     picked = np.zeros(0, dtype=np.int64)
     for spacing in SPACINGS:
@@ -110,7 +110,7 @@ def _spread(
 
 
 def to_nearest(coordinates: FloatArray) -> FloatArray:
-    """How far points (n, C) are from the nearest others, by the coordinate that differs most; up to 1."""
+    """Distance of points (n, C) from the nearest others, by the coordinate that differs most; up to 1."""
     if len(coordinates) <= FEW:
         pairs = np.abs(coordinates[:, None] - coordinates).max(axis=-1, initial=0.0)
         np.fill_diagonal(pairs, np.inf)

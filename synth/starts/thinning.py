@@ -86,7 +86,7 @@ def _each_nearest(target: SearchTargets, index: IntArray, batch: Batch, places: 
 
 
 def _missed(target: SearchTargets, p: ComplexArray, turned: FloatArray) -> FloatArray:
-    """Squares that every target is missed by at some driver angles (G,); (N, G), sizes squared."""
+    """Squared misses of every target at some driver angles (G,); (N, G), sizes squared."""
     off = p - target.points[:, None]
     miss: FloatArray = target.weights[:, None] * (off.real**2 + off.imag**2)
     if target.has_angles:

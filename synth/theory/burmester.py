@@ -132,7 +132,7 @@ def circle_points_on_lines(motion: Displacements, origin: ComplexArray, along: c
     """Every circle point (k,) of four poses on the lines `along` through `origin` (m,); up to three a line.
 
     The centre c of the circle through the positions z_j of z satisfies Re(conj(c) (z_j - z_1))
-    = (|z_j|^2 - |z_1|^2) / 2, both sides linear in z; three such equations in two unknowns ask for a
+    = (|z_j|^2 - |z_1|^2) / 2, both sides linear in z; three such equations in two unknowns require a
     vanishing determinant, a cubic on every line (Burmester 1888; McCarthy & Soh, *Geometric Design of
     Linkages*, 2011, ch. 5).
     """
@@ -203,7 +203,7 @@ def trace_four_pose_curves(
     motion : Displacements
         Of four poses, scaled so that the task has size 1 and lies about the origin.
     reach : float, sizes
-        How far from the origin the planes are searched.
+        Distance from the origin up to which the planes are searched.
     lines : int
         Lines in each direction and plane.
     cell : float

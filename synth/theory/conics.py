@@ -18,7 +18,7 @@ def conic_intersections(first: FloatArray, second: FloatArray) -> ComplexArray:
     square root of rounding. Without meaning where the conics share a line or are one.
 
     Of the pencil of conics that the two span, one has no x^2 and so gives x as a quotient of polynomials in
-    y; another then asks for a root of a quartic in y. Newton's method on the two conics makes the points
+    y; another then requires a root of a quartic in y. Newton's method on the two conics makes the points
     exact. Coordinates are turned first, by a fixed rotation, so that no special place (y = infinity, two
     points with one y) is likely; where four different points are not found, by another.
     """
@@ -35,7 +35,7 @@ def conic_intersections(first: FloatArray, second: FloatArray) -> ComplexArray:
 
 
 def nearest_real(points: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """Real points (..., 3) next to complex unit vectors (..., 3), and how far from real those are, (...).
+    """Real points (..., 3) next to complex unit vectors (..., 3), and the distance of those from real, (...).
 
     The latter is the norm of the imaginary part after the common phase that makes it least, 0 to sqrt(1/2).
 

@@ -15,7 +15,7 @@ from grashof.synth.theory.burmester import Displacements, Dyads
 from grashof.synth.theory.conics import conic_intersections, nearest_real
 
 FAR = 1e6  # lengths: a pivot farther away is at infinity
-DEFICIENT = 1e-10  # share of four unit equations that is new: below it they do not settle the dyads
+DEFICIENT = 1e-10  # independent share of four unit equations, below which they do not determine the dyads
 NEARLY_REAL = 1e-5  # imaginary part of a root that a real dyad may still be found beside
 EXACT = 1e-12  # radius error of a real dyad, as a share of the coordinates it is computed from
 ROUNDING = 2e-16  # likewise: nothing is left to gain
@@ -51,8 +51,8 @@ def five_pose_dyads_of_sets(rotation: ComplexArray, shift: ComplexArray, reach: 
     """All dyads, with pivots (m, 4), of many sets of five displacements from the first pose, (m, 5).
 
     NaN for dyads that are not real or have a pivot farther than `reach` from the origin, for all four of a
-    set that does not settle them, and of one with numbers that are not finite. ValueError where the sets are
-    not of five poses.
+    set that does not determine them, and of one with numbers that are not finite. ValueError where the sets
+    are not of five poses.
 
     |r_j z + s_j - c|^2 = |z - c|^2 is linear in w = conj(c) z, z, c and a number h = 1: four equations in
     seven real numbers leave a projective plane of them, in which w h = conj(c) z are two conics. They meet in
@@ -91,7 +91,7 @@ def five_pose_guides(motion: Displacements, reach: float = FAR) -> Guides:
 
 @dataclass(frozen=True, slots=True)
 class _Frames:
-    """Sets of displacements, each about the point that moves least and scaled to how much that moves."""
+    """Sets of displacements, each about the point that moves least and scaled by its displacement."""
 
     origin: ComplexArray  # (m,), length
     length: FloatArray  # (m,), length
@@ -116,7 +116,7 @@ class _Frames:
         return cls(origin, length, rotation, about / length[:, None])
 
     def outward(self, dyads: Dyads) -> Dyads:
-        """Dyads (m, 4) of these frames where the poses are."""
+        """Dyads (m, 4) of these frames in the frame of the poses."""
         scale, origin = self.length[:, None], self.origin[:, None]
         return Dyads(dyads.moving * scale + origin, dyads.ground * scale + origin)
 
@@ -144,7 +144,7 @@ class _Frames:
 
 
 def _plane(equations: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Orthonormal bases (m, 7, 3) of what solves them, and whether (m,) there is not more of it."""
+    """Orthonormal bases (m, 7, 3) of their solutions, and whether (m,) these have no more dimensions."""
     q, r = np.linalg.qr(equations.transpose(0, 2, 1), mode="complete")
     settled: BoolArray = np.abs(r.diagonal(axis1=1, axis2=2)).min(axis=1) > DEFICIENT
     return q[:, :, 4:], settled
@@ -182,7 +182,7 @@ def _polish(
 ) -> tuple[Dyads, FloatArray]:
     """Dyads (k,), each of displacements of its own (k, 5), made exact; and their radius errors (k,).
 
-    Newton's method, of which only steps that gain are taken; the dyads of a double root, where the
+    Newton's method, with only the steps that reduce the error; the dyads of a double root, where the
     equations are singular, move little.
     """
     turned, shift = rotation[:, 1:], shift[:, 1:]
@@ -225,7 +225,7 @@ def _unequal(
 
 
 def _each_once(dyads: Dyads) -> Dyads:
-    """Dyads (m, 4) without those that are there already."""
+    """Dyads (m, 4) without duplicates."""
     same = np.tri(4, k=-1, dtype=np.bool_)  # of each with an earlier one
     for side in (dyads.moving, dyads.ground):
         gap = np.abs(side[:, :, None] - side[:, None, :])

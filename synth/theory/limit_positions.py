@@ -1,7 +1,8 @@
 """Linkages by the limit positions of their output, where driver and coupler are in line.
 
-All crank-rockers with a swing and time ratio, and slider-cranks with a stroke and time ratio, are families of
-one number, r2 / r3. Transmission is best somewhere in between, or where a limit ends the family.
+All crank-rockers with a swing and time ratio, and slider-cranks with a stroke and time ratio, are
+one-parameter families in r2 / r3. Transmission is best somewhere in between, or where a limit ends the
+family.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from grashof.problems import FourBar, SliderCrank, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray
 
-# Shares r2 / r3 at which a family is looked at, close where one of the two vanishes beside the other.
+# Shares r2 / r3 at which a family is examined, close where one of the two vanishes beside the other.
 _GRID = np.unique(
     np.concatenate([
         np.geomspace(1e-6, 0.02, 160), np.linspace(0.02, 0.98, 1200), 1 - np.geomspace(0.02, 1e-6, 80),
@@ -61,12 +62,12 @@ class StrokeLinkages:
 
 _LEAST_SHARE = float(_GRID[0])
 Family: TypeAlias = Callable[[FloatArray], StrokeLinkages]
-# How far members are inside limits, (n,): negative outside.
+# Margins of members to limits, (n,): negative outside.
 Allowed: TypeAlias = Callable[[StrokeLinkages], FloatArray]
 
 
 def lag_of(time_ratio: float) -> float:
-    """By how much the driver turns more than half a turn in the slow stroke, rad.
+    """Angle by which the driver turns more than half a turn in the slow stroke, rad.
 
     >>> round(float(np.degrees(lag_of(1.5))), 12)
     36.0
@@ -146,13 +147,13 @@ def slider_cranks(lag: float, share: FloatArray) -> StrokeLinkages:
 
 
 def crank_shapers(swing: float, side: float, share: FloatArray) -> StrokeLinkages:
-    """The inverted slider-cranks whose block swings by so much, O2O4 = 1; their time ratio follows from it.
+    """The inverted slider-cranks with a swing of the block, O2O4 = 1; their time ratio follows from it.
 
-    The swing, rad, is below pi; `side` is the sign of the offset. `share` (n,), between 0 and 1, is what the
-    offset has of the most that a full turn allows; the least of the grid counts as none. The lengths are r1
+    The swing, rad, is below pi; `side` is the sign of the offset. `share` (n,), between 0 and 1, is the
+    offset over the greatest that a full turn allows; the least of the grid counts as none. The lengths are r1
     (1), r2 and the offset.
 
-    The crank stands square to the rod in both limit positions, in which the rod has the directions
+    The crank is square to the rod in both limit positions, in which the rod has the directions
     -asin(r2 − offset) and asin(r2 + offset) from the ground line. With p between 0 and 90° − swing/2
 
         r2 = sin(swing/2) cos p        offset = cos(swing/2) sin p
@@ -195,7 +196,7 @@ def linkages_of(task: Task, members: StrokeLinkages) -> FourBar | SliderCrank:
 
 
 def greatest_time_ratio(swing: float) -> float:
-    """Below which crank-rockers with a swing (rad) have their time ratios.
+    """Upper limit of the time ratio of crank-rockers with a swing (rad).
 
     Their limit positions are on one assembly and the driver turns fully only where the driver's angle between
     them lies between 90 deg + swing/2 and 270 deg + swing/2.
@@ -207,7 +208,7 @@ def greatest_time_ratio(swing: float) -> float:
 
 
 def families_of(swing: float | None, time_ratio: float) -> list[Family]:
-    """All crank-rockers with a swing (rad) and a time ratio; of None, all slider-cranks of stroke 1."""
+    """All crank-rockers with a swing (rad) and a time ratio; for None, all slider-cranks of stroke 1."""
     lag = lag_of(time_ratio)
     if swing is None:
         return [partial(slider_cranks, lag)]

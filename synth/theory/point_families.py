@@ -113,7 +113,7 @@ def without_turn(one: Dyad, two: Dyad) -> tuple[ComplexArray, Dyad, Dyad]:
 
 
 def turn(one: Dyad, two: Dyad) -> tuple[ComplexArray, ComplexArray]:
-    """The turn t that two dyads have together, and its inverse, each of shape (n, N - 1).
+    """The turn t that two dyads have in common, and its inverse, each of shape (n, N - 1).
 
     Where they leave it undetermined the two are not inverse to each other, or not finite.
     """
@@ -209,7 +209,7 @@ class Family:
         return turned
 
     def mirrored(self, unknowns: ComplexArray) -> ComplexArray:
-        """Vectors and conjugates exchanged, shape (n, K): real linkages are what they were."""
+        """Vectors and conjugates exchanged, shape (n, K): real linkages do not change."""
         columns = list(unknowns.T)
         return np.stack([*_crank_mirror(columns[:4]), *self.mirror(columns[4:])], axis=1).conj()
 

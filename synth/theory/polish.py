@@ -76,7 +76,8 @@ def _linearised(
 ) -> tuple[tuple[ComplexArray, ComplexArray], FloatArray, FloatArray]:
     """Points at the first target, coupler at all; misses (M,), and their derivative (M, 11).
 
-    By what all targets share (10), and by the driver angle of each row's own target, or of all where timed.
+    By the unknowns that all targets share (10), and by the driver angle of each row's own target, or of all
+    where timed.
     """
     o2, r2 = complex(*unknowns[:2]), unknowns[4]
     arm, body_angle = complex(*unknowns[7:9]), unknowns[9]
@@ -123,15 +124,15 @@ def _spread(jacobian: FloatArray, targets: ExactTargets) -> FloatArray:
 def _eliminated(jacobian: FloatArray, residual: FloatArray, targets: ExactTargets) -> FloatArray:
     """The step of least squares for many targets, shape (10 + N,): without driver angles, then these.
 
-    What a driver angle can do is taken out of the rows of its target, in time and memory as the targets
-    are many.
+    The effect of a driver angle is eliminated from the rows of its target, in time and memory proportional to
+    the targets.
     """
     target, common, own = _target_of_rows(targets), jacobian[:, :10], jacobian[:, 10]
     square = np.bincount(target, own**2, len(targets.points))
     share = np.divide(1.0, square, out=np.zeros_like(square), where=square > 0)
 
     def along(rows: FloatArray) -> FloatArray:
-        """The part of each column that the driver angles can do, shape (N, columns)."""
+        """The part of each column that the driver angles can produce, shape (N, columns)."""
         columns = [np.bincount(target, own * column, len(square)) * share for column in rows.T]
         return np.stack(columns, axis=1)
 

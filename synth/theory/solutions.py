@@ -29,7 +29,8 @@ def solutions_at(
 
     The latter half of the displacements is conjugate to the former: so the mirror image of a solution is one,
     too, and replaces one whose own path was lost. All paths are followed at most `runs` times, on ways of
-    their own, which `rng` turns so that they meet no singular point: what one has lost another finds.
+    their own, which `rng` turns so that they meet no singular point: a solution lost on one is found on
+    another.
     `StopRequested` where no run was completed.
     """
     general = family.known()

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems import Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 
-EVEN = 1e-3  # sizes, rad: targets that fall so near to others fall on them
+EVEN = 1e-3  # sizes, rad: targets nearer to others coincide with them
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Bounds of the best design, and how far the proofs that find them go."""
+"""Bounds of the best design, and the limits of the proofs that find them."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ TOO_SMALL = "a dyad whose centre is open stays within pieces as small as roundin
 
 @dataclass(frozen=True, slots=True)
 class Proving:
-    """How far proofs go."""
+    """Limits of proofs."""
 
-    gap: float = 0.01  # deg, up to which bounds are brought together
-    most_pairs: int = 1_000_000  # budget of pairs of pieces: what a proof takes does not depend on the clock
+    gap: float = 0.01  # deg, difference to which bounds are brought together
+    most_pairs: int = 1_000_000  # budget of pairs of pieces, independent of the clock
     minutes: bool = False  # whether proofs that always take long are wanted
 
     def __post_init__(self) -> None:
@@ -48,7 +48,7 @@ class Bounds:
     levels: int = 0
     seconds: float = 0.0  # s
     left_out: tuple[str, ...] = ()  # requirements without a form, by their fields
-    why: str = ""  # why there are no bounds, or why they have not met; else empty
+    why: str = ""  # reason why there are none, or they have not met; else empty
     refused: bool = False  # whether proofs do not cover such a problem
 
     @property
@@ -58,7 +58,7 @@ class Bounds:
 
 
 def logged(bounds: Bounds) -> Bounds:
-    """The same, after a line in the log."""
+    """These bounds, after a line in the log."""
     why = f"; {bounds.why}" if bounds.why else ""
     numbers = np.degrees(bounds.lower), np.degrees(bounds.upper), bounds.pairs, bounds.seconds, why
     _LOG.info("bounds: %.4f to %.4f deg, %d pairs, %.2f s%s", *numbers)

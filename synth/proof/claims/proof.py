@@ -43,16 +43,17 @@ class Proof:
     complete : bool
         Whether all solutions are known; not where they are only followed.
     mechanism : str
-        Of which kind of linkage.
+        The kind of linkage.
     quantity : str
         The bounded quantity, by its column.
     lower, upper : float or None, deg
-        Of the best design that is listed, as judged; and what no design exceeds.
+        Value of the best listed design, as judged; and the bound that no design exceeds.
     pieces : tuple of int
-        Pieces of the curve, or plane, of dyads, to begin with: that may be drivers, and driven; of five poses
+        First pieces of the curve, or plane, of dyads: those that may be drivers, and driven; of five poses
         dyads; of a stroke pieces of families of one number, and 0; of points listed linkages, and 0.
     pairs, levels : int
-        Pairs of pieces, or pieces, that were bounded, and how often the remaining ones were halved; of three
+        Pairs of pieces, or pieces, that were bounded, and the number of times that the remaining ones were
+        halved; of three
         poses, a part.
     seconds : float, s
     left_out : tuple of str
@@ -84,14 +85,14 @@ class Proof:
 
     @property
     def stated(self) -> dict[str, Any]:
-        """All of it, for a file."""
+        """All fields, for a file."""
         values = {name: getattr(self, name) for name in self.__slots__}
         pieces, left_out = list(self.pieces), list(self.left_out)
         return {**values, "claim": str(self.claim), "pieces": pieces, "left_out": left_out}
 
 
 def best_listed(problem: Problem, designs: Sequence[Candidate]) -> float | None:
-    """The greatest transmission angle of some designs, deg, as judged; None of none."""
+    """The greatest transmission angle of some designs, deg, as judged; None without designs."""
     key = quantity_of(problem).key
     return max((float(np.degrees(one.values[key])) for one in designs), default=None)
 

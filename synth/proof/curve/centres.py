@@ -39,7 +39,7 @@ class Centres:
 
 
 def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
-    """Where the centre points of tubes lie, of dyads not longer than `longest`.
+    """Enclosures of the centre points of tubes, for dyads not longer than `longest`.
 
     The centre solves F_j = k_j - Re(conj(c) a_j) = 0, with a_j = (rho_j - 1) z + d_j and k_j linear in z: F
     is bilinear in z and c, so its expansion ends after the second order, and its remainder over the norm
@@ -47,7 +47,7 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
     disc is taken, as at a pole one equation is empty.
     """
     middle, along = tubes.middle.copy(), tubes.along.copy()
-    # Wherever z is, c is not farther than the longest dyad is long.
+    # Wherever z is, c is within the length of the longest dyad.
     rest = np.full(len(tubes), longest) + tubes.stray
     for rows in _ROWS:
         found = of_rows(curve, tubes, rows)
@@ -59,7 +59,7 @@ def centres_of(curve: Curve, tubes: Tubes, longest: float) -> Centres:
 
 
 def of_rows(curve: Curve, tubes: Tubes, rows: tuple[int, int]) -> Centres:
-    """Where the solutions c of two of the three equations lie for every z in tubes."""
+    """Enclosures of the solutions c of two of the three equations for every z in tubes."""
     z0, z1, z2 = tubes.middle, tubes.along, tubes.bend
     alpha, d, rho = (part[1:, None][list(rows)] for part in (curve.rotation - 1, curve.shift, curve.rotation))
     facing = d.conj() * rho
@@ -72,7 +72,7 @@ def of_rows(curve: Curve, tubes: Tubes, rows: tuple[int, int]) -> Centres:
             solution: ComplexArray = 1j * (right[1] * a[0] - right[0] * a[1]) / area
             return solution
 
-        # c1 from c at the middle, c from what the square of s adds: F + Q / 2 = 0 there.
+        # c1 from c at the middle, c from the contribution of the square of s: F + Q / 2 = 0 there.
         c1 = solved(k1 - (solved(k).conj() * a1).real)
         square = -(c1.conj() * a1).real
         c0 = solved(k + square / 2)

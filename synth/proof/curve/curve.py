@@ -32,7 +32,7 @@ class Taylor:
     both: FloatArray
     linear: ComplexArray
     value: FloatArray  # at the point
-    error: FloatArray  # by how much rounding may have changed `value`
+    error: FloatArray  # bound of the rounding error of `value`
 
     @property
     def along_twice(self) -> FloatArray:
@@ -77,9 +77,9 @@ class Curve:
     def of(cls, motion: Displacements, point: complex) -> Curve:
         """The curve of four displacements of the body, seen from a point of it at the first pose.
 
-        Of three every point is a circle point. z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and
+        For three poses every point is a circle point. z_j - z = alpha_j z + d_j with alpha_j = rho_j - 1, and
         (|z_j|^2 - |z|^2) / 2 = |d_j|^2 / 2 + Re(conj(d_j) rho_j z): three equations Re(conj(c) (z_j - z)) =
-        (|z_j|^2 - |z|^2) / 2 ask for the determinant of these columns to vanish, which is i/2 times that of
+        (|z_j|^2 - |z|^2) / 2 require the determinant of these columns to vanish, which is i/2 times that of
         [z_j - z, its conjugate, half the difference of squares] (Burmester 1888; McCarthy & Soh, *Geometric
         Design of Linkages*, ch. 5).
         """

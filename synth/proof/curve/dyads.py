@@ -147,7 +147,7 @@ def _within_areas(c: Span, areas: tuple[FloatArray, ...]) -> BoolArray:
 
 
 def _senses(curve: Curve, z: Span) -> tuple[IntArray, BoolArray]:
-    """In which sense pieces meet the poses, and whether that may be in order.
+    """The sense in which pieces meet the poses, and whether that may be in order.
 
     Four points of a circle follow each other where the triangles 123 and 134 have one sense, three always.
     """

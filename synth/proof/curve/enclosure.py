@@ -1,4 +1,4 @@
-"""Dyads of three poses where two of their four coordinates are given: what the other two can be."""
+"""Dyads of three poses with two of their four coordinates given: enclosures of the other two."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class At:
     chord: ComplexArray  # a = alpha z + d, from one place to the other
     tilted: ComplexArray  # derivative of F is Re(tilted dz)
     value: FloatArray
-    reach: FloatArray  # magnitude of what `chord` is the difference of, but for z
+    reach: FloatArray  # magnitude of the terms whose difference is `chord`, apart from z
 
     @classmethod
     def of(cls, motion: Displacements, z: ComplexArray, c: ComplexArray, rows: IntArray | None = None) -> At:
@@ -46,7 +46,7 @@ class At:
         return cls(alpha, facing, chord, facing - c.conj() * alpha, value, np.abs(d).sum(axis=-1))
 
     def off(self, far_z: FloatArray, far_c: FloatArray) -> FloatArray:
-        """Rounding of F anywhere at so great z and c."""
+        """Bound of the rounding error of F for z and c of these magnitudes."""
         off: FloatArray = WIDER * (self.reach + far_z) * (self.reach + 2 * far_c)
         return off
 
@@ -84,7 +84,7 @@ class _Matrix:
         return np.stack([p, q]) / self.det
 
     def most(self, right: FloatArray) -> FloatArray:
-        """Upper bound of the norm of both shares where each right hand side is up to so much."""
+        """Upper bound of the norm of both shares where each right-hand side is at most this large."""
         by_first = np.hypot(self.second[1], self.first[1]) * right[0]
         by_second = np.hypot(self.second[0], self.first[0]) * right[1]
         most: FloatArray = (by_first + by_second) / np.abs(self.det)
@@ -102,7 +102,7 @@ def enclosed(
     """Moving and ground pivots of all dyads in rectangles of two coordinates, as forms of these.
 
     Of three poses: z and c, and where they are bounded, (n,); elsewhere they hold nothing. `start` holds z
-    and c (n,) in the middle of a rectangle, the other two coordinates about right; `free` (2, n) leads from
+    and c (n,) in the middle of a rectangle, the other two coordinates approximate; `free` (2, n) leads from
     there to the ends of a rectangle, one of z, or of c, along one axis of the other's plane. `bound` (2, n)
     are unit directions of the other two coordinates, zero in the pivot that they do not move, and `off` (n,)
     is how far these can be from `start`: it counts where they are of both pivots. Of the `newton` steps to

@@ -21,7 +21,7 @@ class Patches:
     """Squares z = middle + half (s + i t) with ``|s|, |t| <= 1``, of three poses."""
 
     motion: Displacements
-    longest: float  # of dyads that count: where the ground pivot is not bounded otherwise, it is so near
+    longest: float  # of dyads that count: bounds the ground pivot where nothing else does
     middle: ComplexArray  # (n,)
     half: FloatArray  # (n,)
 

@@ -63,7 +63,7 @@ class Tubes:
 
     @property
     def stray(self) -> FloatArray:
-        """How far points lie from the line without the bow."""
+        """Greatest distance of points from the line without the bow."""
         stray: FloatArray = np.abs(self.bow) / 2 + self.rest
         return stray
 
@@ -165,7 +165,7 @@ def _off_curve(taylor: Taylor, x: FloatArray) -> FloatArray:
 
 
 def _narrowed(taylor: Taylor, steep: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    """How far from the tangent the curve can be where ``|x|`` and ``|y|`` are bounded."""
+    """Greatest distance of the curve from the tangent where ``|x|`` and ``|y|`` are bounded."""
     off = _off_curve(taylor, x)
     for _ in range(_ROUNDS):
         y = np.minimum(y, (off + taylor.beyond_linear(x, y)) / steep)

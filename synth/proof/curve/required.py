@@ -166,7 +166,7 @@ def _directions(wanted: Requirements) -> Limits | None:
 
 
 def left_out(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> tuple[str, ...]:
-    """Requirements that are stated and have no form, or not one for all that they ask, by their fields.
+    """Fields of the stated requirements that have no form, or only one for a part of them.
 
     `forms` are the fields that have some; of four-bars by default.
 
@@ -208,7 +208,7 @@ def with_forms(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> ScaledPr
 
 
 def _transmits_nothing(scaled: ScaledProblem) -> str:
-    """Which requirement lets a design do with a transmission angle of zero; empty where none does."""
+    """The requirement that allows a transmission angle of zero; empty where none does."""
     wanted = scaled.wanted
     over_turn = wanted.transmission_over is TransmissionOver.CYCLE
     if not wanted.same_branch and not over_turn and not scaled.closed:
@@ -231,7 +231,7 @@ def refusal(scaled: ScaledProblem, poses: int = POSES) -> str | None:
 
 
 def not_bounded(scaled: ScaledProblem) -> str:
-    """Why what a problem asks for bounds no transmission angle; empty where it does."""
+    """Why the requirements of a problem bound no transmission angle; empty where they do."""
     problem = scaled.problem
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return "the objective has no forms; transmission alone has"
@@ -270,7 +270,7 @@ def _degenerate(motion: Displacements) -> str:
 
 
 def enclosed(problem: Problem) -> str:
-    """That the search of a problem encloses all linkages, or can, for those who read it; else empty.
+    """A note that the search of a problem encloses all linkages, or can; else empty.
 
     >>> from grashof import load
     >>> print(enclosed(load("luggage")))

@@ -20,13 +20,13 @@ class Slide:
     """The only point that can slide on a line through four poses, in the frame of a `Curve`."""
 
     point: complex  # sizes, at the first pose
-    off: float  # sizes, how far from there it may be
+    off: float  # sizes, its greatest distance from there
     along: complex  # unit number: one of the two directions of the line
-    turned: float  # how far from there the exact one may be
+    turned: float  # greatest distance of the exact one from there
 
     @classmethod
     def of(cls, curve: Curve) -> Slide | None:
-        """Of four poses; None where it is not known closely, or they leave a line of such points.
+        """The slide of four poses; None where it is not known closely, or they leave a line of such points.
 
         With a_j = (rho_j - 1) z + d_j from the first place to another, three cross products of two of them
         vanish. Each is linear in u = (|z|^2, Re z, Im z), so that where their matrix N has an inverse there
@@ -74,7 +74,7 @@ class Slide:
 
 
 def _equations(curve: Curve) -> tuple[FloatArray, FloatArray, float]:
-    """Matrix and right hand side, and by how much rounding may have changed any of their entries."""
+    """Matrix and right-hand side, and a bound of the rounding error of any of their entries."""
     size = np.abs(curve.rotation[1:] - 1) + np.abs(curve.shift[1:])
     # Rows of one size; rotations and shifts are known to some units of 1.
     alpha, d = (curve.rotation[1:] - 1) / size, curve.shift[1:] / size

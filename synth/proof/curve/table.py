@@ -17,7 +17,7 @@ from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 32  # along each side of the disc that is covered
 COARSE = 0.5  # length of first pieces, as a share of the local scale
-TINY = 4e-3  # sizes: pieces as small as that are not halved for themselves
+TINY = 4e-3  # sizes: pieces of at most this size are not halved on their own
 MOST_RECTANGLES = 100_000  # of a cover
 _Steps = TypeVar("_Steps", FloatArray, ComplexArray)
 ROOT = -1  # parent of the rectangles that a cover begins with
@@ -33,7 +33,7 @@ class Trail:
     parents: list[IntArray] = field(default_factory=list)
     # Number of the rectangle that each piece of the table is in
     pieces: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    first: int = 0  # how many of these pieces a proof begins with
+    first: int = 0  # number of these pieces that a proof begins with
     # Driver and driven pieces of pairs, level by level
     halved: list[tuple[IntArray, IntArray]] = field(default_factory=list)
 
@@ -51,7 +51,7 @@ class TooMany(Exception):  # noqa: N818  (no error: the proof stays open)
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """Pieces with their centres and what pairs need of them; arrays of shape (n,) or (n, 4)."""
+    """Pieces with their centres and the data that pairs need; arrays of shape (n,) or (n, 4)."""
 
     tubes: Tubes
     centres: Centres
@@ -64,7 +64,7 @@ class Pieces:
 
     @classmethod
     def of(cls, required: Required, tubes: Tubes) -> tuple[Pieces, IntArray]:
-        """The pieces that rectangles hold, and which of these each is in."""
+        """The pieces in rectangles, and the rectangle of each."""
         tubes, filled = contracted(required.curve, tubes)
         rows = np.flatnonzero(filled)
         tubes = tubes[rows]
@@ -123,7 +123,7 @@ class Table:
 
     required: Required
     pieces: Pieces
-    rectangles: int = 0  # how many were looked at
+    rectangles: int = 0  # number of rectangles examined
     trail: Trail | None = None  # where these are noted
     _children: IntArray = field(init=False)
 
@@ -160,7 +160,7 @@ class Table:
         return len(self.pieces)
 
     def halve(self, which: IntArray) -> IntArray:
-        """Halves of pieces, shape (n, 2); negative where one holds no dyad that does."""
+        """Numbers of the halves of pieces, shape (n, 2); negative for a half without a possible dyad."""
         new = np.unique(which[self._children[which, 0] == OPEN])
         if len(new):
             rectangles = self.pieces.tubes[new].halves

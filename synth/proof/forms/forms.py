@@ -1,6 +1,6 @@
 """Affine forms x = centre + slopes . s + [-rest, rest] with all ``|s_k| <= 1``, many at once.
 
-They keep what two quantities have in common, so that bounds of their sums and quotients are of second
+They keep the common part of two quantities, so that bounds of their sums and quotients are of second
 order (Stolfi & de Figueiredo, *Self-Validated Numerical Methods and Applications*, 1997). Symbols come
 first in arrays: a pair of pieces of curves has two, a pair of squares of the plane four.
 """
@@ -30,7 +30,7 @@ class Form:
 
     @property
     def slope(self) -> FloatArray:
-        """How much all symbols change it at most."""
+        """Greatest change by all symbols."""
         return _total(np.abs(self.slopes))
 
     @property
@@ -102,7 +102,7 @@ class Span:
 
     @property
     def reach(self) -> FloatArray:
-        """How far it goes from its middle at most."""
+        """Greatest distance from its middle."""
         reach: FloatArray = farthest(self.steps) + self.rest
         return reach
 
@@ -116,7 +116,7 @@ class Span:
     def norm(self) -> Form:
         """The absolute value.
 
-        Of a vector with the component L along its middle and q across, L > 0, it lies between L and
+        For a vector with the component L along its middle and q across, L > 0, it lies between L and
         L + q^2 / (2 L). Where L may vanish, between zero and the greatest value.
         """
         size = np.abs(self.middle)
@@ -153,7 +153,7 @@ class Span:
 
 
 def farthest(steps: ComplexArray) -> FloatArray:
-    """How far symbols move a point at most; of two of them, to the farther corners."""
+    """Greatest distance by which symbols move a point; for two symbols, to the farther corners."""
     pairs = range(0, len(steps) - 1, 2)
     corners = [np.maximum(np.abs(steps[k] + steps[k + 1]), np.abs(steps[k] - steps[k + 1])) for k in pairs]
     corners += [np.abs(steps[-1])] * (len(steps) % 2)
@@ -176,7 +176,7 @@ def _mixed(one: FloatArray | ComplexArray, other: FloatArray | ComplexArray) -> 
 
 
 def greatest_quotient(above: Form, below: Form) -> FloatArray:
-    """Upper bound of above / below, with what they have in common; infinite where `below` may be 0 or less.
+    """Upper bound of above / below, with their common part; infinite where `below` may be 0 or less.
 
     With q = above / below at the centre, above - q below has no centre, and above / below =
     q + (above - q below) / below.

@@ -1,4 +1,4 @@
-"""The four-bar loop on pieces of curves: lengths, Grashof's condition, and what it transmits at most."""
+"""The four-bar loop on pieces of curves: lengths, Grashof's condition, and bounds of transmission."""
 
 from __future__ import annotations
 

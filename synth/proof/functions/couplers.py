@@ -14,9 +14,9 @@ from grashof.synth.proof.curve.table import Side, Table
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, polish
 
-NEAR = 0.1  # of the distance of a pole, or of r1: so near it A is left to B
-BOTH = 0.03  # of that: so near one of its poles B is left to A again
-ABOUT = 1e-3  # of r1: so near to poles both are in discs
+NEAR = 0.1  # of the distance of a pole, or of r1: nearer to it A is left to B
+BOTH = 0.03  # of that: nearer to one of its poles B is left to A again
+ABOUT = 1e-3  # of r1: nearer to poles both are in discs
 
 
 @dataclass(slots=True)
@@ -72,7 +72,7 @@ class PlaneOfCouplers:
         return cls(of_a, of_b, poles(motion)[1], poles(back)[1])._cut()
 
     def _cut(self) -> PlaneOfCouplers:
-        """Without what the other squares, or the discs, hold."""
+        """Squares without the part that other squares, or the discs, cover."""
         near, its = (NEAR * np.maximum(1.0, np.abs(each)) for each in (self.poles, self.others))
         of_a = self.of_a[self.of_a.bounded & ~self.of_a.within(self.poles, ABOUT)]
         of_a = of_a[~of_a.within(self.poles, near) | of_a.may_meet(self.others, BOTH * its)]

@@ -48,7 +48,7 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
     """Bounds of the best four-bar through three or four pairs.
 
     `lower` is the transmission angle of a design that is known, as judged, rad; `Bounds.found` is one that
-    is better. None of other tasks and objectives, or where the driver angle is given.
+    is better. None for other tasks and objectives, or where the driver angle is given.
     """
     problem = scaled.problem
     if scaled.kind.dyad.bars < 2 or not scaled.exact or not problem.task.has_output.all():
@@ -185,7 +185,7 @@ class _Search:
 
     @property
     def threshold(self) -> float:
-        """No better design is looked for than one with so much, rad."""
+        """Transmission angle that a better design has to exceed, rad."""
         return max(self.lower + self.gap if self.lower else 0.0, self.floor)
 
     def descend(self, senses: dict[int, Sense]) -> None:

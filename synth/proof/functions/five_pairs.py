@@ -18,7 +18,7 @@ _TRIVIAL = 1e-6  # of r1: the ground link itself is a dyad of every function
 
 
 def certified_functions(scaled: ScaledProblem) -> Certified | None:
-    """All couplers of four-bars through five pairs, up to the ratio of link lengths; None of other functions.
+    """All couplers of four-bars through five pairs, up to a ratio of lengths; None for other functions.
 
     Seen from link 4, link 2 moves through known poses, and the coupler is a dyad of that motion; with r1 = 1
     no length is greater than the ratio of lengths allows.
@@ -45,5 +45,5 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
 
 
 def _trivial(dyads: Certified) -> int:
-    """How many of dyads are the ground link."""
+    """Number of dyads that are the ground link."""
     return int(np.sum((np.abs(dyads.moving) < _TRIVIAL) & (np.abs(dyads.ground - 1) < _TRIVIAL)))

@@ -1,1 +1,1 @@
-"""Linkages that pass as many points as leave no freedom."""
+"""Linkages through points that leave no freedom."""

@@ -1,6 +1,6 @@
 """Linkages whose coupler passes points, as equations in joints and turns of the coupler.
 
-Equations and unknowns are real and as many, so that where they have a zero, a real linkage passes all
+Equations and unknowns are real and equal in number, so that where they have a zero, a real linkage passes all
 points. They differ from those that such linkages are searched by (`grashof.synth.theory`).
 """
 
@@ -25,9 +25,9 @@ class Rows:
     """Equations at a place, and how they vary in a box about it."""
 
     value: FloatArray  # (n, E)
-    rounding: FloatArray  # (n, E): how far the values may be off
+    rounding: FloatArray  # (n, E): error bound of the values
     slopes: FloatArray  # (n, E, K)
-    spread: FloatArray  # (n, E, K): how far slopes in the box may differ from these
+    spread: FloatArray  # (n, E, K): greatest difference of slopes in the box from these
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class Turned:
 
     less: ComplexArray  # (n, M): t - 1, as precise where t is near 1
     points: ComplexArray  # (M,), sizes, from the first
-    radius: FloatArray  # (n, M), rad: by how much phi may differ
+    radius: FloatArray  # (n, M), rad: greatest difference of phi
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ def _joined(crank: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def _link(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
-    """That a joint at m, from the coupler point, keeps its distance from a pivot o of the ground.
+    """Equations of a joint at m, from the coupler point, that keeps its distance from a ground pivot o.
 
     (|q + t m - o|^2 - |m - o|^2) / 2 = |q|^2 / 2 - q.o + q.(t m) - o.((t - 1) m) with the point q.
     """
@@ -117,13 +117,13 @@ def _link(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
 
 
 def _slide(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
-    """That a joint at m, from the coupler point, stays on a line: its way q + (t - 1) m is along it."""
+    """Equations of a joint at m, from the coupler point, on a line: its path q + (t - 1) m is along it."""
     m, reach = _complex(own[:, :2]), np.hypot(*radius[:, :2].T)[:, None]
     return _line((m, reach), (own[:, 2:], radius[:, 2:]), turned, turned.less, turned.points, (m, reach), 1)
 
 
 def _block(own: FloatArray, radius: FloatArray, turned: Turned) -> Dyad:
-    """That a pivot o of the ground keeps its distance from a line of the coupler.
+    """Equations of a ground pivot o that keeps its distance from a line of the coupler.
 
     As the coupler sees it, o goes by (conj(t) - 1) o - conj(t) q, along the line.
     """
@@ -142,11 +142,11 @@ def _line(
     lever: tuple[ComplexArray, FloatArray],
     sense: int,
 ) -> Dyad:
-    """That way = (t - 1) x + shift is along a line at an angle: none of it is across.
+    """Equations for way = (t - 1) x + shift along a line at an angle: its component across is zero.
 
-    `point` is x and `angle` that of the line, each (n, 1) with how far it may be off; `less` and `shift` are
+    `point` is x and `angle` that of the line, each (n, 1) with its error bound; `less` and `shift` are
     (n, M) or (M,). Where `sense` is -1, t is conjugate. `lever`, of d way / dt = `sense` i t lever, comes
-    with how far it may be off.
+    with its error bound.
     """
     (x, off_x), (direction, off_angle), (arm, off_arm) = point, angle, lever
     across, off_t, chord = np.exp(-1j * direction), turned.radius, np.abs(less)

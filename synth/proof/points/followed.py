@@ -1,4 +1,4 @@
-"""Proofs about lists of linkages through as many points as leave no freedom."""
+"""Proofs about lists of linkages through points that leave no freedom."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Enclosed:
         return cls(middle, radius, np.where(within <= NEAR, within, np.nan))
 
     def words(self, kind: str) -> str:
-        """How many linkages of a kind are enclosed, and how near they are.
+        """The number of enclosed linkages of a kind, and their distance, in words.
 
         >>> box = np.zeros((2, 16))
         >>> Enclosed(box, box, np.array([3.2e-12, np.nan])).words("four-bar")
@@ -64,8 +64,8 @@ def proof_of_points(
 ) -> Proof | None:
     """The proof about a list where finitely many linkages pass the points exactly; None for other problems.
 
-    `counts` are those of the search. It was `stopped` or not, and tried all that it found (`whole`) or not,
-    perhaps as it had as many designs as requested (`enough`).
+    `counts` are those of the search. It may have been `stopped`, may have tried all that it found (`whole`),
+    and may have found as many designs as requested (`enough`).
     """
     if not _leaves_no_freedom(scaled):
         return None
@@ -137,7 +137,7 @@ def _points(scaled: ScaledProblem) -> ComplexArray:
 
 
 def _why_not_all(known: int, counts: Mapping[str, int], *, stopped: bool, whole: bool) -> str:
-    """Why not all linkages that are known numerically are listed that do it; empty where they are."""
+    """Why the list lacks some of the linkages that are known numerically; empty where it is complete."""
     if THROUGH not in counts:
         ended = "was stopped" if stopped else "ended"
         return f"the search {ended} before the {known} known solutions were followed"

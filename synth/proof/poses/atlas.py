@@ -28,8 +28,8 @@ from grashof.synth.starts.selection import feasible_starts, scores, starts_of
 from grashof.synth.theory.distinct import best_first
 
 SHARE = 0.5  # of the best transmission angle: less is not listed by regions
-SIZE = 0.02  # sizes: pieces are halved until they are so short
-FEWEST, SMALLEST = 2000, 1e-3  # pairs below which pieces are halved further, down to so short ones
+SIZE = 0.02  # sizes: pieces are halved down to this length
+FEWEST, SMALLEST = 2000, 1e-3  # pairs below which pieces are halved further, and their least length
 MOST_PAIRS = 100_000  # bounded for it
 AT_ONCE = 256  # pieces compared with all others
 SLACK = 1.2  # times their lengths: pieces whose middles are nearer are neighbours
@@ -60,7 +60,7 @@ class Atlas:
 
     @property
     def count(self) -> int:
-        """How many regions there are."""
+        """Number of regions."""
         return int(self.region.max(initial=0))
 
     def regions_of(self, scaled: ScaledProblem, designs: Sequence[Candidate]) -> list[int]:
@@ -142,7 +142,7 @@ def _lengths(table: Table, pieces: IntArray) -> FloatArray:
 
 
 def _joined(table: Table, pairs: Pairs) -> IntArray:
-    """A number for each pair that all those have in common that chains of neighbours join."""
+    """A number for each pair, shared by all pairs that chains of neighbours join."""
     used, numbers = np.unique(np.concatenate([pairs.driver, pairs.driven]), return_inverse=True)
     count = len(pairs)
     if not count:

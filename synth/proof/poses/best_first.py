@@ -75,7 +75,7 @@ class BestFirst(Bracket):
         """Bound all pairs, then halve those with the greatest bounds, until none is left.
 
         It ends early with the budget, on request, or where it is `content` with any
-        design; `upper` holds even so.
+        design; `upper` is valid even then.
         """
         self.left = self.bounded(all_pairs(*sides.every), sides.bounded)
         self.begun = self.left is not None

@@ -29,11 +29,11 @@ class Bracket:
     """The greatest transmission angle of linkages in pairs of pieces, between bounds."""
 
     required: Required
-    gap: float  # rad, up to which the bounds are brought together
+    gap: float  # rad, difference to which the bounds are brought together
     most_pairs: int  # budget
     lower: float = 0.0  # rad, transmission angle of a design that is known; 0 where none is
-    pairs: int = 0  # how many were bounded
-    levels: int = 0  # how often all that are left were halved
+    pairs: int = 0  # number of pairs bounded
+    levels: int = 0  # number of times that all remaining ones were halved
     left: Pairs | None = None  # that may hold designs better than `upper`; none where the search is done
     begun: bool = False  # whether every pair of the first level was bounded
     over_budget: bool = False
@@ -115,7 +115,7 @@ class Search(Bracket):
         """Bound all pairs, look for designs in those that are left, halve these, until none is left.
 
         It ends early with the budget, on request, or where it is `content` with any
-        design; `upper` holds even so.
+        design; `upper` is valid even then.
         """
         self.left = self.first(table)
         while self.left is not None and len(self.left):

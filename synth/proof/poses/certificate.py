@@ -1,4 +1,4 @@
-"""Certificates: what a proof of four poses looked at and why each part was dropped, for others to check."""
+"""Certificates of proofs of four poses: the parts examined, and why each was dropped, for others to check."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def certificate_of(
 ) -> dict[str, Any]:
     """The certificate that no linkage transmits more than `upper`, deg, ready for a file.
 
-    What was looked at is noted during the proof; why each part was dropped is found once more here, all
-    against the bound that came of it.
+    The proof notes the parts examined; the reason why each was dropped is found again here, always against
+    the resulting bound.
     """
     about = with_forms(scaled)
     required = Required.of(about, at_least)
@@ -55,7 +55,7 @@ def writable(path: Path) -> None:
 
 
 def write(certificate: dict[str, Any], path: Path) -> None:
-    """Write a certificate, wholly or not at all."""
+    """Write a certificate, completely or not at all."""
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         fresh.write_text(json.dumps(certificate, allow_nan=False), encoding="utf-8")
@@ -106,7 +106,7 @@ def _finite(limit: Any) -> Any:
 
 
 def _tree(required: Required, trail: Trail, upper: float) -> dict[str, Any]:
-    """The rectangles, and the pairs of pieces, with what became of them."""
+    """The rectangles, and the pairs of pieces, each with its fate."""
     rectangles = Tubes.joined(*trail.rectangles)
     tubes, filled = contracted(required.curve, rectangles)
     near = possible_arms(required, tubes.span)

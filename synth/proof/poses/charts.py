@@ -1,8 +1,8 @@
-"""Charts of the dyads of three poses: which two of their four coordinates state the others.
+"""Charts of the dyads of three poses: which two of their four coordinates determine the others.
 
-The moving pivot states the ground pivot, but near a pole, where that is anywhere on a line; there the
-ground pivot states the moving one, but near its own poles. Where both are near poles each keeps to a line,
-and a coordinate along each of both lines states the others.
+The moving pivot determines the ground pivot, except near a pole, where that is anywhere on a line; there the
+ground pivot determines the moving one, except near its own poles. Where both are near poles each keeps to a
+line, and a coordinate along each of both lines determines the others.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from grashof.synth.proof.forms.forms import Span
 from grashof.synth.theory.burmester import Displacements
 
 MOVING, GROUND, BOTH = 0, 1, 2  # kinds of charts: by z, by c, and from here on each about a pole of each
-_NEAR = 0.15  # of the least distance of two poles: so near one other charts are used
+_NEAR = 0.15  # of the least distance of two poles: nearer to one, other charts are used
 _NEWTON = 4
 SMALL = 0.02  # sizes: rectangles are not cut into smaller squares to begin with
 
@@ -33,7 +33,7 @@ class Charts:
     main: int  # `MOVING` or `GROUND`: the chart that is used but near its poles
     radius: float  # up to which distance from poles other charts are used
     poles: tuple[ComplexArray, ComplexArray]  # of z, and of c
-    origin: Steps  # (m,): dyad at the origin of each chart, its other coordinates about right
+    origin: Steps  # (m,): dyad at the origin of each chart, its other coordinates approximate
     free: Steps  # (2, m): unit directions of both coordinates of a chart
     bound: Steps  # (2, m): those of the other coordinates
 
@@ -137,7 +137,7 @@ class Tiles:
 
     @property
     def spans(self) -> tuple[Span, Span, BoolArray]:
-        """Moving and ground pivots as forms of both coordinates, and where one states the other closely.
+        """Moving and ground pivots as forms of both coordinates, and where one determines the other closely.
 
         Where it does not, the other is anywhere within the longest dyad, or near its pole.
         """
@@ -154,7 +154,7 @@ class Tiles:
         far = np.where(kind >= BOTH, charts.radius, charts.longest)
         known &= (found_z.rest < far) & (found_c.rest < far)
         by_z, by_c = kind == MOVING, kind == GROUND
-        # One pivot as the chart has it; the other as far as it may be from that, or from its pole.
+        # One pivot as the chart has it; the other within its greatest distance from that, or from its pole.
         hair = WIDER * (1.0 + np.abs(z) + np.abs(c))
         z_far = Span(np.where(by_c, c, z), np.where(by_c, free.c, free.z), np.where(by_z, hair, far))
         c_far = Span(np.where(by_z, z, c), np.where(by_z, free.z, free.c), np.where(by_c, hair, far))

@@ -39,8 +39,8 @@ class Certified:
     # (n,), sizes: half the width of a box of both points, in all four coordinates, with this dyad alone
     box: FloatArray
     complete: bool = False  # whether all that may meet the limits of a dyad are among them
-    within: int = 0  # how many may meet them
-    rectangles: int = 0  # how many were looked at
+    within: int = 0  # number that may meet them
+    rectangles: int = 0  # number of rectangles examined
     seconds: float = 0.0  # s
     why: str = ""  # why they are not all; else empty
 
@@ -76,7 +76,7 @@ def certified_poses(scaled: ScaledProblem) -> Certified | None:
 
 
 def why_open(made: Certified, motion: Displacements) -> str:
-    """Why dyads may not be all, or not all known to the search; empty where they are."""
+    """Why the dyads may be incomplete, or unknown to the search; empty where they are all known."""
     if not made.complete:
         return "the curve takes too many pieces, as near a double dyad"
     known = five_pose_dyads(motion).moving
@@ -113,7 +113,7 @@ def certified_dyads(required: Required, motion: Displacements) -> Certified:
 
 
 def _counted(required: Required, known: Certified, *, complete: bool, rectangles: int) -> Certified:
-    """The same with how many may meet the limits."""
+    """The same with the number that may meet the limits."""
     size = 1e-9 * (1.0 + np.abs(known.moving))
     points = Tubes.rectangles(known.moving, np.ones_like(known.moving), size, size)
     within = len(Pieces.of(required, points)[0])

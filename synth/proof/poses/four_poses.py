@@ -1,4 +1,4 @@
-"""Four whole poses: bounds of the best there is, by branch and bound over pairs of pieces of the curve."""
+"""Four whole poses: bounds of the best design, by branch and bound over pairs of pieces of the curve."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def bounds_of_four(
     """Bounds of the best design; None where the question does not arise.
 
     With `at_least`, deg, it only decides whether a design has that much, and ends with the first one. `trail`
-    notes what was looked at, for a certificate.
+    records the parts examined, for a certificate.
     """
     why = refusal(scaled)
     if why is None:

@@ -1,4 +1,4 @@
-"""Designs in pairs of pieces: what branch and bound goes by, judged from the linkage alone."""
+"""Designs in pairs of pieces, which guide branch and bound, judged from the linkage alone."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.starts.sampled_dyads import stated_dyads
 from grashof.synth.theory.burmester import Dyads, centre_points, polish
 
-MOST = 4000  # pairs looked at of each level, those with the greatest bounds
+MOST = 4000  # pairs examined at each level, those with the greatest bounds
 JUDGED = 3  # of them by the judge
 CLIMBS, MOST_CLIMBS = 2, 4  # solves of a level, and in all, where no pair has a design in its middle
 
 
 @dataclass(slots=True)
 class Lookout:
-    """Looks for designs in the middle of pairs; where none is, as under limits of no width, near it."""
+    """Looks for designs in the middle of pairs; where none is, as under limits of zero width, near it."""
 
     scaled: ScaledProblem  # with the requirements that the proof is about
     required: Required

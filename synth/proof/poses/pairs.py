@@ -16,7 +16,7 @@ from grashof.synth.proof.forms.square import nothing_left
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """Pairs of pieces, and what their linkages transmit at most."""
+    """Pairs of pieces, and upper bounds of the transmission angles of their linkages."""
 
     driver: IntArray  # (n,), numbers of pieces
     driven: IntArray  # (n,), numbers of pieces
@@ -60,7 +60,7 @@ def sides_left(
 def sifted(
     required: Required, one: Side, other: Side, sense: IntArray, least: FloatArray
 ) -> tuple[IntArray, IntArray, IntArray, FloatArray]:
-    """Which are left by lengths, then by what they transmit, then by both together; their bounds."""
+    """Pairs left by tests of lengths, then of transmission, then of both together, and their bounds."""
     count = len(sense)
     lengths: Lengths = (other.c - one.c).norm, one.length, (other.z - one.z).norm, other.length
     first = np.flatnonzero(lengths_allowed(required.loop, lengths) & _directed(required, one, other))
@@ -94,7 +94,7 @@ def _directed(required: Required, one: Side, other: Side) -> BoolArray:
 
 
 def _crossed(span: Span, direction: float, *, ahead: bool = False) -> Form:
-    """How far a complex form reaches to the left of a direction, or ahead along it."""
+    """Extent of a complex form to the left of a direction, or ahead along it."""
     turned = np.exp(-1j * direction)
     centre, slopes = (
         part.real if ahead else part.imag for part in (turned * span.middle, turned * span.steps)

@@ -1,4 +1,4 @@
-"""One side of a linkage through three poses alone: which tiles may hold its dyad, or that none does."""
+"""One side alone of a linkage through three poses: the tiles that may hold its dyad, or proof of none."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from grashof.synth.theory.stopping import raise_if_stopped
 
 SQUARES = 8  # along the longer side of a rectangle that is covered
 COARSE = 0.5  # length of first tiles, as a share of the local scale
-TINY = 2e-4  # sizes: tiles as small as that are not halved for themselves
-ENOUGH = 500  # tiles to begin with, about: those that are too large then are halved where pairs need it
-MOST_TILES = 60_000  # looked at for a side alone
+TINY = 2e-4  # sizes: tiles of at most this size are not halved on their own
+ENOUGH = 500  # approximate number of first tiles: those still too large are halved where pairs need it
+MOST_TILES = 60_000  # examined for a side alone
 
 
 @dataclass(frozen=True, slots=True)
 class OneSide:
     """The requirements on the dyad of one side."""
 
-    required: Required  # the requirements on both dyads, as far as they concern one alone
+    required: Required  # the requirements on both dyads that concern one alone
     is_driver: bool
     charts: Charts
 
@@ -90,7 +90,7 @@ class Sites:
     tiles: Tiles
     z: Span  # moving pivot
     c: Span  # ground pivot
-    known: BoolArray  # whether one states the other closely
+    known: BoolArray  # whether one determines the other closely
     sense: IntArray  # in which a driver meets the poses; 0 where that is open
 
     @classmethod
@@ -128,7 +128,7 @@ class Sites:
 
     @property
     def lengths(self) -> FloatArray:
-        """How far z or c goes along each coordinate, shape (2, n)."""
+        """Extent of z or c along each coordinate, shape (2, n)."""
         lengths: FloatArray = np.maximum(np.abs(self.z.steps), np.abs(self.c.steps))
         return lengths
 
@@ -196,11 +196,11 @@ class Tiling:
 
     @property
     def sizes(self) -> FloatArray:
-        """How far the pivots of each tile may be from its middle, at most."""
+        """Greatest distance of the pivots of each tile from its middle."""
         return np.maximum(self.sites.z.reach, self.sites.c.reach)
 
     def halve(self, which: IntArray) -> IntArray:
-        """Halves of tiles, shape (n, 2); negative where one holds no dyad that does."""
+        """Numbers of the halves of tiles, shape (n, 2); negative for a half without a possible dyad."""
         new = np.unique(which[self._children[which, 0] == OPEN])
         if len(new):
             made, rows = Sites.of(self.side, self.sites[new].halves)

@@ -1,6 +1,6 @@
-"""Slider-cranks through four whole poses: bounds of the best there is, over pieces of the crank's curve.
+"""Slider-cranks through four whole poses: bounds of the best design, over pieces of the crank's curve.
 
-Of the body one point alone can slide on a line through all poses, so that B and the slide are known; the
+Only one point of the body can slide on a line through all poses, so that B and the slide are known; the
 crank is any dyad of the circle-point curve. One parameter remains.
 """
 
@@ -27,7 +27,7 @@ from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, 
 from grashof.synth.theory.stopping import StopRequested, stop_requested
 
 MOST_LEVELS = 60  # pieces are as small as rounding then
-MOST, JUDGED = 4000, 4  # pieces looked at of each level, and how many of them by the judge, twice
+MOST, JUDGED = 4000, 4  # pieces examined at each level, and the number of them judged, twice
 MOST_PIECES = 50_000  # bounded; practical tasks take some hundred
 # Fields of the requirements that have forms.
 FORMS = (
@@ -99,7 +99,7 @@ def _with_motion(scaled: ScaledProblem) -> ScaledProblem:
 
 
 def _outside(scaled: ScaledProblem, slide: Slide) -> str:
-    """Where B and the slide would have to be."""
+    """The place that B and the slide would need, in words."""
     x, y = scaled.frame.outward(np.array(slide.point + complex(scaled.targets[0])))
     angle = np.degrees(np.angle(slide.along)) % 180
     place = f"({x:.6g}, {y:.6g}) at the first, on a line at {angle:.6g} deg"

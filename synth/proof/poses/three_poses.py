@@ -1,4 +1,4 @@
-"""Three whole poses: whether one side of the linkage is impossible, and bounds of the best there is."""
+"""Three whole poses: whether one side of the linkage is impossible, and bounds of the best design."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Strokes: families of one number, covered by intervals."""
+"""Strokes: one-parameter families, covered by intervals."""

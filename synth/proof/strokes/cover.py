@@ -1,4 +1,4 @@
-"""Branch and bound over the one number of a family: what none of its members exceeds."""
+"""Branch and bound over the parameter of a family: an upper bound for all its members."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ class Cover:
     closed: bool = True  # whether the bounds have met, or no member is left
     begun: int = 0  # pieces to begin with
     bounded: int = 0  # pieces in all
-    levels: int = 0  # how often what was left was halved
+    levels: int = 0  # number of times that the remaining pieces were halved
 
 
 def bounds_of_stroke(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
-    """Bounds of the best design; None of other tasks. `at_least` is in deg."""
+    """Bounds of the best design; None for other tasks. `at_least` is in deg."""
     if not scaled.problem.task.at_limits:
         return None
     since = perf_counter()
@@ -97,7 +97,7 @@ def _family(family: Family, cover: Cover, gap: float, floor: float) -> tuple[Cov
 
 
 def _first(family: Family) -> tuple[FloatArray, FloatArray]:
-    """Pieces to begin with; of a number that cannot be zero they are shares of it."""
+    """First pieces; for a parameter that cannot be zero they are shares of it."""
     if family.low > family.high:
         return np.zeros(0), np.zeros(0)
     spaced = np.geomspace if family.low > 0 else np.linspace

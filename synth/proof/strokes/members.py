@@ -44,13 +44,13 @@ class MemberBounds:
     """Pieces of a family."""
 
     cosine: Range  # of the worst transmission angle over the turn
-    slope: Range  # its derivative by the number of the family
+    slope: Range  # its derivative by the parameter of the family
     conditions: Conditions  # for members to be allowed
 
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """Linkages by one number, from `low` to `high`."""
+    """Linkages by one parameter, from `low` to `high`."""
 
     low: float
     high: float
@@ -104,7 +104,7 @@ def slider_cranks(stroke: float, time_ratio: float, limits: StrokeLimits) -> Fam
 
 
 def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
-    """Inverted slider-cranks whose block swings by so much (rad); their time ratio follows from it.
+    """Inverted slider-cranks whose block swings by an angle (rad); their time ratio follows from it.
 
     The rod has the directions -asin(r2 - offset) and asin(r2 + offset) from the ground line in its limit
     positions, r1 = 1, and half the difference of both angles is p, from 0 to 90 deg - swing / 2. By
@@ -113,7 +113,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
     """
     half = Range.of(swing) / _TWO
     sine, cosine = half.sine, half.cosine
-    room = (HALF_TURN / _TWO - half) / _TWO  # greatest p, and what half the swing lacks of 90 deg, halved
+    room = (HALF_TURN / _TWO - half) / _TWO  # half of the greatest p, which is 90 deg less half the swing
     flat = _TWO * room.sine * room.sine  # 1 - sin(swing / 2)
 
     def members(w: Range) -> MemberBounds:
@@ -133,7 +133,7 @@ def crank_shapers(swing: float, limits: StrokeLimits) -> Family:
 
 
 def _half_lag(time_ratio: float) -> Range:
-    """Of how much more than half a turn the driver turns in the slow stroke, rad."""
+    """Half the angle by which the driver turns more than half a turn in the slow stroke, rad."""
     ratio = Range.of(time_ratio)
     return HALF_TURN / _TWO * (ratio - ONE) / (ratio + ONE)
 
@@ -168,7 +168,7 @@ def _margins(limits: StrokeLimits) -> tuple[Range, Range]:
 
 
 def _shares(limits: StrokeLimits) -> Limits:
-    """From where to where r2 / r3 may be."""
+    """Least and greatest allowed r2 / r3."""
     return float((ONE / Range.of(limits.ratio)).low), 1.0
 
 

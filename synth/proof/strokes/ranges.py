@@ -1,4 +1,4 @@
-"""Intervals, rounded outwards: what floating point makes of a number lies between two that it has."""
+"""Intervals, rounded outwards: each encloses the exact result of a floating-point operation."""
 
 from __future__ import annotations
 

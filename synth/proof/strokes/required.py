@@ -21,8 +21,8 @@ from grashof.synth.proof.strokes.members import (
 )
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
-# rad, a thousandth of a degree: designs below it count as none. Slides almost three times as slow one way
-# transmit less than elsewhere counts as something.
+# rad, a thousandth of a degree: designs below it count as none. Slides with a time ratio of almost three
+# transmit less than the threshold used elsewhere.
 LEAST = float(np.radians(1e-3))
 _SIZES = frozenset(
     {"transmission_min_deg", "link_length", *(f"r{k}" for k in range(1, 5)), "link_ratio_max", "offset"}
@@ -34,7 +34,7 @@ _EITHER = frozenset({"driver_sense"})
 
 
 def refusal_of_stroke(scaled: ScaledProblem) -> str:
-    """Why nothing is proven of the best of a stroke; empty where something is."""
+    """Why there is no proof about the best design of a stroke; empty where there can be one."""
     if scaled.objective is None or "transmission" not in scaled.objective.goals:
         return "the objective does not count the transmission angle"
     return ""
@@ -93,7 +93,7 @@ class _Sizes:
 
     @property
     def sides(self) -> list[StrokeLimits]:
-        """With the slide on either side of its pivot; where that says the same, on one."""
+        """With the slide on either side of its pivot, or on one where both are equivalent."""
         low, high = self.offset
         sides = {(max(least, 0.0), most) for least, most in ((low, high), (-high, -low)) if most >= 0}
         return [StrokeLimits(self.lengths, self.ratio, self.margin, offset) for offset in sorted(sides)]

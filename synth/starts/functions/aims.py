@@ -115,7 +115,7 @@ class FunctionAims:
 
     @property
     def mirrored(self) -> bool:
-        """Whether mirror images do as well, so that one sense of the driver stands for both."""
+        """Whether mirror images are equally suitable, so that one sense of the driver represents both."""
         return self.wanted.offset is None and self.problem.requirements.theta2_start_deg is None
 
     def pairs(self, sense: int) -> DesiredOutput:

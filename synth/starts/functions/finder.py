@@ -22,7 +22,7 @@ from grashof.synth.theory.functions.fit import fitted
 from grashof.synth.theory.functions.optima import refined
 from grashof.synth.theory.functions.output import Generators
 
-LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg of transmission, that a choice is offered at
+LEVELS = tuple(np.arange(10.0, 61.0, 10.0).tolist())  # deg: transmission angles at which a choice is offered
 FINE = tuple(np.arange(5.0, 86.0, 5.0).tolist())  # where an error is allowed
 WORSE = 10.0  # times the least error: a sense of output and driver in which no choice is offered
 SPARE = 10  # exact designs more than enough: the judge refuses some, and some are alike
@@ -106,7 +106,7 @@ class Functions(DesignFinder):
         return self._round([(optimum.generator, driver) for optimum, driver in found], skip=needless)
 
     def _at_level(self, level: float, rng: np.random.Generator) -> list[tuple[Generators, int]]:
-        """Some of the least errors of generators that transmit so much, deg."""
+        """Some generators of least error with at least this transmission angle, deg."""
         begun = list[tuple[Optima, Generators, float]]()
         for search in Optima.each(self.aims, float(np.radians(level))):
             starts = search.starts(rng, 1)
@@ -144,7 +144,7 @@ class Functions(DesignFinder):
         return self._linkages([each for each in found if len(each[0])])
 
     def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
-        """By senses of output and driver the generators that designs are."""
+        """The generators of designs, by senses of output and driver."""
         every = Optima.each(self.aims)
         mine = list[list[Generators]]([] for _ in every)
         for one in designs:
@@ -161,7 +161,7 @@ class Functions(DesignFinder):
 
     @property
     def _in_order(self) -> bool:
-        """Whether exact designs come in the order of what decides."""
+        """Whether exact designs are in the order of the goals, all of which are known here."""
         known = KNOWN if self.scaled.own_objective is None else set[str]()
         return all(goal.key in known for goal, _ in self.scaled.problem.goals)
 

@@ -90,7 +90,7 @@ class Optima:
             yield good[k]
 
     def quick_pass(self) -> Iterator[Optimum]:
-        """One that is good, from few starts: most often there is one, before the search has begun."""
+        """A good optimum from few starts: there usually is one, before the search has begun."""
         rng, aim = np.random.default_rng(0), self.aim()
         starts = function_starts(self.aims.kind, aim.desired, rng, self.first)[::SPARSE]
         batch, square = fitted(
@@ -125,7 +125,7 @@ class Optima:
 
 
 def _worth(one: Optimum) -> float:
-    """Its error and what it misses, less is better."""
+    """Its error and its misses; less is better."""
     return one.error + 10 * one.missed
 
 

@@ -21,7 +21,7 @@ MET = 1e-9  # rad, or shares of the travel: exact
 ROUNDING = 2e-8  # of limits
 KNOWN = {"transmission_min_task", "transmission_min_cycle", "link_ratio"}  # here as to the judge
 _ERRORS = tuple(f"{kind}_error_{name}" for kind in ("structural", "travel") for name in ("max", "rms"))
-ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, how often, and how many each
+ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, rounds, and trials of each
 
 
 def exact_functions(
@@ -78,7 +78,7 @@ def _through(
 
 
 def _pinned(aims: FunctionAims) -> bool:
-    """Whether the offset is given, so that no sweep would come upon it."""
+    """Whether the offset is given, so that no sweep would find it."""
     offset = aims.wanted.offset
     return offset is not None and offset[0] == offset[1]
 
@@ -95,7 +95,7 @@ class _Pairs:
     output: FloatArray
 
     def through(self) -> Generators:
-        """Of as many pairs as can be met: all there are."""
+        """All generators through the greatest number of pairs that can be met."""
         batch, _ = self.aims.kind.through(self.turned[None], self.output[None])
         return self.kept(batch.begun(self.desired.turned[0]))
 
@@ -107,7 +107,7 @@ class _Pairs:
         return self.kept(batch.begun(self.desired.turned[0]))
 
     def on_curve(self, count: int) -> Generators:
-        """Of one pair less: the curve, and once more where it is best."""
+        """Generators through one pair less: along the curve, then refined where it is best."""
         wide = int(np.argmax(np.diff(self.turned)))
         # the other pair is between two of them, where every linkage without a defect closes
         between = (self.turned[wide] + self.turned[wide + 1]) / 2
@@ -122,7 +122,7 @@ class _Pairs:
         return pool
 
     def on_surface(self, count: int, rng: np.random.Generator) -> Generators:
-        """Of two pairs less: both starts on a grid, and once more where they are best."""
+        """Generators through two pairs less: both starts on a grid, then refined where they are best."""
         kind = self.aims.kind
         half = np.pi * np.arange(count) / count
         shift = np.pi * rng.random(2) / count
@@ -176,7 +176,7 @@ def _output_at(batch: Generators, before: float, turned: float) -> FloatArray:
 
 
 def expected_score(aims: FunctionAims, batch: Generators, sense: int) -> FloatArray:
-    """Score of generators by the objective, as far as it is known here, shape (M,)."""
+    """Score of generators by the quantities of the objective that are known here, shape (M,)."""
     score = np.zeros(len(batch))
     for goal, weight in aims.problem.goals:
         value = _known(aims, goal.key, batch, sense)

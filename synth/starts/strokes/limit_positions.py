@@ -26,7 +26,7 @@ from grashof.synth.theory.distinct import DISTINCT, pick_apart
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, best_of, highest, stretches
 
 _SPARE = 1.3  # times as many as are enough: the judge may find some alike
-_SAMPLES = 400  # members of a stretch that are looked at
+_SAMPLES = 400  # members of a stretch that are examined
 _FIRST = 12  # as they stand by themselves, where more than lengths and pivots decides
 _ROUNDS = 6  # of members put anywhere, where more than lengths and pivots decides
 _DRAWS = 4000  # of them in each round
@@ -41,7 +41,7 @@ _Stretches: TypeAlias = list[tuple[Family, list[tuple[float, float]]]]
 
 
 def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
-    """Where members lie, of a kind of linkage."""
+    """Places of members, for a kind of linkage."""
     return next(each for each in (RockerKind, SliderKind, ShaperKind) if isinstance(kind.dyad, each.dyad))
 
 
@@ -58,7 +58,7 @@ class LimitPositions(DesignFinder):
 
     @property
     def beginning(self) -> str:
-        """Whose limit positions are looked at."""
+        """The first step of the search, in words."""
         return f"computing {self.stroke_kind.what} by their limit positions"
 
     @cached_property
@@ -101,7 +101,7 @@ class LimitPositions(DesignFinder):
         return self._round(self._anywhere(enough * size, rng))
 
     def relaxed(self, _rng: np.random.Generator) -> list[Start]:
-        """The members that miss the limits by least."""
+        """The members that miss the limits by the least amount."""
         return self._closest([(family, stretches(family)) for family, _ in self.kinds])
 
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
@@ -221,7 +221,7 @@ class LimitPositions(DesignFinder):
 
     @property
     def _room(self) -> Box:
-        """Where an unbounded O2 is put: about the required places."""
+        """Room for an unbounded O2: about the required places."""
         wanted = self.wanted
         boxes = [box for box in (wanted.a, wanted.b, wanted.o4) if box is not None]
         sides = []
@@ -270,7 +270,7 @@ class LimitPositions(DesignFinder):
 def _best(
     within: _Stretches, value: Callable[[StrokeLinkages], FloatArray]
 ) -> Iterator[tuple[float, StrokeLinkages]]:
-    """In each of some stretches the member, (1,), of the greatest value, with that."""
+    """The member, (1,), of the greatest value in each of some stretches, with that value."""
     for family, ranges in within:
 
         def of_share(share: FloatArray, family: Family = family) -> FloatArray:
@@ -296,7 +296,7 @@ def _unbeaten(angle: FloatArray, size: FloatArray) -> BoolArray:
 
 
 def _apart(lengths: FloatArray, score: FloatArray, most: int) -> IntArray:
-    """Indices of at most `most` lengths (n, 4), as far apart as leaves that many, best first."""
+    """Indices of at most `most` lengths (n, 4), as far apart as possible, best first."""
     worth = np.flatnonzero(np.isfinite(score))  # without those of score -inf
     signatures = np.concatenate([lengths[worth], np.zeros((len(worth), 5))], axis=1)
     for least in (0.1, 0.05, 0.025, DISTINCT):

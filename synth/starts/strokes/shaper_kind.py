@@ -74,9 +74,9 @@ class ShaperKind(RockerKind):
         with np.errstate(divide="ignore", invalid="ignore"):
             ends = np.sort(np.stack([least / offset, most / offset]), axis=0)
         ends = np.maximum(ends, [[_LEAST], [_LEAST**2]])  # the greatest below the least: at no scale
-        still, anyhow = offset == 0, least <= 0 <= most
+        still, zero_allowed = offset == 0, least <= 0 <= most
         low = np.maximum(low, np.where(still, _LEAST, ends[0]))
-        high = np.minimum(high, np.where(still, np.inf if anyhow else _LEAST**2, ends[1]))
+        high = np.minimum(high, np.where(still, np.inf if zero_allowed else _LEAST**2, ends[1]))
         return np.stack([low, high])
 
 

@@ -16,10 +16,10 @@ from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, StrokeKind
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, lag_of, slider_cranks
 
 _DIRECTIONS = 72  # of a slide that may have any, tried at first
-_CLOSER, _STEPS = 3, 8  # times, by so much
+_CLOSER, _STEPS = 3, 8  # refinements of the grid, and their steps to each side
 _NEARLY = 0.05  # strokes
 _ROUNDING = 1e-12  # strokes
-_ONE_STROKE = 1e-12  # rad: strokes that differ by less take as long
+_ONE_STROKE = 1e-12  # rad: strokes that differ by less take equally long
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class SliderKind(StrokeKind):
     dyad: ClassVar[type[ClosingDyad]] = Slider
     line: ClassVar[str] = "slide_angle_deg"
     kept: ClassVar[frozenset[str]] = KEPT | {"offset", "slide_angle_deg", "stroke", "a", "b"}
-    # the mirror image is a family of its own, the other assembly this one with its slide the other way round
+    # the mirror image is a family of its own, the other assembly this one with its slide reversed
     mirrored: ClassVar[tuple[bool, ...]] = (False,)
 
     def families(self, *, elsewhere: bool) -> list[tuple[Family, bool]]:
@@ -92,7 +92,7 @@ class SliderKind(StrokeKind):
         return o4, a, b, np.stack(self.ends(members), axis=-1) + np.angle(along)
 
     def in_boxes(self, a: FloatArray, b: FloatArray) -> bool:
-        """Yes, as O2 is put where they are."""
+        """True, as O2 is put where they are."""
         return True
 
     def worst(self, start: Start) -> float:
@@ -100,7 +100,7 @@ class SliderKind(StrokeKind):
         return float(np.arccos(min((r2 + abs(offset)) / r3, 1.0)))
 
     def ends(self, members: StrokeLinkages) -> tuple[FloatArray, FloatArray]:
-        """Of strokes that take as long, the one from the stretched position counts as the slow one."""
+        """Of strokes that take equally long, the one from the stretched position counts as the slow one."""
         if self.clockwise and lag_of(self.task.time_ratio) <= _ONE_STROKE:
             return members.first, members.last - TURN
         first, last = members.first, members.last
@@ -166,7 +166,7 @@ class SliderKind(StrokeKind):
         ]
 
     def _room(self, members: StrokeLinkages, angle: FloatArray) -> FloatArray:
-        """How much room is left to O2, strokes, in directions of the slide (n,) or (n, m)."""
+        """Room left to O2, strokes, in directions of the slide (n,) or (n, m)."""
         low, high = self._room_of_o2(members, angle)
         room: FloatArray = (high - low).min(axis=0) / self._stroke
         return np.where(room < 0, np.minimum(room + _ROUNDING, 0.0), room)

@@ -56,7 +56,7 @@ class StrokeKind(ABC):
 
     @abstractmethod
     def inside(self, members: StrokeLinkages) -> FloatArray:
-        """How far members are inside the limits of lengths, places and transmission, (n,)."""
+        """Margins of members to the limits of lengths, places and transmission, (n,)."""
 
     def least(
         self,
@@ -66,10 +66,10 @@ class StrokeKind(ABC):
         angle: FloatArray,
         others: list[FloatArray],
     ) -> FloatArray:
-        """The least of what members have to spare, (n,): of what all kinds are limited by, and of `others`.
+        """The least margin of members, (n,): to the limits of all kinds, and of `others`.
 
-        That is the ratio of lengths, the margin of rotatability, and where both the start of the driver and
-        the line of the ground or slide are given its `angle`, rad.
+        The former are the ratio of lengths, the margin of rotatability, and where both the start of the
+        driver and the line of the ground or slide are given its `angle`, rad.
         """
         wanted = self.wanted
         spare = [

@@ -1,1 +1,1 @@
-"""Function generators: what they put out, those through a few pairs, least errors, their limits."""
+"""Function generators: their outputs, those through a few pairs, least errors, their limits."""

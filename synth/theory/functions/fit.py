@@ -137,7 +137,7 @@ class _Model:
     def step(
         self, batch: Generators, square: FloatArray, damping: FloatArray
     ) -> tuple[Generators, FloatArray, FloatArray]:
-        """One damped step each: where it leads, its square, and what it gains."""
+        """One damped step each: its end, the square there, and its gain."""
         normal, side = self._normal(batch)
         scale = np.einsum("mii->mi", normal)
         floor = 1e-12 * scale.max(axis=1, keepdims=True) + 1e-300

@@ -16,7 +16,7 @@ from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
 
-_TRIVIAL = 1e-6  # of the ground: a pivot so near to O2 or O4 is the ground link itself
+_TRIVIAL = 1e-6  # of the ground: with a pivot nearer to O2 or O4 it is the ground link itself
 
 
 @dataclass(frozen=True, slots=True)

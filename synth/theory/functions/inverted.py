@@ -55,8 +55,8 @@ class InvertedSliderCranks(Generators):
         """The inverted slider-crank through four pairs: one of most sets.
 
         With c = e^(i psi0) and w = r2 e^(i (phi0 - psi0)) of the start angles, O4 lies beside the rod's line
-        by offset = Im(e^(i psi) c + e^(i (phi - psi)) w): four equations, linear in five numbers, of which
-        the scale is free.
+        by offset = Im(e^(i psi) c + e^(i (phi - psi)) w): four equations, linear in five numbers with a free
+        scale.
         """
         swung, seen = np.exp(1j * output), np.exp(1j * (turned - output))
         rows = np.stack([swung.imag, swung.real, seen.imag, seen.real, -np.ones_like(turned)], axis=-1)

@@ -104,8 +104,8 @@ def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
 def offset_rows(sizes: list[Limits], offset: Limits) -> FloatArray:
     """Sums (k, n + 1) of lengths and offset, not negative where some scale brings all within their limits.
 
-    With the scale 1 / t limits are low t <= q <= high t: bounds of t, of which each lower one has to be below
-    each upper one (elimination by Fourier and Motzkin). Bounds by two lengths are left out: they are those of
+    With the scale 1 / t limits are low t <= q <= high t: bounds of t, each lower one below each upper one
+    (elimination by Fourier and Motzkin). Bounds by two lengths are left out: they are those of
     `ShapeLimits.caps`. An offset of at most 2 where r1 is at least 1, 2 r1 - offset >= 0:
 
     >>> offset_rows([(1.0, np.inf)], (-np.inf, 2.0))

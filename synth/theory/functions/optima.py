@@ -24,17 +24,17 @@ class Optimum:
 
     generator: Generators
     error: float  # root mean square or greatest error at the samples
-    missed: float  # by how much the worst limit is missed; zero where all are kept
+    missed: float  # amount by which the worst limit is missed; zero where all are met
     steps: int
 
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """The error to be made small, and the limits."""
+    """The error to be minimised, and the limits."""
 
     desired: DesiredOutput  # for the greatest error, the samples
     limits: Limits  # as `ShapeLimits.of`
-    greatest: bool = False  # the greatest error is made small, or else the (weighted) mean square
+    greatest: bool = False  # the greatest error is minimised, or else the (weighted) mean square
     held: bool = False  # the first driver angle stays
     band: float = np.inf  # greatest error that is allowed at any sample
 
@@ -56,7 +56,7 @@ class Aim:
         return float(np.sqrt(self.desired.weights @ errors**2 / self.desired.weights.sum()))
 
     def missed(self, generator: Generators) -> float:
-        """By how much the worst limit is missed."""
+        """Amount by which the worst limit is missed."""
         short = float(-self.limits(generator).value.min(initial=0.0))
         if np.isfinite(self.band):
             short = max(short, float(np.abs(self.errors(generator)).max()) - self.band)

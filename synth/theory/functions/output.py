@@ -1,4 +1,4 @@
-"""Function generators of any kind: what each of them puts out along a rotation of its driver.
+"""Function generators of any kind: their outputs along a rotation of the driver.
 
 The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.functions.four_bar`,
 `slider_crank` and `inverted`. All else of the search goes through `Generators`.
@@ -109,7 +109,7 @@ class Generators(ABC):
 
     @abstractmethod
     def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
-        """By each number of the shape, how it moves B out of its place."""
+        """Displacement of B by each number of the shape."""
 
     def _closed(self, turned: FloatArray) -> tuple[Vector, Closed]:
         """O2A, and the loop at driver rotations from the first angle."""
@@ -188,7 +188,7 @@ class Generators(ABC):
     @classmethod
     @abstractmethod
     def through(cls, turned: FloatArray, output: FloatArray) -> tuple[Self, IntArray]:
-        """All that go through `EXACT` pairs of m sets, (m, EXACT) each, and the set of each.
+        """All generators through the `EXACT` pairs of m sets, (m, EXACT) each, and the set of each.
 
         Rotations and outputs count from the first pair, zero there. There may be branch or circuit defects
         between the pairs.
@@ -275,7 +275,7 @@ def beginnings(rng: np.random.Generator, count: int, first: float | None) -> Flo
 
 
 def weighed(rows: FloatArray, right: FloatArray, slope: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Equations over what their residual changes by with the output, so that its errors are made small."""
+    """Equations over the derivative of their residual by the output, so that its errors are minimised."""
     with np.errstate(invalid="ignore", divide="ignore"):
         weight = 1.0 / np.maximum(slope, 0.05 * slope.max(axis=1, keepdims=True))
     return rows * weight[..., None], right * weight

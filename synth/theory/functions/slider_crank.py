@@ -157,7 +157,7 @@ class SliderCranks(Generators):
 
     @staticmethod
     def place_of(angle: FloatArray) -> FloatArray:
-        """Farther and farther apart on both sides of O2."""
+        """At increasing distances on both sides of O2."""
         return np.sinh(_FARTHEST * (2 * angle / np.pi - 1))
 
     @staticmethod

@@ -9,7 +9,7 @@ from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.output import Generators
 
 GRID = 40  # starts of driver and output each
-ANYTHING = 20_000  # random linkages with a given driver angle, of which few close over the range
+ANYTHING = 20_000  # random linkages with a given driver angle; few of them close over the range
 SUBSETS = 30  # of as many pairs as can be met, through which exact linkages begin
 _SAME = 1e-9  # rad
 
@@ -53,7 +53,7 @@ def function_starts(
 def on_grid(
     kind: type[Generators], desired: DesiredOutput, driver: FloatArray, angle: FloatArray
 ) -> Generators:
-    """Least squares at starts, each of shape (M,), the output's as `Generators.place_of` has it."""
+    """Least squares at starts, each of shape (M,), that of the output by `Generators.place_of`."""
     output = desired.output - desired.output[0]
     return kind.at_starts(desired.turned, output, driver, kind.place_of(angle)).finite
 
