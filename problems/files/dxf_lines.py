@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from io import BytesIO
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.on_disk import read_by_others
+from grashof.problems.files.on_disk import installed, read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.errors import ProblemError, shown
@@ -62,14 +61,15 @@ def dxf_polylines(text: str) -> list[FloatArray]:
 
 def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], float | None]:
     """The same of a layer, or of all, and the drawing's unit in metres, None where it states none."""
-    ezdxf_installed()
+    installed("ezdxf", "DXF needs")
     from ezdxf import recover
     from ezdxf.bbox import extents
+    from ezdxf.lldxf.const import DXFError
     from ezdxf.path import make_path
 
     if len(_ENTITY.findall(content)) > _MOST_ENTITIES:
         raise ProblemError(f"the drawing has more than {_MOST_ENTITIES} entities; it must have at most that")
-    with read_by_others("a DXF file"):
+    with read_by_others("a DXF file", DXFError):
         document, _ = recover.read(BytesIO(content))
         every = _drawn(document.modelspace(), Budget(MOST_POINTS, "entities", "blocks"))
         entities = [
@@ -127,14 +127,3 @@ def _finite(values: Any, most: float) -> bool:
     if isinstance(values, str | bytes) or not hasattr(values, "__iter__"):
         return True
     return all(_finite(each, most) for each in values)
-
-
-def ezdxf_installed() -> ModuleType:
-    """The library that reads and writes DXF; `ProblemError` where it is not installed."""
-    try:
-        import ezdxf
-    except ModuleNotFoundError:
-        raise ProblemError(
-            "DXF needs ezdxf: pip install 'grashof[export]' (in a clone '.[export]')"
-        ) from None
-    return ezdxf

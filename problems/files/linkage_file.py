@@ -11,18 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.on_disk import (
-    MOST_BYTES_MADE,
-    Catalogue,
-    document_of,
-    exists,
-    file_text,
-)
+from grashof.problems.files.on_disk import MOST_BYTES_MADE, Catalogue, document_of, exists, file_text
 from grashof.problems.files.problem_file import catalogue, problem_of
 from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.linkages.cylinder import CARRIERS, Cylinder
+from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, WORDS, mechanism
@@ -222,8 +216,6 @@ def _cylinder(stated: Any) -> Cylinder | None:
     keys = ("on", "base", "point")
     if not isinstance(stated, dict) or not all(key in stated for key in keys):
         raise ProblemError(f"cylinder is {shown(stated)}; it must be an object of {', '.join(keys)}")
-    if not isinstance(stated["on"], str):
-        raise wrong_value("cylinder.on", stated["on"], f"one of {', '.join(CARRIERS)}")
     return Cylinder(*(stated[key] for key in keys))
 
 

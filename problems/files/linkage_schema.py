@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -90,11 +91,7 @@ _USUAL: dict[str, Any] = {
 }  # fmt: skip
 
 
-def _word(word: str) -> str:
-    return mechanism(word, among=WORDS)
-
-
-_Word = Annotated[str, AfterValidator(_word)]
+_Word = Annotated[str, AfterValidator(partial(mechanism, where="mechanism", among=WORDS))]
 
 
 class _Heading(Table):
@@ -129,14 +126,12 @@ class _Checked(Table):
         if given is None:
             return given
         if where in ("r1", "output_arm"):
-            if checks.finite_number(given, where) <= 0:
-                raise ProblemError(f"{where} is {given:g}; it must be greater than zero")
-            checks.number_within(given, -checks.GREATEST, checks.GREATEST, where)
+            checks.positive_bounded(given, where)
         elif where == "ground_angle_deg" or (row is not None and row.kind == "angle"):
             checks.number_within(given, -most, most, where)
         elif row is not None:
             for number in np.ravel(row.array(given)).tolist():
-                checks.number_within(number, -checks.GREATEST, checks.GREATEST, where)
+                checks.bounded(number, where)
         return given
 
 

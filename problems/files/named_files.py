@@ -150,14 +150,8 @@ FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
     ("motion", "poses"): (TABLES, lambda name, folder, _: poses_of(name, folder)),
     ("path", "points"): (TABLES, lambda name, folder, _: points_of(name, folder)),
     ("motion", "body"): (DRAWINGS, _body),
-    ("requirements", "keep_out"): (
-        DRAWINGS,
-        lambda name, folder, unit: {"keep_out": areas_of(name, folder, unit)},
-    ),
-    ("scene", "outlines"): (
-        DRAWINGS,
-        lambda name, folder, unit: {"outlines": outlines_of(name, folder, unit)},
-    ),
+    ("requirements", "keep_out"): (DRAWINGS, lambda name, at, unit: {"keep_out": areas_of(name, at, unit)}),
+    ("scene", "outlines"): (DRAWINGS, lambda name, at, unit: {"outlines": outlines_of(name, at, unit)}),
 }
 
 

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
+import lzma
 import os
 import stat
+import struct
 import tomllib
 import warnings
+import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from importlib import import_module, resources
 from importlib.metadata import version
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from grashof.problems.values.checks import hint, readable
@@ -107,16 +111,35 @@ def file_bytes(path: Path, wanted: str, suggestion: str = "", most: int = MOST_B
     return content
 
 
+def installed(library: str, needed: str) -> ModuleType:
+    """A library of the extra `export`; `ProblemError` where it is not installed: what "needs" it."""
+    try:
+        return import_module(library)
+    except ModuleNotFoundError:
+        install = "pip install 'grashof[export]' (in a clone '.[export]')"
+        raise ProblemError(f"{needed} {library}: {install}") from None
+
+
+# What Python raises in a library that reads damaged bytes.
+_DAMAGED: tuple[type[Exception], ...] = (
+    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
+    RuntimeError, SyntaxError, TypeError, ValueError, struct.error, zlib.error, lzma.LZMAError,
+)  # fmt: skip
+
+
 @contextmanager
-def read_by_others(wanted: str) -> Iterator[None]:
-    """Errors of a library on a file that is not `wanted`, as a `ProblemError` of one line; no warnings."""
+def read_by_others(wanted: str, *own: type[Exception]) -> Iterator[None]:
+    """Errors of a library on a file that is not `wanted`, as a `ProblemError` of one line; no warnings.
+
+    `own` are the library's own errors besides those.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     except ProblemError:
         raise
-    except Exception as error:  # noqa: BLE001  (no library documents its errors for damaged bytes)
+    except (*_DAMAGED, *own) as error:
         said = str(error).split("\n", maxsplit=1)[0].strip()
         raise ProblemError(f"is not {wanted}: {shown(said) if said else type(error).__name__}") from None
 

@@ -8,14 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import (
-    AfterValidator,
-    BeforeValidator,
-    Tag,
-    ValidationInfo,
-    create_model,
-    field_validator,
-)
+from pydantic import AfterValidator, BeforeValidator, Tag, ValidationInfo, create_model, field_validator
 from pydantic_core import PydanticCustomError
 
 from grashof.problems.files import tables

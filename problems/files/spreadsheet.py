@@ -9,9 +9,9 @@ from io import BytesIO, StringIO
 from itertools import islice
 from pathlib import Path
 from typing import TypeVar
-from zipfile import ZipFile
+from zipfile import BadZipFile, ZipFile
 
-from grashof.problems.files.on_disk import MOST_BYTES, file_bytes, file_text, read_by_others
+from grashof.problems.files.on_disk import MOST_BYTES, file_bytes, file_text, installed, read_by_others
 from grashof.problems.values.checks import bounded, each_checked, located_in
 from grashof.problems.values.errors import ProblemError, shown
 
@@ -34,7 +34,7 @@ def rows_of(name: str, folder: Path) -> list[list[str]]:
 def csv_rows(path: Path, wanted: str) -> list[list[str]]:
     """All rows of a CSV file, cells stripped; `ProblemError` where it is not `wanted`."""
     text = StringIO(file_text(path, wanted), newline="")
-    with located_in(str(path)), read_by_others(wanted):
+    with located_in(str(path)), read_by_others(wanted, csv.Error):
         lines = list(islice(csv.reader(text), MOST_LINES + 1))
     if len(lines) > MOST_LINES:
         raise ProblemError(f"{path}: has more than {MOST_LINES} lines; it must have at most that")
@@ -42,14 +42,13 @@ def csv_rows(path: Path, wanted: str) -> list[list[str]]:
 
 
 def _sheet(path: Path, name: str) -> list[list[str]]:
-    try:
-        from openpyxl import load_workbook
-    except ModuleNotFoundError:
-        raise ProblemError(
-            "Excel files need openpyxl: pip install 'grashof[export]' (in a clone '.[export]')"
-        ) from None
+    installed("openpyxl", "Excel files need")
+    from openpyxl import load_workbook
+    from openpyxl.utils.exceptions import CellCoordinatesException, InvalidFileException
+
+    own = (BadZipFile, CellCoordinatesException, InvalidFileException)
     content = file_bytes(path, "an Excel workbook")
-    with located_in(str(path)), read_by_others("an Excel workbook"):
+    with located_in(str(path)), read_by_others("an Excel workbook", *own):
         with ZipFile(BytesIO(content)) as parts:
             size = sum(part.file_size for part in parts.infolist())
         if size > MOST_BYTES:

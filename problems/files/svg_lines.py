@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from grashof.problems.files.dxf_lines import FLAT, MOST_POINTS, Budget
-from grashof.problems.files.on_disk import read_by_others
+from grashof.problems.files.on_disk import installed, read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.errors import ProblemError, shown
 
@@ -37,12 +37,7 @@ def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], floa
 
     `ProblemError` where it is not an SVG file, has no lines or too many, or svgelements is not installed.
     """
-    try:
-        import svgelements  # type: ignore[import-untyped]
-    except ModuleNotFoundError:
-        raise ProblemError(
-            "SVG needs svgelements: pip install 'grashof[export]' (in a clone '.[export]')"
-        ) from None
+    svgelements = installed("svgelements", "SVG needs")
     with read_by_others("an SVG file"), np.errstate(all="ignore"):
         drawing = svgelements.SVG.parse(BytesIO(_plain(content)), reify=True)
         shapes = _shapes(drawing.elements() if not group else _inside(drawing, group), svgelements)

@@ -182,20 +182,15 @@ def from_zero(value: float, where: str) -> float:
     return number
 
 
-def numbers(values: Sequence[float], count: int, where: str) -> tuple[float, ...]:
-    """`count` floats, none beyond 1e20."""
+def pair(values: Sequence[float], where: str) -> tuple[float, ...]:
+    """Two floats, neither beyond 1e20."""
     try:
         given = list(values)
     except TypeError:
-        raise wrong_value(where, values, f"{count} numbers") from None
-    if len(given) != count:
-        raise ProblemError(f"{where} has {counted(len(given), 'entry')}; it must have {count} numbers")
+        raise wrong_value(where, values, "2 numbers") from None
+    if len(given) != 2:
+        raise ProblemError(f"{where} has {counted(len(given), 'entry')}; it must have 2 numbers")
     return tuple(bounded(value, f"{where}[{index}]") for index, value in enumerate(given))
-
-
-def pair(values: Sequence[float], where: str) -> tuple[float, ...]:
-    """Two floats, neither beyond 1e20."""
-    return numbers(values, 2, where)
 
 
 def one_or_each(

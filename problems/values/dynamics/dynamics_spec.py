@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.checks import bounded, from_zero, numbers, pair, positive_bounded
+from grashof.problems.values.checks import bounded, from_zero, pair, positive_bounded
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
@@ -235,4 +235,4 @@ def _places(values: Any, where: str) -> tuple[Pair, ...]:
         raise wrong_value(where, values, "a place [u, v] for each moving link")
     if len(values) not in _MOVING:
         return tuple(values)
-    return tuple((u, v) for u, v in (numbers(value, 2, f"{where}[{i}]") for i, value in enumerate(values)))
+    return tuple((u, v) for u, v in (pair(value, f"{where}[{i}]") for i, value in enumerate(values)))

@@ -11,15 +11,7 @@ from numbers import Integral
 
 import numpy as np
 
-from grashof.problems.values.checks import (
-    Rows,
-    as_rows,
-    bounded,
-    from_zero,
-    pair,
-    refuse_open,
-    rising_rows,
-)
+from grashof.problems.values.checks import Rows, as_rows, bounded, from_zero, pair, refuse_open, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields

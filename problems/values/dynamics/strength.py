@@ -8,7 +8,7 @@ from dataclasses import KW_ONLY, dataclass
 from typing import ClassVar, TypeAlias
 
 from grashof.problems.values.checks import GREATEST, LEAST, one_or_each, size_number, true_or_false
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.errors import ProblemError, listing
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
@@ -148,16 +148,13 @@ def _check_shape(names: Sequence[str]) -> None:
     rectangle = [name for name in names if name in _RECTANGLE]
     other = [name for name in names if name not in _RECTANGLE]
     if not names:
-        raise ProblemError(
-            "section is empty; it must have width and height, or area, inertia and extreme_fibre"
-        )
+        raise ProblemError(f"section is empty; it must have {SHAPES}")
     if rectangle and other:
         raise ProblemError(f"section.{other[0]} does not go with {rectangle[0]}; give one shape or the other")
     needed = _RECTANGLE if rectangle else _ANY_SHAPE
     for name in needed:
         if name not in names:
-            together = " and ".join((", ".join(needed[:-1]), needed[-1]))
-            raise ProblemError(f"section.{name} is missing; {together} are needed together")
+            raise ProblemError(f"section.{name} is missing; {listing(needed, 'and')} are needed together")
 
 
 def _checked(name: str, value: OneOrEach) -> OneOrEach:

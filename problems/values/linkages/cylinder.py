@@ -99,7 +99,7 @@ class Cylinder:
     link: int = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.on not in CARRIERS:
+        if self.on not in list(CARRIERS):  # a file may state a list
             raise wrong_value("cylinder.on", self.on, f"one of {', '.join(CARRIERS)}")
         check_fields(self, "cylinder.", base=pair, point=pair)
         set_fields(self, link=CARRIERS[self.on])

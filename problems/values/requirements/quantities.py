@@ -18,13 +18,7 @@ from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import (
-    DIMENSIONS,
-    LENGTHS,
-    PARAMETERS,
-    SLIDER_CRANK,
-    having,
-)
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, LENGTHS, PARAMETERS, SLIDER_CRANK, having
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import set_fields

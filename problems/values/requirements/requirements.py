@@ -220,15 +220,7 @@ class Requirements(ReadOnly):
         Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES), 1.0, 1e6
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity(
-            "mechanical_advantage",
-            _ADVANTAGE,
-            Unit.RATIO,
-            Scope.TASK,
-            +1,
-            listed=False,
-            kinds=TURNING,
-        ),
+        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Scope.TASK, +1, listed=False, kinds=TURNING),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )

@@ -16,12 +16,7 @@ from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import (
-    FOUR_BAR,
-    freedoms,
-    mechanisms,
-    not_had,
-)
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, freedoms, mechanisms, not_had
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, Limits, frozen_array
-from grashof.problems.values.checks import (
-    finite_number,
-    hint,
-    limits,
-    number_within,
-    positive_number,
-)
+from grashof.problems.values.checks import finite_number, hint, limits, number_within, positive_number
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.value_bases import ReadOnly, set_fields
 

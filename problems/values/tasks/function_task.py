@@ -12,11 +12,7 @@ import numpy.typing as npt
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
-from grashof.problems.values.tasks.function_law import (
-    FunctionLaw,
-    chebyshev_spacing,
-    lobatto_with_weights,
-)
+from grashof.problems.values.tasks.function_law import FunctionLaw, chebyshev_spacing, lobatto_with_weights
 from grashof.problems.values.tasks.target_checks import deg_text
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields

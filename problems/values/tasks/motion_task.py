@@ -117,9 +117,7 @@ class MotionTask(Task):
         size = checks.task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
         if angle_length is not None:
-            if checks.finite_number(angle_length, "motion.angle_length") <= 0:
-                raise ProblemError(f"motion.angle_length is {angle_length:g}; it must be greater than zero")
-            checks.number_within(angle_length, checks.LEAST, checks.GREATEST, "motion.angle_length")
+            checks.size_number(angle_length, "motion.angle_length")
         if size == 0 and angle_length is None:
             raise ProblemError(
                 "motion.angle_length is missing: poses at a single place have no size to take it from"

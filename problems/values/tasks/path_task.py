@@ -11,12 +11,7 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size, true_or_false
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.tasks.target_checks import (
-    LEAST_ZONE,
-    driver_timing,
-    finite_angles,
-    zone_sizes,
-)
+from grashof.problems.values.tasks.target_checks import LEAST_ZONE, driver_timing, finite_angles, zone_sizes
 from grashof.problems.values.tasks.task import Task, some_columns
 from grashof.problems.values.value_bases import set_fields
 

@@ -41,6 +41,25 @@ class Task(ReadOnly, ABC):
     timing: FloatArray | None
     closed: bool
     within: FloatArray | None
+    # What a task need not state, with the value that it then has.
+    #: Outline carried, in the body's frame, shape (M, 2), length.
+    body: FloatArray | None = None
+    #: How far each angle may be missed, shape (N,), rad.
+    angle_within: FloatArray | None = None
+    #: Whether the output is the travel of a slide.
+    travels: bool = False
+    #: Whether the opposite output is accepted, too: "given" or "either".
+    sense: str = "given"
+    #: The error to minimise where outputs are not met exactly: "rms" or "max".
+    norm: str = "rms"
+    #: The law of the outputs; without one the cubic spline through them is wanted.
+    law: FunctionLaw | None = None
+    #: Swing of link 4 between its limit positions, rad.
+    swing: float | None = None
+    #: Stroke of a slide between its limit positions, length.
+    stroke: float | None = None
+    #: Time of the slow stroke over that of the quick one; NaN where free.
+    time_ratio: float = np.nan
 
     @property
     @abstractmethod
@@ -71,16 +90,6 @@ class Task(ReadOnly, ABC):
     def angle_length(self) -> float:
         """Length that one radian of orientation error counts as."""
         return span(self.positions)
-
-    @property
-    def body(self) -> FloatArray | None:
-        """Outline carried, in the body's frame, shape (M, 2), length."""
-        return None
-
-    @property
-    def angle_within(self) -> FloatArray | None:
-        """How far each angle may be missed, shape (N,), rad."""
-        return None
 
     @property
     def size(self) -> float:
@@ -214,41 +223,6 @@ class Task(ReadOnly, ABC):
 
     def __len__(self) -> int:
         return len(self.positions)
-
-    @property
-    def travels(self) -> bool:
-        """Whether the output is the travel of a slide."""
-        return False
-
-    @property
-    def sense(self) -> str:
-        """Whether the opposite output is accepted, too: "given" or "either"."""
-        return "given"
-
-    @property
-    def norm(self) -> str:
-        """The error to minimise where outputs are not met exactly: "rms" or "max"."""
-        return "rms"
-
-    @property
-    def law(self) -> FunctionLaw | None:
-        """The law of the outputs; without one the cubic spline through them is wanted."""
-        return None
-
-    @property
-    def swing(self) -> float | None:
-        """Swing of link 4 between its limit positions, rad; None unless the task states it."""
-        return None
-
-    @property
-    def stroke(self) -> float | None:
-        """Stroke of a slide between its limit positions, length; None unless the task states it."""
-        return None
-
-    @property
-    def time_ratio(self) -> float:
-        """Time of the slow stroke over that of the quick one; NaN where free."""
-        return float("nan")
 
     @property
     def at_limits(self) -> bool:

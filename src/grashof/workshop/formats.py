@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from grashof.problems.files.dxf_lines import ezdxf_installed
+from grashof.problems.files.on_disk import installed
 from grashof.problems.values.arrays import FloatArray
 from grashof.workshop.sheet import CUT, ENGRAVE, NOTES, PINS, Circle, Outline, Sheet, Text
 
@@ -30,7 +30,7 @@ def dxf(drawing: Sheet) -> str:
 
     The same text each time, without time or random identifier; ProblemError where ezdxf is not installed.
     """
-    ezdxf = ezdxf_installed()
+    ezdxf = installed("ezdxf", "DXF needs")
     with _without_times(ezdxf):
         document = ezdxf.new("R2010", units=ezdxf.units.MM)
         for index, name in enumerate(drawing.layers):

@@ -102,7 +102,7 @@ def test_a_plain_file_and_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         (PLAIN.replace("r2 = 1", "r2 = -1"), "r2 is -1.0; it must be greater than zero"),
         (PLAIN.replace("r2 = 1\n", ""), "r2 is missing"),
         (PLAIN.replace("o4 = [4, 0]\n", ""), "o4 is missing; give it, or r1"),
-        (PLAIN.replace("o4 = [4, 0]", "r1 = 0"), "r1 is 0; it must be greater than zero"),
+        (PLAIN.replace("o4 = [4, 0]", "r1 = 0"), "r1 is 0; it must be a number greater than zero"),
         (PLAIN.replace("[4, 0]", "[0, 0]"), "o4 is where o2 is"),
         (PLAIN.replace("[4, 0]", "[4, 0, 0]"), "it must be [x, y]"),
         (PLAIN.replace("[4, 0]", "[1e300, 0]"), "o4 is 1e+300; it must be from -1e+20 to 1e+20"),
@@ -265,7 +265,7 @@ def test_all_errors_are_reported_a_line_each(tmp_path: Path) -> None:
             "r2 is -1.0; it must be greater than zero",
             "r3 is 0.0; it must be greater than zero",
             "r4 is 'x'; it must be a number",
-            "output_arm is -1; it must be greater than zero",
+            "output_arm is -1; it must be a number greater than zero",
             "coupler is unknown; did you mean coupler_point?",
         )
     ]

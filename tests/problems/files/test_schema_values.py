@@ -10,7 +10,7 @@ WRONG = {
     "motion": [
         ("angle_length = '1'", " is '1'; it must be a number"),
         ("body = 5", " is 5; it must be a list of corners [x, y], or a .dxf or .svg file"),
-        ("angle_length = 0", " is 0; it must be greater than zero"),
+        ("angle_length = 0", " is 0; it must be a number greater than zero"),
         ("angle_length = 1e300", " is 1e+300; it must be from 1e-20 to 1e+20"),
         ("body = [[0, 0], [1, 1e21]]", "[1] is [1.0, 1e+21]; its numbers must be at most 1e+20"),
         ("weights = [1, 1, 1, 'heavy']", "[3] is 'heavy'; it must be a number"),
@@ -200,7 +200,7 @@ def test_all_errors_are_reported_a_line_each() -> None:
         "motion.poses[2].angel is unknown; did you mean angle?",
         "motion.poses[3] is [1, 2, nan]; all numbers must be finite",
         "motion.weights[1] is 0.0; it must be a number from 1e-09 to 1e+09",
-        "motion.angle_length is -1; it must be greater than zero",
+        "motion.angle_length is -1; it must be a number greater than zero",
         "motion.body has 1 corner; it must have two or more",
         "scene.outlines[0] has 1 corner; it must have two or more",
         "scene.outlines[2][1] is [1.0, inf]; all numbers must be finite",

@@ -9,12 +9,7 @@ from typing import Any
 import pytest
 from refusals import refusal, rows
 
-from grashof.problems import (
-    DynamicsSpec,
-    Manufacturing,
-    ProblemError,
-    load,
-)
+from grashof.problems import DynamicsSpec, Manufacturing, ProblemError, load
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.values.dynamics.dynamics_spec import metres
 

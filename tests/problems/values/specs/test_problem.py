@@ -4,15 +4,7 @@ from typing import Any
 
 import pytest
 
-from grashof.problems import (
-    FourBar,
-    LinkageSpec,
-    MotionTask,
-    PathTask,
-    Problem,
-    ProblemError,
-    Search,
-)
+from grashof.problems import FourBar, LinkageSpec, MotionTask, PathTask, Problem, ProblemError, Search
 from grashof.problems.values.specs import problem
 
 TASK = MotionTask.from_degrees([[0, 0, 0], [3, 4, 90]])
