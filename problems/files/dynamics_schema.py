@@ -11,7 +11,7 @@ from pydantic import Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.spreadsheet import Names, number_table
 from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spec_table
-from grashof.problems.values.checks import located, refuse
+from grashof.problems.values.checks import located_in, refuse
 from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
@@ -178,10 +178,9 @@ def _rows(name: str, info: ValidationInfo, kinds: Sequence[Sequence[Names]]) -> 
     folder = (info.context or {}).get("folder")
     if folder is None:
         raise ProblemError(f"{info.field_name} is the file {name}; here it must be values instead")
-    try:
-        return number_table(Path(folder) / name, kinds)
-    except ProblemError as error:
-        raise located(error, str(info.field_name)) from None
+    path = Path(folder) / name
+    with located_in(str(info.field_name)):
+        return number_table(path, str(path), kinds)
 
 
 # More would take minutes to analyse; a load with a table of values counts once.

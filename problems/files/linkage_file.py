@@ -137,10 +137,8 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> Linkag
     document = document_of(text, file_name)
     if "kind" in document:
         raise ProblemError(_problem_given(file_name, name))
-    try:
+    with checks.located_in(file_name):
         return linkage_from(document, name, folder)
-    except ProblemError as error:
-        raise checks.located(error, file_name) from None
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:

@@ -10,13 +10,12 @@ import numpy as np
 
 from grashof.problems.files.dxf_lines import dxf_drawing
 from grashof.problems.files.on_disk import file_bytes
-from grashof.problems.files.spreadsheet import number_rows, numbers_wanted, rows_of
+from grashof.problems.files.spreadsheet import Names, number_table
 from grashof.problems.files.svg_lines import svg_drawing
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import bounded, each_checked, located_in, noted, refuse
+from grashof.problems.values.checks import each_checked, located_in, noted, refuse
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError, shown
-from grashof.problems.values.specs.problem import MOST_TARGETS
 
 TABLES, DRAWINGS = (".csv", ".xlsx"), (".dxf", ".svg")
 _ENDS_MEET = 1e-6  # share of a drawing's size within which two ends are one place
@@ -76,7 +75,7 @@ def _lines(name: str, folder: Path, length_unit: str) -> tuple[list[FloatArray],
 
 
 Read = Callable[[str, Path, str], dict[str, Any]]  # from a name, its folder and the length unit to keys
-_ANGLES = ("angle_deg", "angle")
+_X, _Y, _ANGLE = ("x",), ("y",), ("angle", "angle_deg")
 _TIMING = "timing_deg"
 
 
@@ -86,56 +85,39 @@ def poses_of(name: str, folder: Path) -> dict[str, Any]:
     The columns are x, y and angle_deg; empty cells leave parts of a pose free. `ProblemError` where there are
     others, or cells that are not numbers, a line each.
     """
-    rows, timing = _table(name, folder, ("x", "y", "angle_deg"))
+    rows, timing = _table(name, folder, _X, _Y, _ANGLE)
     return {"poses": each_checked(rows, name, _pose, ": row {}", 1), **timing}
 
 
 def points_of(name: str, folder: Path) -> dict[str, Any]:
     """Points from the columns x and y; else as `poses_of`, but that no cell may be empty."""
-    rows, timing = _table(name, folder, ("x", "y"))
+    rows, timing = _table(name, folder, _X, _Y)
     for number, row in enumerate(rows, start=1):
-        if None in row:
+        if np.isnan(row).any():
             raise ProblemError(f"{name}: row {number} has an empty cell; it must be numbers")
     return {"points": rows, **timing}
 
 
-def _pose(row: list[float | None], where: str) -> Any:
-    x, y, angle = row
-    if (x is None) != (y is None):
+def _pose(row: list[float], where: str) -> Any:
+    (x, y, angle), (no_x, no_y, no_angle) = row, np.isnan(row)
+    if no_x != no_y:
         raise ProblemError(f"{where} has one of x and y; it must have both or neither")
-    if x is None and angle is None:
+    if no_x and no_angle:
         raise ProblemError(f"{where} has neither a place nor an angle")
-    if angle is None:
+    if no_angle:
         return {"x": x, "y": y}
-    return {"angle": angle} if x is None else [x, y, angle]
+    return {"angle": angle} if no_x else [x, y, angle]
 
 
-def _table(
-    name: str, folder: Path, wanted: tuple[str, ...]
-) -> tuple[list[list[float | None]], dict[str, Any]]:
-    """The wanted columns of a file, None where a cell is empty, and its timing."""
-    lines = rows_of(name, folder)
-    given = [cell.casefold() for cell in lines[0]] if lines else []
-    columns = ["angle_deg" if cell in _ANGLES else cell for cell in given]
-    if columns not in ([*wanted], [*wanted, _TIMING]):
-        found = f"has the columns {shown(','.join(given))}" if given else "is empty"
-        raise ProblemError(
-            f"{name}: {found}; its first row must be {','.join(wanted)}, perhaps with {_TIMING}"
-        )
-    rows = number_rows(lines[1:], name, MOST_TARGETS, lambda line, where: _numbers(line, len(columns), where))
-    if len(columns) == len(wanted):
+def _table(name: str, folder: Path, *wanted: Names) -> tuple[list[list[float]], dict[str, Any]]:
+    """The wanted columns of a file, NaN where a cell is empty, and its timing."""
+    rows = number_table(folder / name, name, (wanted, (*wanted, (_TIMING,))), gaps=True)
+    if not rows or len(rows[0]) == len(wanted):
         return rows, {}
     timing = [row.pop() for row in rows]
-    if None in timing:
-        raise ProblemError(f"{name}: row {timing.index(None) + 1} has no {_TIMING}; all rows must have it")
+    for index in np.flatnonzero(np.isnan(timing)):
+        raise ProblemError(f"{name}: row {index + 1} has no {_TIMING}; all rows must have it")
     return rows, {_TIMING: timing}
-
-
-def _numbers(line: list[str], columns: int, where: str) -> list[float | None]:
-    if len(line) > columns and any(line[columns:]):
-        raise ProblemError(f"{where} has {len(line)} cells; it must have {columns}")
-    with numbers_wanted(line, where):
-        return [bounded(float(cell), where) if cell else None for cell in [*line, *[""] * columns][:columns]]
 
 
 def _body(name: str, folder: Path, unit: str) -> dict[str, Any]:

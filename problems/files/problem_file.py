@@ -6,8 +6,7 @@ import os
 from pathlib import Path
 
 from grashof.problems.files.on_disk import Catalogue, document_of
-from grashof.problems.values.checks import located
-from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.checks import located_in
 from grashof.problems.values.specs.problem import Problem
 
 _PROBLEMS = Catalogue("problem")
@@ -86,7 +85,5 @@ def problem_of(text: str, file_name: str, name: str, folder: Path | None = None)
     from grashof.problems.files.problem_schema import problem_from
 
     document = document_of(text, file_name)
-    try:
+    with located_in(file_name):
         return problem_from(document, name, folder)
-    except ProblemError as error:
-        raise located(error, file_name) from None

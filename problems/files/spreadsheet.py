@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+import math
+from collections.abc import Sequence
+from functools import partial
 from io import BytesIO, StringIO
 from itertools import islice
 from pathlib import Path
-from typing import TypeVar
 from zipfile import BadZipFile, ZipFile
 
 from grashof.problems.files.on_disk import MOST_BYTES, file_bytes, file_text, installed, read_by_others
@@ -74,50 +74,39 @@ def _sheet(path: Path, name: str) -> list[list[str]]:
 
 Names = tuple[str, ...]  # that a column may have
 _MOST_ROWS = 10_000
-Cell = TypeVar("Cell", float, float | None)
 
 
-def number_table(path: Path, kinds: Sequence[Sequence[Names]]) -> list[list[float]]:
-    """The rows of a CSV file whose first line names its columns.
+def number_table(
+    path: Path, where: str, kinds: Sequence[Sequence[Names]], *, gaps: bool = False
+) -> list[list[float]]:
+    """The rows of a table whose first line names its columns; with `gaps` NaN where a cell is empty.
 
-    `kinds` are the possible tables, each by the possible names of its columns. `ProblemError` where
-    it cannot be read, has other columns, or has cells that are not numbers, a line each.
+    `kinds` are the possible tables, each by the possible names of its columns. `ProblemError`, which begins
+    with `where`, for other columns, too many rows, or cells that are not numbers, a line each.
     """
     lines = rows_of(path.name, path.parent)
-    given = [name.strip().casefold() for name in lines[0]] if lines else []
+    given = [name.casefold() for name in lines[0]] if lines else []
     if not any(_named(given, kind) for kind in kinds):
         wanted = " or ".join(",".join(names[-1] for names in kind) for kind in kinds)
         found = f"has the columns {shown(','.join(given))}" if given else "is empty"
-        raise ProblemError(f"{path}: {found}; its first line must be {wanted}")
-    return number_rows(lines[1:], str(path), _MOST_ROWS, lambda line, where: _row(line, len(given), where))
-
-
-def number_rows(
-    lines: list[list[str]], where: str, most: int, row: Callable[[list[str], str], list[Cell]]
-) -> list[list[Cell]]:
-    """The rows of a table below its first line, each read with its place; `ProblemError` has a line a row."""
-    if len(lines) > most:
-        raise ProblemError(f"{where}: has {len(lines)} rows; it must have at most {most}")
-    return each_checked(lines, where, row, ": row {}", 1)
+        raise ProblemError(f"{where}: {found}; its first line must be {wanted}")
+    if len(lines) > _MOST_ROWS + 1:
+        raise ProblemError(f"{where}: has {len(lines) - 1} rows; it must have at most {_MOST_ROWS}")
+    row = partial(_row, columns=len(given), gaps=gaps)
+    return each_checked(lines[1:], where, row, ": row {}", 1)
 
 
 def _named(given: list[str], kind: Sequence[Names]) -> bool:
     return len(given) == len(kind) and all(name in names for name, names in zip(given, kind, strict=True))
 
 
-def _row(line: list[str], columns: int, where: str) -> list[float]:
+def _row(line: list[str], where: str, *, columns: int, gaps: bool) -> list[float]:
+    if gaps and not any(line[columns:]):
+        line = [*line, *[""] * columns][:columns]
     if len(line) != columns:
         raise ProblemError(f"{where} has {len(line)} cells; it must have {columns}")
-    with numbers_wanted(line, where):
-        return [bounded(float(cell), where) for cell in line]
-
-
-@contextmanager
-def numbers_wanted(line: list[str], where: str) -> Iterator[None]:
-    """`ProblemError` for a line whose cells, read inside, are not all numbers."""
     try:
-        yield
-    except ProblemError:
-        raise
+        numbers = [float(cell) if cell or not gaps else None for cell in line]
     except ValueError:
         raise ProblemError(f"{where} is {shown(','.join(line))}; it must be numbers") from None
+    return [math.nan if number is None else bounded(number, where) for number in numbers]

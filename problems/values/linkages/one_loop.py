@@ -107,8 +107,7 @@ class SliderCrank(Linkage):
     Raises
     ------
     ProblemError
-        A length that is not positive, an assembly other than +1 or -1, a number that is not
-        finite, or shapes that do not fit together.
+        Values that `FourBar` would refuse.
 
     Notes
     -----
@@ -181,8 +180,7 @@ class InvertedSliderCrank(Linkage):
     Raises
     ------
     ProblemError
-        A length that is not positive, an assembly other than +1 or -1, a number that is not
-        finite, or shapes that do not fit together.
+        Values that `FourBar` would refuse.
 
     Notes
     -----

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, get_type_hints
 
 import numpy as np
 
@@ -72,20 +72,6 @@ class Search:
         for name, least in (("starts", 1), ("enough", 1), ("seed", 0)):
             set_fields(self, **{name: checks.whole_number(getattr(self, name), least, f"search.{name}")})
         check_fields(self, "search.", effort=checks.within(*EFFORTS))
-
-
-_KINDS: dict[str, Any] = {
-    "task": Task,
-    "requirements": Requirements,
-    "objective": Objective,
-    "search": Search,
-    "name": str,
-    "title": str,
-    "source": str,
-    "length_unit": str,
-    "manufacturing": Manufacturing | None,
-    "driver": CylinderSpec | None,
-}
 
 
 def _named(kind: Any) -> str:
@@ -342,6 +328,8 @@ class Problem(ReadOnly):
         return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
+# Types of the fields; `outlines` and `mechanism` have checks of their own.
+_KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if not hasattr(kind, "__origin__")}
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
 # Test that a problem states the data for a need, and the error otherwise; other needs are always met.

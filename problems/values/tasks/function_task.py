@@ -129,6 +129,11 @@ class FunctionTask(Task):
         "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
     )  # fmt: skip
 
+    # A range is not a cycle, and its pairs have no zones: `structural_error_max_deg` limits the error.
+    closed = returns = False
+    within = None
+    angle_length = error_unit = 1.0  # errors are angles, or shares of the travel
+
     inputs: FloatArray
     outputs: FloatArray
     sense: str
@@ -280,15 +285,6 @@ class FunctionTask(Task):
         return self.inputs
 
     @property
-    def closed(self) -> bool:  # type: ignore[override]
-        """False: the task is a range, not a full turn."""
-        return False
-
-    @property
-    def within(self) -> None:  # type: ignore[override]
-        """Pairs have no zones; `structural_error_max_deg` limits the error."""
-
-    @property
     def positions(self) -> FloatArray:
         """Free, shape (N, 2)."""
         return np.full((len(self), 2), np.nan)
@@ -299,11 +295,6 @@ class FunctionTask(Task):
         if self.law is None or not self.fits_range:
             return np.ones(len(self))
         return lobatto_with_weights(len(self))[1]
-
-    @property
-    def angle_length(self) -> float:
-        """1: angles are not converted to lengths."""
-        return 1.0
 
     @property
     def size(self) -> float:
@@ -317,19 +308,9 @@ class FunctionTask(Task):
         """The unit of output errors: 1 rad, or the full travel."""
         return self.size if self.travels else 1.0
 
-    @property
-    def error_unit(self) -> float:
-        """Errors are angles, or shares of the travel."""
-        return 1.0
-
     def with_ground(self, length: float) -> FunctionTask:
         """The task with a usual length of the ground; a travel has a size of its own."""
         return self if self.travels or length == self.length else replace(self, length=length)
-
-    @property
-    def returns(self) -> bool:
-        """False: a range is not a cycle."""
-        return False
 
     def exact_for(self, freedoms: int) -> bool:
         """Whether every pair can be met: up to five, since the starts and three lengths are free.

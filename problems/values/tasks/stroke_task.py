@@ -55,6 +55,9 @@ class StrokeTask(Task):
     no_cylinder: ClassVar[str] = "whose driver turns all round"
     in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
 
+    returns = False  # the last target is the other limit position
+    exact_by_default = True  # swing or stroke and time ratio are met
+
     swing: float | None
     stroke: float | None
     time_ratio: float
@@ -118,16 +121,6 @@ class StrokeTask(Task):
     def limits_size(self) -> bool:
         """False for a slide, whose rod is better the longer it is, within limits."""
         return self.stroke is None
-
-    @property
-    def returns(self) -> bool:
-        """False: the last target is the other limit position."""
-        return False
-
-    @property
-    def exact_by_default(self) -> bool:
-        """Yes: swing or stroke and time ratio are met."""
-        return True
 
     @property
     def usual_margin(self) -> float:

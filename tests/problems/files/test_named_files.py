@@ -24,7 +24,7 @@ AREAS = (
     'kind = "path"\nlength_unit = "{}"\n[path]\npoints = [[0, 0], [1, 1], [2, 0]]\n'
     '[requirements]\nkeep_out = "{}"\n'
 )
-MISSED = "its first row must be x,y,angle_deg, perhaps with timing_deg"
+MISSED = "its first line must be x,y,angle_deg or x,y,angle_deg,timing_deg"
 
 
 def written(folder: Path, text: str, **files: str | bytes) -> Problem:
@@ -71,7 +71,7 @@ def test_a_sheet_of_a_workbook(tmp_path: Path) -> None:
         "task.toml: path.points: points.xlsx: has no sheet 'other'; it has Sheet, mine"
     ]
     assert (
-        "has the columns 'nothing'; its first row must be x,y"
+        "has the columns 'nothing'; its first line must be x,y"
         in refused(tmp_path, PATH.format("mm", "points.xlsx"))[0]
     )
 
