@@ -336,6 +336,20 @@ def no_formula(text: str) -> str:
     return _FORMULA.sub(r"\1'", text)
 
 
+def one_of(word: object, where: str, words: Iterable[str]) -> str:
+    """`word`, refused when it is not one of `words`."""
+    if word not in list(words):  # it may be unhashable
+        raise wrong_value(where, word, f"one of {', '.join(words)}")
+    return str(word)
+
+
+def some_of(given: Iterable[str], where: str, words: Iterable[str], wanted: str) -> tuple[str, ...]:
+    """Some of `words`, each once, refused when they are others or none; `wanted` describes the list."""
+    if isinstance(given, str) or not isinstance(given, Iterable) or not (listed := list(given)):
+        raise wrong_value(where, given, wanted)
+    return tuple(dict.fromkeys(one_of(word, f"{where}[{index}]", words) for index, word in enumerate(listed)))
+
+
 def plain_text(text: str, where: str) -> str:
     """`text`, refused where a terminal, SVG or HTML would stumble over it: control characters, half ones."""
     if not isinstance(text, str):

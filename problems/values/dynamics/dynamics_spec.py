@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -118,11 +119,13 @@ class DynamicsSpec(TableValue):
 
     def __post_init__(self) -> None:
         self._check_masses()
-        each = {"masses": _each, "inertias": _each}
-        check_fields(self, "dynamics.", mass_per_length=positive_bounded, density=positive_bounded, **each)
+        check_fields(self, "dynamics.", mass_per_length=positive_bounded, density=positive_bounded)
+        number = partial(_each, what="a number", check=from_zero)
+        check_fields(self, "dynamics.", masses=number, inertias=number)
         if self.masses and not any(self.masses):
             raise ProblemError("dynamics.masses are all zero; one at least has a mass")
-        check_fields(self, "dynamics.", centres=_places, payload=from_zero, speed_rpm=bounded, gravity=pair)
+        places = partial(_each, what="a place [u, v]", check=pair)
+        check_fields(self, "dynamics.", centres=places, payload=from_zero, speed_rpm=bounded, gravity=pair)
         for name, kind in _LISTS.items():
             entries = getattr(self, name)
             if not isinstance(entries, Sequence) or not all(isinstance(each, kind) for each in entries):
@@ -221,18 +224,10 @@ def metres(length_unit: str, needed_by: str = "dynamics") -> float:
     return METRES[length_unit]
 
 
-def _each(values: Sequence[float], where: str) -> tuple[float, ...]:
+def _each(values: Any, where: str, what: str, check: Callable[[Any, str], Any]) -> tuple[Any, ...]:
     if isinstance(values, str) or not isinstance(values, Iterable):
-        raise wrong_value(where, values, "a number for each moving link")
+        raise wrong_value(where, values, f"{what} for each moving link")
     given = tuple(values)
     if len(given) not in _MOVING:
         return given  # of no linkage: `misplaced` reports how many are needed
-    return tuple(from_zero(value, f"{where}[{index}]") for index, value in enumerate(given))
-
-
-def _places(values: Any, where: str) -> tuple[Pair, ...]:
-    if not isinstance(values, Sequence):
-        raise wrong_value(where, values, "a place [u, v] for each moving link")
-    if len(values) not in _MOVING:
-        return tuple(values)
-    return tuple((u, v) for u, v in (pair(value, f"{where}[{i}]") for i, value in enumerate(values)))
+    return tuple(check(value, f"{where}[{index}]") for index, value in enumerate(given))

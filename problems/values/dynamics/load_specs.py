@@ -7,11 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from numbers import Integral
 
 import numpy as np
 
-from grashof.problems.values.checks import Rows, as_rows, bounded, from_zero, pair, refuse_open, rising_rows
+from grashof.problems.values.checks import (
+    Rows,
+    as_rows,
+    bounded,
+    from_zero,
+    one_of,
+    pair,
+    refuse_open,
+    rising_rows,
+)
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
@@ -82,9 +92,7 @@ class LoadSpec(TableValue):
     frame: str = "global"
 
     def __post_init__(self) -> None:
-        check_fields(self, link=_link, at=pair)
-        if self.frame not in ("global", "link"):
-            raise wrong_value("frame", self.frame, "global or link")
+        check_fields(self, link=_link, at=pair, frame=partial(one_of, words=("global", "link")))
         given = [name for name in ("force", "moment", "values") if getattr(self, name) is not None]
         if len(given) != 1:
             what = " and ".join(given) or "nothing"

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import Rows, as_rows, bounded, positive_bounded, refuse_open, rising_rows
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.checks import (
+    Rows,
+    as_rows,
+    bounded,
+    one_of,
+    positive_bounded,
+    refuse_open,
+    rising_rows,
+)
+from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 CRANK, POSITION = "crank", "position"
@@ -56,8 +64,7 @@ class PumpingUnitSpec(TableValue):
 
     def __post_init__(self) -> None:
         for name, words in (("well", _SIDES), ("crank", _SENSES), ("over", tuple(_ROWS))):
-            if (given := getattr(self, name)) not in words:
-                raise wrong_value(name, given, " or ".join(words))
+            one_of(getattr(self, name), name, words)
         names = ("structural_unbalance", "counterbalance", "counterbalance_phase_deg", "rod_load")
         check_fields(self, **dict.fromkeys(names, bounded), rating=positive_bounded)
         if self.values is None:

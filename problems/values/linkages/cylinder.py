@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, ClassVar
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.box import Box
-from grashof.problems.values.checks import finite_number, limits, pair
+from grashof.problems.values.checks import finite_number, limits, one_of, pair, some_of
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
@@ -67,7 +67,9 @@ below 2: a rod is no longer than its cylinder
                 f"{_WHERE}.ratio_max is {ratio:.15g}; it must be above 1 and below 2: "
                 "a rod is no longer than its cylinder"
             )
-        set_fields(self, ratio_max=ratio, on=_carriers(self.on))
+        set_fields(self, ratio_max=ratio)
+        on = some_of(self.on, f"{_WHERE}.on", CARRIERS, f"a list of some of {', '.join(CARRIERS)}")
+        set_fields(self, on=tuple(sorted(on, key=list(CARRIERS).index)))
         if not isinstance(self.base, Box | None):
             raise wrong_value(f"{_WHERE}.base", self.base, "a Box")
 
@@ -99,9 +101,7 @@ class Cylinder:
     link: int = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.on not in list(CARRIERS):  # a file may state a list
-            raise wrong_value("cylinder.on", self.on, f"one of {', '.join(CARRIERS)}")
-        check_fields(self, "cylinder.", base=pair, point=pair)
+        check_fields(self, "cylinder.", on=partial(one_of, words=CARRIERS), base=pair, point=pair)
         set_fields(self, link=CARRIERS[self.on])
 
     @property
@@ -113,13 +113,3 @@ class Cylinder:
     def columns(self) -> dict[str, float]:
         """Its pivots by their columns in tables."""
         return dict(zip(self.COLUMNS, (*self.base, *self.point), strict=True))
-
-
-def _carriers(names: Sequence[str]) -> tuple[str, ...]:
-    where, known = f"{_WHERE}.on", ", ".join(CARRIERS)
-    if isinstance(names, str) or not isinstance(names, Iterable) or not (given := list(names)):
-        raise wrong_value(where, names, f"a list of some of {known}")
-    for index, name in enumerate(given):
-        if name not in CARRIERS:
-            raise wrong_value(f"{where}[{index}]", name, f"one of {known}")
-    return tuple(name for name in CARRIERS if name in given)

@@ -117,8 +117,7 @@ class Linkage(Displayed):
 
     def changed(self, **parameters: npt.ArrayLike) -> Self:
         """The linkage with other values of some of its parameters."""
-        stated = {row.name: getattr(self, row.name) for row in self.mechanism.parameters}
-        return type(self)(**(stated | self.choices | parameters))
+        return type(self)(**(self._arguments(self.parameters) | parameters))
 
     @classmethod
     def stacked(cls, linkages: Sequence[Self]) -> Self:
@@ -128,8 +127,12 @@ class Linkage(Displayed):
 
     def _with(self, parameters: Iterable[npt.ArrayLike]) -> Self:
         """A linkage of the same kind with other parameters, in their order."""
+        return type(self)(**self._arguments(parameters))
+
+    def _arguments(self, parameters: Iterable[npt.ArrayLike]) -> dict[str, Any]:
+        """The arguments of the constructor for parameters in their order."""
         names = (row.name for row in self.mechanism.parameters)
-        return type(self)(**dict(zip(names, parameters, strict=True)), **self.choices)
+        return dict(zip(names, parameters, strict=True)) | self.choices
 
     def __getitem__(self, index: Any) -> Self:
         index = index if isinstance(index, tuple) else (index,)
@@ -155,8 +158,7 @@ class Linkage(Displayed):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Through the constructor: arrays come out of a pickle writeable.
-        named = {row.name: getattr(self, row.name) for row in self.mechanism.parameters}
-        return _rebuilt, (type(self), named | self.choices)
+        return _rebuilt, (type(self), self._arguments(self.parameters))
 
 
 def by_kind(linkages: Sequence[Linkage]) -> list[list[int]]:

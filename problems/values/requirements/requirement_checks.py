@@ -27,9 +27,7 @@ def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str
     if limited.kind is Kind.BETWEEN:
         return checks.limits(value, where, least=low, most=high)
     if limited.kind is Kind.WORD:
-        if value not in limited.words:
-            raise wrong_value(where, value, f"one of {', '.join(limited.words)}")
-        return str(value)
+        return checks.one_of(value, where, limited.words)
     if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):
         low, high = checks.limits(cast(Limits, value), where, least=-checks.GREATEST)
         return low if low == high else (low, high)
@@ -50,17 +48,9 @@ def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
 
 def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
     """The parts that keep out of areas, each once."""
-    if isinstance(names, str) or not isinstance(names, Sequence) or not len(names):
-        raise wrong_value(where, names, KEPT_OUT)
-    for index, name in enumerate(names):
-        if name not in MAY_KEEP_OUT:
-            raise wrong_value(f"{where}[{index}]", name, f"one of {', '.join(MAY_KEEP_OUT)}")
-    return tuple(dict.fromkeys(names))
+    return checks.some_of(names, where, MAY_KEEP_OUT, KEPT_OUT)
 
 
 def word(kind: type[StrEnum], value: str, where: str) -> StrEnum:
     """A word as a member of its enumeration."""
-    try:
-        return kind(value)
-    except ValueError:
-        raise wrong_value(where, value, f"one of {', '.join(kind)}") from None
+    return kind(checks.one_of(value, where, kind))

@@ -160,8 +160,8 @@ class FunctionTask(Task):
             self,
             inputs=frozen_array(turned),
             outputs=frozen_array(output),
-            sense=_word(sense, SENSES, "function.sense"),
-            norm=_word(norm, NORMS, "function.norm"),
+            sense=checks.one_of(sense, "function.sense", SENSES),
+            norm=checks.one_of(norm, "function.norm", NORMS),
             law=law,
             length=checks.positive_number(length, "function.length"),
             travels=bool(travels),
@@ -331,13 +331,6 @@ def _either(key: str, angles: object, travel: object) -> bool:
         both = f"function.{key}_deg does not go with function.{key}"
         raise ProblemError(f"{both}; an output turns or slides, give one of them")
     return travel is not None
-
-
-def _word(value: str, words: tuple[str, ...], where: str) -> str:
-    if value in words:
-        return str(value)
-    meant = checks.near_miss(value, words) if isinstance(value, str) else None
-    raise wrong_value(where, value, " or ".join(words) + f" (did you mean {meant}?)" * bool(meant))
 
 
 def _refuse_beside(values: Mapping[str, object], why: str) -> None:

@@ -182,7 +182,7 @@ BAD = r"""
 <LOAD>moment = nan | loads[0].moment is nan; it must be a finite number
 <LOAD>moment = 1\nover = "time" | loads[0].over does not go with a constant load
 <LOAD>moment = 1\nat = [1, 0] | loads[0].at does not go with a moment
-<LOAD>force = [1, 2]\nframe = "links" | loads[0].frame is 'links'; it must be global or link
+<LOAD>force = [1, 2]\nframe = "links" | loads[0].frame is 'links'; it must be one of global, link
 <LOAD>values = [[0, 1], [1, 2]]\nover = "theta3" |
     loads[0].over is 'theta3'; it must be theta2, theta4, travel or time
 <LOAD>values = [[0, 1], [350, 1]] |

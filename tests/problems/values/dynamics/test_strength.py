@@ -56,8 +56,8 @@ TURNS = [[0, 9e3], [180, 2e4], [360, 9e3]]
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"well": "north"}, "well is 'north'; it must be right or left"),
-        ({"crank": "left"}, "crank is 'left'; it must be clockwise or counter-clockwise"),
+        ({"well": "north"}, "well is 'north'; it must be one of right, left"),
+        ({"crank": "left"}, "crank is 'left'; it must be one of clockwise, counter-clockwise"),
         ({"counterbalance": float("nan")}, "counterbalance is nan; it must be a finite number"),
         ({"rating": 0.0}, "rating is 0; it must be a number greater than zero"),
         ({"rod_load": 1e21}, "rod_load is 1e"),
@@ -65,7 +65,7 @@ TURNS = [[0, 9e3], [180, 2e4], [360, 9e3]]
         ({"values": TURNS, "rod_load": 1.0}, "rod_load is given besides values; give one of them"),
         ({"values": [[0, 1], [90, 1], [80, 2], [360, 1]]}, "values[2] has crank 80; it must rise"),
         ({"values": [[0, 1, 2], [2, 1, 2]], "over": "position"}, "values cover positions 0 to 2; they must"),
-        ({"values": TURNS, "over": "theta2"}, "over is 'theta2'; it must be crank or position"),
+        ({"values": TURNS, "over": "theta2"}, "over is 'theta2'; it must be one of crank, position"),
     ],
 )
 def test_bad_pumping_units(given: dict[str, Any], message: str) -> None:

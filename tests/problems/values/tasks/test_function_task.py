@@ -109,7 +109,7 @@ def test_rotatability_is_any_unless_it_is_stated() -> None:
         ({"input_deg": [0, 20, 30], "output_deg": [0, 0, 0]}, "function.output_deg does not move"),
         (
             {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2], "norm": "mx"},
-            "function.norm is 'mx'; it must be rms or max",
+            "function.norm is 'mx'; it must be one of rms, max",
         ),
         ({"law": "log", "x": (1, 2), **RANGES}, "function.law 'log' is unknown; did you mean log10?"),
         ({"law": "log10", "x": (-1, 2), **RANGES}, "function.law log10 has no value at x = -1"),
