@@ -159,7 +159,7 @@ def test_a_design_of_a_list_knows_its_problem(tmp_path: Path) -> None:
     assert (problem.name, problem.task.body is not None) == ("p", True)
 
 
-NOT_TEXT = "5 is not text; solve it again"
+NO_TEXT = "5 is not text; solve it again"
 
 
 @pytest.mark.parametrize(
@@ -168,7 +168,7 @@ NOT_TEXT = "5 is not text; solve it again"
         ("9.8", "kind = 3", "9.8, problem_toml: kind is 3; it must be a string"),
         ("9.8", 'kind = "six-bar"\nspeed = 3', "9.8, problem_toml: kind is 'six-bar'; it must be"),
         ("9.8", "[", "9.8, problem_toml: is not TOML"),
-        *((writer, 5, f"of unknown version, {NOT_TEXT}") for writer in ("9\n9" * 9, 5, "x" * 500, "\x1b[31m")),
+        *((writer, 5, f"of unknown version, {NO_TEXT}") for writer in ("9\n9" * 9, 5, "x" * 500, "\x1b[31m")),
     ],
 )  # fmt: skip
 def test_a_list_of_another_version_is_refused_in_one_line(

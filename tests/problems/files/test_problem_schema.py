@@ -73,7 +73,8 @@ effort = 2.5
 """
 
 # Limits that need masses, tolerances or a full turn.
-EVERY_LIMIT = f"""{MOTION}
+EVERY_LIMIT = f"""length_unit = "m"
+{MOTION}
 closed = true
 [requirements]
 size = [0, 9]
@@ -105,7 +106,8 @@ length_tolerance = 0.1
 """
 
 
-WITH_CYLINDER = f"""{MOTION}
+WITH_CYLINDER = f"""length_unit = "m"
+{MOTION}
 [driver]
 cylinder = {{ closed = [3, 9], ratio_max = 1.5, on = ["output", "driver"], base = {{ x = [0, 4] }} }}
 [requirements]
@@ -118,12 +120,8 @@ payload = 1
 
 def test_every_key_reaches_its_field() -> None:
     every = problem(EVERY_KEY)
-    assert (every.name, every.title, every.source, every.length_unit) == (
-        "test",
-        "Up and over",
-        "a report",
-        "cm",
-    )
+    words = (every.name, every.title, every.source, every.length_unit)
+    assert words == ("test", "Up and over", "a report", "cm")
     assert isinstance(every.task, MotionTask)
     assert every.task.positions.tolist() == [[5, 4], [3.5, 4], [2, 3], [1, 0]]
     np.testing.assert_allclose(np.degrees(every.task.angles), [0, -5, -5, 0], rtol=1e-15)
@@ -131,32 +129,9 @@ def test_every_key_reaches_its_field() -> None:
     assert every.task.body is not None
     assert every.task.body.tolist() == [[0, 0], [1, 0], [1, 1.5]]
     assert [outline.tolist() for outline in every.outlines] == [[[0, 0], [5, 0]], [[1, 1], [2, 2], [3, 1]]]
-    assert every.requirements == Requirements(
-        exact=False,
-        tolerance=1e-7,
-        error_factor=1.2,
-        rotatability="crank-rocker",  # type: ignore[arg-type]
-        rotatability_margin=0.01,
-        order=False,
-        same_branch=False,
-        transmission_min_deg=15,
-        transmission_over="cycle",  # type: ignore[arg-type]
-        link_length=(0.3, 8),
-        r1=(1, 2),
-        r2=(2, 3),
-        r3=(3, 4),
-        r4=(4, 5),
-        link_ratio_max=10,
-        coupler_arms=(0, 6),
-        o2=Box((-4, 10), (-7, 7)),
-        o4=Box((1, 1), (2, 2)),
-        a=Box(x=(-math.inf, 3)),
-        b=Box(y=(0, 5)),
-        ground_angle_deg=10,
-        theta2_start_deg=30,
-        keep_out=([[0, -9], [0, 0], [5, 0], [5, -9]], [[1, 1], [2, 1], [2, 2.5]]),  # type: ignore[arg-type]
-        keep_out_for=("o4", "links"),
-    )
+    boxes = {"o2": Box((-4, 10), (-7, 7)), "o4": Box((1, 1), (2, 2))}
+    boxes |= {"a": Box(x=(-math.inf, 3)), "b": Box(y=(0, 5))}
+    assert every.requirements == Requirements(**tomllib.loads(EVERY_KEY)["requirements"] | boxes)
     assert every.objective == Objective(2.0, 0.5)
     assert every.search == Search(starts=100, enough=20, seed=4, effort=2.5)
 
@@ -166,21 +141,18 @@ def test_the_examples_above_use_every_requirement() -> None:
     assert set(RequirementsTable.model_fields) == fields
     used: set[str] = set()
     driven, sliding = r"(torque_|joint_force).*\n", r"(offset|slide_angle_deg|stroke) .*\n"
-    in_metres = EVERY_LIMIT.replace("[motion]", 'length_unit = "m"\n[motion]')
-    of_all_kinds = EVERY_LIMIT.replace("[motion]", f'length_unit = "m"\nmechanism = {[*ONE_LOOP]}\n[motion]')
+    of_all_kinds = f"mechanism = {[*ONE_LOOP]}\n{EVERY_LIMIT}"
     for text in (
         EVERY_KEY,
-        re.sub(sliding, "", in_metres),
+        re.sub(sliding, "", EVERY_LIMIT),
         re.sub(driven, "", of_all_kinds),
-        WITH_CYLINDER.replace("[motion]", 'length_unit = "m"\n[motion]'),
+        WITH_CYLINDER,
     ):
         given, names = problem(text).requirements, set(tomllib.loads(text)["requirements"])
         assert [name for name in names if getattr(given, name) == getattr(Requirements(), name)] == []
         used |= names
-    function = {
-        f"structural_error_{key}" for key in ("max", "rms", "max_deg", "rms_deg")
-    }  # in test_function_files
-    assert used == fields - function
+    # Those of functions are in test_function_files.
+    assert used == {name for name in fields if not name.startswith("structural_error")}
 
 
 def test_absent_keys_have_the_defaults_of_the_value_types() -> None:
@@ -234,7 +206,7 @@ def test_poses_may_be_timed_and_closed() -> None:
 
 
 def test_a_cylinder_is_read_with_all_its_keys() -> None:
-    given = problem(WITH_CYLINDER.replace("[motion]", 'length_unit = "m"\n[motion]'))
+    given = problem(WITH_CYLINDER)
     wanted = CylinderSpec(closed=(3, 9), ratio_max=1.5, on=["driver", "output"], base=Box((0, 4)))
     assert given.driver == wanted
     assert given.requirements.rotatability is Rotatability.ANY

@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from linkages_of_rows import row_name
 from six_bar_examples import SIX_BARS
 
 from grashof.problems import FourBar, InvertedSliderCrank, ProblemError, SixBar, SliderCrank
@@ -26,7 +27,7 @@ def test_every_six_bar_has_an_example_that_pages_drawings_and_plates_are_tested_
     assert shown == {row.dyads for row in MECHANISMS if len(row.dyads) > 1}
 
 
-@pytest.mark.parametrize("row", MECHANISMS, ids=lambda row: f"{row.word}-{row.dyads[-1].hosts}")
+@pytest.mark.parametrize("row", MECHANISMS, ids=row_name)
 def test_links_joints_and_slides_close_as_many_loops_as_there_are_dyads(row: Mechanism) -> None:
     """Kutzbach: 3 (links - 1) - 2 (joints and slides) = 1 degree of freedom."""
     assert 3 * (len(row.links) - 1) - 2 * (len(row.joints) + len(row.slides)) == 1
