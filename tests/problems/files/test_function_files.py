@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from refusals import message, rows
 
-from grashof.problems import FunctionTask, ProblemError
+from grashof.problems import FunctionTask
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 
@@ -98,14 +98,3 @@ mechanism = ["four-bar", "slider-crank"]\n<PAIRS> |
 @pytest.mark.parametrize(("text", "said"), rows(BAD, **TEXTS))
 def test_bad_files_get_lines(text: str, said: str) -> None:
     assert message(f'kind = "function"\n{text}') == said
-
-
-def test_the_table_of_another_task_does_not_belong() -> None:
-    text = f'kind = "function"\n{TEXTS["PAIRS"]}[path]\npoints = [[0, 0]]'
-    assert 'path does not belong to kind = "function"' in message(text)
-
-
-def test_a_path_has_no_structural_error() -> None:
-    document = {"kind": "path", "path": {"points": [[0, 0], [1, 0], [2, 1]]}}
-    with pytest.raises(ProblemError, match=r"path states no output; kind = \"function\" does"):
-        problem_from({**document, "requirements": {"structural_error_max_deg": [0, 1]}}, "a")

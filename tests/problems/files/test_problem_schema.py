@@ -190,13 +190,7 @@ def test_the_torque_as_an_objective_needs_masses_and_a_motion() -> None:
         problem_from(tomllib.loads(text), "test")
 
 
-def test_poses_may_be_timed_and_closed() -> None:
-    task = problem(MOTION + "timing_deg = [0, 20, 45.5, 90]\nclosed = true\n").task
-    assert task.timing is not None
-    assert task.timing.tolist() == np.radians([0, 20, 45.5, 90]).tolist()
-    assert task.closed
-    plain = problem(MOTION).task
-    assert (plain.timing, plain.closed) == (None, False)
+def test_errors_of_timing_zones_and_closed_are_reported_together() -> None:
     wrong = MOTION + "timing_deg = [0, 20, 10, 90]\nclosed = 1\nwithin = [-1, 1, 1, 1]\n"
     assert message(wrong).splitlines() == [
         "motion.within[0] is -1; it must be from 3e-12 to 1e+20",

@@ -1,28 +1,12 @@
 """Paths, zones, areas kept out and strokes in problem files: read, refused, written."""
 
 import tomllib
-from typing import Any
 
-import numpy as np
 import pytest
-from refusals import MOTION, PATH, POSES, message, problem, refusal, rows
+from refusals import MOTION, PATH, POSES, message, rows
 
-from grashof.problems import MotionTask, PathTask, Problem, ProblemError, StrokeTask
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-
-
-def test_every_key_of_a_path_reaches_its_field() -> None:
-    task = problem(PATH + "timing_deg = [0, -20, -45.5]\nclosed = true\n").task
-    assert isinstance(task, PathTask)
-    assert task.points.tolist() == [[20, 20], [20, 25], [21, 30]]
-    assert task.timing is not None
-    assert task.timing.tolist() == np.radians([0, -20, -45.5]).tolist()
-    assert task.closed
-    plain = problem(PATH).task
-    assert isinstance(plain, PathTask)
-    assert (plain.timing, plain.closed) == (None, False)
-
 
 PATHS = r"""
 <PATH>poses = 3 | path.poses is unknown; did you mean motion.poses?
@@ -39,11 +23,30 @@ kind = "path"\n[path]\npoints = 5 |
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4, 5], [6, 7]] |
     path.points[1] is [3.0, 4.0, 5.0], 3 numbers; it must be a point [x, y]
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4]] | path.points has 2 points; it must have three or more
+kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3] |
+    path.points has 2 points; it must have three or more\n
+    path.within[2] is -3; it must be from 2e-12 to 1e+20
+<PATH>[requirements]\nstructural_error_max_deg = [0, 1] |
+    path states no output; kind = "function" does; requirements.structural_error_max_deg needs it
+<PATH>[stroke]\nswing_deg = 80\ntime_ratio = 1.1 | stroke does not belong to kind = "path"
+kind = "stroke" | stroke is missing
+<STROKE>time_ratio = 1.1\n[path]\npoints = [[0, 0], [1, 1], [2, 0]] | path does not belong to kind = "stroke"
+<STROKE> | stroke.time_ratio is missing
+kind = "stroke"\n[stroke]\nstroke = 100\ntime_ratio = 1.2 |
+    stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg
+kind = "stroke"\n[stroke]\nswing_deg = 'wide'\ntime_ratio = 1.2 |
+    stroke.swing_deg is 'wide'; it must be a number
+kind = "stroke"\n[stroke]\nswing_deg = 200\ntime_ratio = 0.5 |
+    stroke.swing_deg is 200; it must be from 0.0573 to less than 180, as a rocker swings\n
+    stroke.time_ratio is 0.5; it must be at least 1, the slow stroke over the quick one
 """
+STROKE = 'kind = "stroke"\n[stroke]\nswing_deg = 80\n'
 
 
-@pytest.mark.parametrize(("text", "expected"), rows(PATHS, MOTION=MOTION, PATH=PATH, POSES=POSES))
-def test_bad_paths(text: str, expected: str) -> None:
+@pytest.mark.parametrize(
+    ("text", "expected"), rows(PATHS, MOTION=MOTION, PATH=PATH, POSES=POSES, STROKE=STROKE)
+)
+def test_bad_paths_and_strokes(text: str, expected: str) -> None:
     assert message(text) == expected
 
 
@@ -70,22 +73,6 @@ KEEP_OUT = r"""
 @pytest.mark.parametrize(("text", "said"), rows(KEEP_OUT))
 def test_bad_areas_are_named(text: str, said: str) -> None:
     assert message(MOTION + f"[requirements]\nkeep_out = {text}") == said
-
-
-ZONES = MOTION + "within = [1, 2, 3, 4]\n"
-
-
-def test_zones_reach_their_fields() -> None:
-    motion = problem(ZONES + "angle_within_deg = 1.5\n[objective]\nmaximise = 'compactness'").task
-    assert isinstance(motion, MotionTask)
-    assert motion.within is not None
-    assert motion.angle_within is not None
-    assert motion.within.tolist() == [1, 2, 3, 4]
-    assert motion.angle_within.tolist() == [np.radians(1.5)] * 4
-    path = problem(PATH + "within = 2").task
-    assert isinstance(path, PathTask)
-    assert path.within is not None
-    assert path.within.tolist() == [2, 2, 2]
 
 
 NUMBER_OR_LIST = "it must be a number, or a list of one for each target"
@@ -118,54 +105,10 @@ def test_bad_zones_are_one_line(text: str, said: str) -> None:
     assert "\n" not in found
 
 
-def test_zones_of_a_path_are_reported_with_other_errors() -> None:
-    found = message('kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3]\n').splitlines()
-    assert found[0] == "path.points has 2 points; it must have three or more"
-    assert found[1].startswith("path.within[2] is -3; it must be ")
-
-
-def stated(**stroke: Any) -> Problem:
-    return problem_from({"kind": "stroke", "stroke": stroke}, "wiper")
-
-
-def test_a_stroke_is_read() -> None:
-    task = stated(swing_deg=80, time_ratio=1.25).task
-    assert isinstance(task, StrokeTask)
-    assert (round(task.swing, 6), task.time_ratio) == (1.396263, 1.25)
-
-
-@pytest.mark.parametrize(
-    ("stroke", "messages"),
-    [
-        ({"swing_deg": 200, "time_ratio": 0.5}, ["stroke.swing_deg is 200; ", "stroke.time_ratio is 0.5; "]),
-        ({"swing_deg": 80}, ["stroke.time_ratio is missing"]),
-        ({"stroke": 100, "time_ratio": 1.2}, ["stroke.stroke is of a slide; a four-bar has a swing"]),
-        ({"swing_deg": "wide", "time_ratio": 1.2}, ["stroke.swing_deg is 'wide'; it must be a number"]),
-    ],
-)
-def test_each_error_is_a_line(stroke: dict[str, Any], messages: list[str]) -> None:
-    lines = refusal(stated, **stroke).splitlines()
-    assert len(lines) == len(messages)
-    assert all(
-        line.lower().startswith(message.lower()) for line, message in zip(lines, messages, strict=True)
-    )
-
-
-def test_other_tables_do_not_belong() -> None:
-    path = {"points": [[0, 0], [1, 1], [2, 0]]}
-    for document in (
-        {"kind": "stroke", "stroke": {"swing_deg": 80, "time_ratio": 1.1}, "path": path},
-        {"kind": "path", "path": path, "stroke": {"swing_deg": 80, "time_ratio": 1.1}},
-    ):
-        with pytest.raises(ProblemError, match=r'^(path|stroke) does not belong to kind = "(stroke|path)"$'):
-            problem_from(document, "both")
-    with pytest.raises(ProblemError, match=r"^stroke is missing$"):
-        problem_from({"kind": "stroke"}, "none")
-
-
 @pytest.mark.parametrize("swing", [0.1 + 0.2, 179.99])
 def test_written_and_read_again_it_is_the_same(swing: float) -> None:
-    text = problem_toml(stated(swing_deg=swing, time_ratio=1.0))
+    stated = problem_from({"kind": "stroke", "stroke": {"swing_deg": swing, "time_ratio": 1.0}}, "wiper")
+    text = problem_toml(stated)
     document = tomllib.loads(text)
     assert document["stroke"] == {"swing_deg": swing, "time_ratio": 1.0}
     assert problem_toml(problem_from(document, "wiper")) == text

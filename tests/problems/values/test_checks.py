@@ -101,10 +101,6 @@ def test_near_miss(word: str, expected: str | None) -> None:
     assert checks.near_miss(word, ["luggage", "r1"]) == expected
 
 
-def test_counted() -> None:
-    assert [checks.counted(n, "pose") for n in (0, 1, 2)] == ["0 poses", "1 pose", "2 poses"]
-
-
 @pytest.mark.parametrize("character", ["\x00", "\x9b", "\ud800", "\uffff"])
 def test_control_characters_are_refused_or_replaced(character: str) -> None:
     with pytest.raises(
