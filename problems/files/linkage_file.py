@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -143,59 +144,56 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> Linkag
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     """Design of a list that `grashof solve` wrote, and its entry in the list."""
-    from grashof.problems.files.linkage_schema import as_document, linkage_from
-
-    where = f"{path}#{which}"
-    if exists(str(path)) and not (path.is_file() or path.is_dir()):  # a pipe or a device may never end
-        raise ProblemError(f"{path}: is not an ordinary file; it must be a list of designs")
     try:
         content = json.loads(file_text(path, "a list of designs", most=MOST_BYTES_MADE))
         designs = {_rank(design["rank"]): design for design in content["designs"]}
         ranks = {
             str(name): rank for rank, design in designs.items() for name in (rank, design.get("id", rank))
         }
-        heading, unit = content["title"] or content["problem"], content["length_unit"]
+        heading = {"title": content["title"] or content["problem"], "length_unit": content["length_unit"]}
     except ProblemError:
         raise
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         raise ProblemError(
             f"{path}: is not a list of designs; it must be a candidates.json of grashof solve"
         ) from None
-    if which not in ranks:
-        hint = f"name a rank, 1 to {max(designs)}, or the id of a design" if designs else "the list is empty"
-        raise ProblemError(f"{where}: has no design {which or '(none named)'}; {hint}")
-    rank = ranks[which]
-    design = designs[rank]
-    with checks.located_in(where):
-        kind = mechanism(design.get("mechanism", FOUR_BAR), among=WORDS)
+    with checks.located_in(f"{path}#{which}"):
+        if which not in ranks:
+            hint = (
+                f"name a rank, 1 to {max(designs)}, or the id of a design" if designs else "the list is empty"
+            )
+            raise ProblemError(f"has no design {which or '(none named)'}; {hint}")
+        design = designs[ranks[which]]
+        # JSON can spell values that no file can.
+        heading = {key: checks.readable(x) if isinstance(x, str) else x for key, x in heading.items()}
+        spec, direction = _design(design, heading | {"dynamics": content.get("dynamics", {})}, path)
+    problem = _listed_problem(content, path)
+    dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
+    with checks.located_in(f"{path}#{which}"):
+        return replace(spec, dynamics=dynamics, problem=problem), design
+
+
+def _design(design: dict[str, Any], document: dict[str, Any], path: Path) -> tuple[LinkageSpec, int]:
+    """The linkage of an entry of a list, and the sense of its driver."""
+    from grashof.problems.files.linkage_schema import as_document, linkage_from
+
+    kind = mechanism(design.get("mechanism", FOUR_BAR), among=WORDS)
     keys = _names(kind, design.get("linkage"))
     try:
         stated = {key: design["linkage"][key] for key in keys}
         turned = {key: stated.pop(key) for key, angle in keys.items() if angle}
         direction = design["direction"]
     except (KeyError, TypeError):
-        raise ProblemError(
-            f"{where}: states no linkage and direction; the keys are {', '.join(keys)}"
-        ) from None
-    # JSON can spell values that no file can.
-    heading, unit = (checks.readable(word) if isinstance(word, str) else word for word in (heading, unit))
-    document = {"title": heading, "length_unit": unit, "mechanism": kind, **as_document(stated)}
-    document["dynamics"] = content.get("dynamics", {})
-    with checks.located_in(where):
-        driven = _cylinder(design.get("cylinder"))
-        spec = linkage_from(document, checks.readable(f"{path.parent.name or path.stem}-{rank}"))
-        angles = {key: np.asarray(checks.finite_number(angle, key)) for key, angle in turned.items()}
-        linkage = spec.linkage.changed(**angles)
+        raise ProblemError(f"states no linkage and direction; the keys are {', '.join(keys)}") from None
+    cylinder = _cylinder(design.get("cylinder"))
+    name = checks.readable(f"{path.parent.name or path.stem}-{design['rank']}")
+    spec = linkage_from({**document, "mechanism": kind, **as_document(stated)}, name)
+    angles = {key: np.asarray(checks.finite_number(angle, key)) for key, angle in turned.items()}
     if direction not in (1, -1):
-        raise ProblemError(f"{where}: direction is {shown(direction)}; it must be +1 or -1")
-    problem = _listed_problem(content, path)
-    dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
-    title, source = f"{spec.title}: design {rank}", checks.readable(str(path))
-    with checks.located_in(where):
-        listed = LinkageSpec(
-            linkage, spec.name, title, source, unit, dynamics=dynamics, problem=problem, cylinder=driven
-        )
-    return listed, design
+        raise ProblemError(f"direction is {shown(direction)}; it must be +1 or -1")
+    title, source = f"{spec.title}: design {design['rank']}", checks.readable(str(path))
+    linkage = spec.linkage.changed(**angles)
+    return replace(spec, linkage=linkage, title=title, source=source, cylinder=cylinder), direction
 
 
 def _names(word: str, stated: Any) -> dict[str, bool]:

@@ -119,7 +119,7 @@ def test_a_pipe_or_device_in_place_of_the_record_is_not_read(tmp_path: Path, rec
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in folders")
 def test_a_pipe_in_place_of_a_list_is_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "candidates.json")
-    with pytest.raises(ProblemError, match=r"json: is not an ordinary file; it must be a list of designs"):
+    with pytest.raises(ProblemError, match=r"json: is not a plain file; it must be a list of designs"):
         load_linkage(f"{tmp_path / 'candidates.json'}#1")
 
 
