@@ -102,16 +102,8 @@ EXPECTED = DynamicsSpec(
 )
 
 
-def linkage(text: str, folder: Path | None = None) -> LinkageSpec:
-    return linkage_from(document_of(BARE + text, "mine.toml"), "mine", folder)
-
-
-def test_linkage_and_problem_files_state_the_same_and_come_back() -> None:
-    assert linkage(COMPLETE).dynamics == EXPECTED
-    problem = problem_of(PROBLEM + COMPLETE, "mine.toml", "mine")
-    again = problem_of(problem_toml(problem), "again.toml", "mine")
-    assert problem.dynamics == again.dynamics == EXPECTED
-    assert problem_toml(again) == problem_toml(problem)
+def linkage(text: str, folder: Path | None = None, head: str = BARE) -> LinkageSpec:
+    return linkage_from(document_of(head + text, "mine.toml"), "mine", folder)
 
 
 @pytest.mark.parametrize("head", ["theta2_deg,fx,fy", "over, fx, fy", "theta2,fx_N,fy_N"])
@@ -158,18 +150,30 @@ slide_force = 5
 """
 
 
-def test_linkage_and_problem_files_of_slider_cranks_state_the_same_and_come_back() -> None:
-    friction = load_specs.FrictionSpec(slide_mu=0.08, slide_length=60, slide_viscous=2, slide_force=5)
-    spec = linkage_from(document_of(ENGINE + OF_ENGINE, "mine"), "mine").dynamics
-    assert spec is not None
-    values = ((80, -4000, 0), (120, -900, 0), (160, -100, 0))
-    assert spec.loads == (load_specs.LoadSpec(4, values=values, over="travel"),)
-    assert spec.friction == friction
-    head = 'kind = "path"\nmechanism = "slider-crank"\nlength_unit = "mm"\n[path]\n'
-    text = head + "points = [[0, 0], [30, 10], [60, 0]]\n" + OF_ENGINE
-    problem = problem_of(text, "mine.toml", "mine")
-    assert problem.dynamics == spec
-    assert problem_of(problem_toml(problem), "mine.toml", "mine").dynamics == spec
+EXPECTED_OF_ENGINE = DynamicsSpec(
+    masses=(0.5, 0.8, 0.6),
+    inertias=(200, 900, 0),
+    centres=((0, 0), (40, 0), (0, 0)),
+    speed_rpm=3000,
+    loads=(load_specs.LoadSpec(4, values=((80, -4000, 0), (120, -900, 0), (160, -100, 0)), over="travel"),),
+    friction=load_specs.FrictionSpec(slide_mu=0.08, slide_length=60, slide_viscous=2, slide_force=5),
+)
+
+
+@pytest.mark.parametrize(
+    ("head", "text", "expected"),
+    [(BARE, COMPLETE, EXPECTED), (ENGINE, OF_ENGINE, EXPECTED_OF_ENGINE)],
+    ids=["four-bar", "engine"],
+)
+def test_linkage_and_problem_files_state_the_same_and_come_back(
+    head: str, text: str, expected: DynamicsSpec
+) -> None:
+    assert linkage(text, head=head).dynamics == expected
+    kind = 'mechanism = "slider-crank"\n' if head is ENGINE else ""
+    problem = problem_of(kind + PROBLEM + text, "mine.toml", "mine")
+    again = problem_of(problem_toml(problem), "again.toml", "mine")
+    assert problem.dynamics == again.dynamics == expected
+    assert problem_toml(again) == problem_toml(problem)
 
 
 LOAD = "[[loads]]\nlink = 4\n"

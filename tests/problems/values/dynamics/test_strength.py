@@ -50,30 +50,6 @@ def test_diameters_and_thicknesses() -> None:
     assert StrengthSpec(3e8, pin_diameter=1, pin_thickness=[1, 2, 3]).thicknesses(RECTANGLE) == (1, 2, 3)
 
 
-TURNS = [[0, 9e3], [180, 2e4], [360, 9e3]]
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"well": "north"}, "well is 'north'; it must be one of right, left"),
-        ({"crank": "left"}, "crank is 'left'; it must be one of clockwise, counter-clockwise"),
-        ({"counterbalance": float("nan")}, "counterbalance is nan; it must be a finite number"),
-        ({"rating": 0.0}, "rating is 0; it must be a number greater than zero"),
-        ({"rod_load": 1e21}, "rod_load is 1e"),
-        ({"over": "position"}, "over does not go with a constant load; it needs values"),
-        ({"values": TURNS, "rod_load": 1.0}, "rod_load is given besides values; give one of them"),
-        ({"values": [[0, 1], [90, 1], [80, 2], [360, 1]]}, "values[2] has crank 80; it must rise"),
-        ({"values": [[0, 1, 2], [2, 1, 2]], "over": "position"}, "values cover positions 0 to 2; they must"),
-        ({"values": TURNS, "over": "theta2"}, "over is 'theta2'; it must be one of crank, position"),
-    ],
-)
-def test_bad_pumping_units(given: dict[str, Any], message: str) -> None:
-    line = refusal(PumpingUnitSpec, **given)
-    assert message in line
-    assert "\n" not in line
-
-
 @pytest.mark.parametrize(
     "spec",
     [
@@ -82,7 +58,7 @@ def test_bad_pumping_units(given: dict[str, Any], message: str) -> None:
         SectionSpec(area=3, inertia=[1, 2, 3], extreme_fibre=1.0, inertia_across=4),
         StrengthSpec(235e6),
         StrengthSpec(235e6, 210e9, pin_diameter=[1, 2, 3, 4], pin_thickness=2, double_shear=True),
-        PumpingUnitSpec(well="left", rating=1e5, values=TURNS),
+        PumpingUnitSpec(well="left", rating=1e5, values=[[0, 9e3], [360, 9e3]]),
     ],
 )
 def test_stated_keys_give_the_same_value(spec: SectionSpec | StrengthSpec | PumpingUnitSpec) -> None:
@@ -129,18 +105,27 @@ yield_stress = 1\npin_thickness = 1 | strength.pin_diameter is missing; pin_thic
 yield_stress = 1\ndouble_shear = true | strength.pin_diameter is missing; double_shear is of no use without it
 yield_stress = 1\ndouble_shear = 2 | strength.double_shear is 2; it must be true or false
 """
+TURNING = "values = [[0, 9e3], [180, 2e4], [360, 9e3]]\n"
+BAD_UNITS = r"""
+well = 'north' | well is 'north'; it must be one of right, left
+crank = 'left' | crank is 'left'; it must be one of clockwise, counter-clockwise
+counterbalance = nan | counterbalance is nan; it must be a finite number
+rating = 0.0 | rating is 0; <MORE>
+rod_load = 1e21 | rod_load is 1e+21; it must be from -1e+20 to 1e+20
+over = "position" | over does not go with a constant load; it needs values
+<TURNING>rod_load = 1.0 | rod_load is given besides values; give one of them
+values = [[0, 1], [90, 1], [80, 2], [360, 1]] | values[2] has crank 80; it must rise from row to row
+values = [[0, 1, 2], [2, 1, 2]]\nover = "position" | values cover positions 0 to 2; they must cover 0 to 1
+<TURNING>over = "theta2" | over is 'theta2'; it must be one of crank, position
+"""
 BAD = [(SectionSpec, *row) for row in rows(BAD_SECTIONS, **TEXTS)]
 BAD += [(StrengthSpec, *row) for row in rows(BAD_STRENGTHS, **TEXTS)]
+BAD += [(PumpingUnitSpec, *row) for row in rows(BAD_UNITS, **TEXTS, TURNING=TURNING)]
 
 
 @pytest.mark.parametrize(("spec", "given", "expected"), BAD)
-def test_bad_sections_and_strengths(spec: Any, given: str, expected: str) -> None:
+def test_bad_sections_strengths_and_units(spec: Any, given: str, expected: str) -> None:
     assert refusal(spec, **tomllib.loads(given)) == expected
-
-
-def test_a_strength_is_a_number() -> None:
-    said = "strength.yield_stress is None; it must be a finite number"
-    assert refusal(StrengthSpec, yield_stress=None) == said
 
 
 def test_strength_needs_sections() -> None:
