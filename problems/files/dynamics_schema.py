@@ -11,15 +11,13 @@ from pydantic import Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.spreadsheet import Names, number_table
 from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spec_table
-from grashof.problems.values.checks import located_in, refuse
+from grashof.problems.values.checks import located_in
 from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
 from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.problems.values.specs.dynamics_of_kind import without_place
 
 _POINT = Annotated[list[float], listed("[u, v]")]
 _Kinds = Sequence[Sequence[Names]]
@@ -217,14 +215,12 @@ _Machine = create_model(
 class MachineTables(_Machine):  # type: ignore[misc, valid-type]
     """Tables that problem and linkage files have in common."""
 
-    def dynamics_spec(self, *kinds: Mechanism) -> DynamicsSpec | None:
-        """All of it as one value, for some kinds of linkages; None where nothing is stated."""
+    def dynamics_spec(self) -> DynamicsSpec | None:
+        """All of it as one value; None where nothing is stated."""
         names = [name for name in MachineTables.model_fields if getattr(self, name)]
         if not names:
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
-        spec = DynamicsSpec(
+        return DynamicsSpec(
             **own, **{name: _Nested.argument(getattr(self, name)) for name in names if name != "dynamics"}
         )
-        refuse([line for kind in kinds for line in without_place(spec, kind)])
-        return spec

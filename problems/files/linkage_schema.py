@@ -213,15 +213,14 @@ class LinkageTable(_Checked, MachineTables, _Heading):
 
     def value(self) -> Linkage:
         """The linkage itself, checked with its other values."""
-        kind = self._kind()
-        if (dynamics := self.dynamics_spec(kind)) is not None and dynamics.acts:
+        if (dynamics := self.dynamics_spec()) is not None and dynamics.acts:
             metres(self.length_unit)  # refuses one that is not known
         if self._given("pumping_unit") is not None:
             metres(self.length_unit, "pumping_unit")
-            if self._given("output_arm") is None:
-                raise ProblemError("output_arm is missing; pumping_unit needs that of the horsehead")
-        second: dict[str, Any] = {}
-        if (dyad := self._given("dyad")) is not None:
+        kind, second = self.one_loop, dict[str, Any]()
+        dyad: _DyadTable | None = self._given("dyad")
+        if dyad is not None:
+            kind = dyad.row(self.mechanism)
             second = dyad.value() | {"hosts": kind.dyads[1].hosts, "point_link": self._given("point_link")}
         first = [row for row in kind.parameters if row.name not in second]
         given = {row.name: _in_radians(row, getattr(self, row.key)) for row in first} | second
@@ -229,10 +228,6 @@ class LinkageTable(_Checked, MachineTables, _Heading):
         if "r1" in kind.lengths and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
         return linkage
-
-    def _kind(self) -> Mechanism:
-        dyad: _DyadTable | None = self._given("dyad")
-        return self.one_loop if dyad is None else dyad.row(self.mechanism)
 
     def _o4(self) -> list[float]:
         given: list[float] | None = self._given("o4")

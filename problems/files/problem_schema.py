@@ -21,7 +21,6 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
@@ -258,7 +257,7 @@ class ProblemFile(MachineTables, _Task):
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
             raise ProblemError(f"{self.kind} is missing")
-        if self.dynamics_spec(*(ONE_LOOP[word] for word in mechanisms(self.mechanism))) is not None:
+        if self.dynamics_spec() is not None:
             metres(self.length_unit)  # refuses one that is not known
         task: Task = mine.value()
         return task
