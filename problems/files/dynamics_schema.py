@@ -14,7 +14,7 @@ from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spe
 from grashof.problems.values.checks import located_in
 from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
-from grashof.problems.values.dynamics.motor import PROFILES, MotorSpec
+from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, PumpingUnitSpec
 from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.errors import ProblemError
@@ -32,7 +32,7 @@ _ROD_LOADS: dict[str, _Kinds] = {
     CRANK: ((("crank", "crank_deg"), ("load", "load_n")),),
     POSITION: ((("position",), ("up", "up_n"), ("down", "down_n")),),
 }
-_MOTION = (("time", "time_s"), ("angle", "angle_deg"))
+_MOTION: dict[str, _Kinds] = {"time": ((("time", "time_s"), ("angle", "angle_deg")),)}
 
 
 class _Nested(SpecTable):
@@ -46,23 +46,26 @@ class _Nested(SpecTable):
 
 
 class _FromFile(_Nested):
-    """A table whose `values` may be in a CSV file beside it; its columns depend on their variable."""
+    """A table whose `values` may be in a CSV file that a key names; its columns depend on their variable."""
 
     columns: ClassVar[Mapping[str, _Kinds]]
+    file_key: ClassVar[str] = "table"
 
     def given(self) -> dict[str, Any]:
         given = super().given()
-        if (rows := given.pop("table", None)) is not None:
+        if isinstance(given.get(self.file_key), tuple):  # the rows of the file
             if "values" in given:
-                raise ProblemError("table is given besides values; give one of them")
-            given["values"] = rows
+                raise ProblemError(f"{self.file_key} is given besides values; give one of them")
+            given["values"] = given.pop(self.file_key)
         return given
 
-    @field_validator("table", mode="after", check_fields=False)
+    @field_validator("table", "profile", mode="after", check_fields=False)
     @classmethod
-    def _read(cls, name: str | None, info: ValidationInfo) -> Any:
+    def _read(cls, name: Any, info: ValidationInfo) -> Any:
+        if not isinstance(name, str) or (info.field_name == "profile" and not name.endswith(".csv")):
+            return name
         usual = next(iter(cls.columns.values()))
-        return None if name is None else _rows(name, info, cls.columns.get(info.data.get("over", ""), usual))
+        return _rows(name, info, cls.columns.get(info.data.get("over", ""), usual))
 
 
 @keys_of(
@@ -117,7 +120,7 @@ class PumpingUnitTable(_FromFile):
         "values": Annotated[list[list[float]], listed("rows [time in s, angle in deg]")],
     },
 )
-class MotorTable(_Nested):
+class MotorTable(_FromFile):
     """The drive of link 2.
 
     Parameters
@@ -129,19 +132,8 @@ class MotorTable(_Nested):
         other; `speed_rpm` is the mean.
     """
 
-    def given(self) -> dict[str, Any]:
-        given = super().given()
-        if isinstance(given.get("profile"), tuple):
-            if "values" in given:
-                raise ProblemError("profile is a file and values are given besides; give one of them")
-            given["values"] = given.pop("profile")
-        return given
-
-    @field_validator("profile", mode="after", check_fields=False)
-    @classmethod
-    def _read(cls, profile: Any, info: ValidationInfo) -> Any:
-        is_file = isinstance(profile, str) and profile not in PROFILES and profile.endswith(".csv")
-        return _rows(profile, info, (_MOTION,)) if is_file else profile
+    columns = _MOTION
+    file_key = "profile"
 
 
 @keys_of(load_specs.Place, {"at": _POINT})

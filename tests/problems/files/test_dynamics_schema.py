@@ -127,6 +127,8 @@ def test_a_measured_profile_is_read(tmp_path: Path) -> None:
     assert spec.dynamics is not None
     assert spec.dynamics.motor == MotorSpec(values=((0, 0), (1, 20), (2, 90)))
     assert spec.dynamics.turn_time == 2
+    said = "motor.profile is given besides values; give one of them"
+    assert refusal(linkage, '[motor]\nprofile = "m.csv"\nvalues = [[0, 0], [1, 9]]', tmp_path) == said
 
 
 ENGINE = 'length_unit = "mm"\nmechanism = "slider-crank"\nr2 = 40\nr3 = 120\n'
