@@ -129,10 +129,11 @@ class FunctionTask(Task):
         "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
     )  # fmt: skip
 
-    # A range is not a cycle, and its pairs have no zones: `structural_error_max_deg` limits the error.
-    closed = returns = False
-    within = None
-    angle_length = error_unit = 1.0  # errors are angles, or shares of the travel
+    closed = False  #: The task is a range, not a full turn.
+    returns = False  #: A range is not a cycle.
+    within = None  #: Pairs have no zones; `structural_error_max_deg` limits the error.
+    angle_length = 1.0  #: Angles are not converted to lengths.
+    error_unit = 1.0  #: Errors are angles, or shares of the travel.
 
     inputs: FloatArray
     outputs: FloatArray

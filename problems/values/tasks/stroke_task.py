@@ -55,8 +55,8 @@ class StrokeTask(Task):
     no_cylinder: ClassVar[str] = "whose driver turns all round"
     in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
 
-    returns = False  # the last target is the other limit position
-    exact_by_default = True  # swing or stroke and time ratio are met
+    returns = False  #: The last target is the other limit position.
+    exact_by_default = True  #: Swing or stroke and time ratio are met.
 
     swing: float | None
     stroke: float | None
