@@ -40,7 +40,8 @@ def svg_drawing(content: bytes, group: str = "") -> tuple[list[FloatArray], floa
     svgelements = installed("svgelements", "SVG needs")
     with read_by_others("an SVG file"), np.errstate(all="ignore"):
         drawing = svgelements.SVG.parse(BytesIO(_plain(content)), reify=True)
-        shapes = _shapes(drawing.elements() if not group else _inside(drawing, group), svgelements)
+        drawn = _inside(drawing, group) if group else drawing.elements()
+        shapes = [each for each in drawn if isinstance(each, svgelements.Shape)]
         width = _WIDTH.fullmatch(str(drawing.values.get("attributes", {}).get("width", "")))
         if width and not (float(width[1]) > 0 and float(drawing.width) > 0):
             raise ProblemError(f"the drawing has the width {shown(width[0])}; it must be positive")
@@ -110,10 +111,6 @@ def _spend(
     used = named.get(element.get("href", "").removeprefix("#")) if _name(element) == "use" else None
     for each in (*element, *([] if used is None else [used])):
         _spend(each, named, budget, depth + 1)
-
-
-def _shapes(elements: Any, svgelements: Any) -> list[Any]:
-    return [each for each in elements if isinstance(each, svgelements.Shape)]
 
 
 def _inside(drawing: Any, group: str) -> list[Any]:

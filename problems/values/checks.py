@@ -264,9 +264,12 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
 
 
 def rising_rows(
-    values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two"
-) -> FloatArray:
-    """Checked rows (N, `columns`), described by `means`; the first, in `rising`, have to rise."""
+    values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two", turn: bool = False
+) -> Rows:
+    """Checked rows, described by `means`, of so many columns; the first, in `rising`, have to rise.
+
+    Of a `turn` the first is an angle (deg), which has to cover a turn, and the last row ends as the first.
+    """
     table = finite_rows(values, columns, "values", means, GREATEST)  # type: ignore[arg-type]
     if len(table) < {"two": 2, "three": 3}[least]:
         raise ProblemError(f"values has {len(table)} rows; it must have {least} or more")
@@ -274,22 +277,13 @@ def rising_rows(
         for row in np.flatnonzero(~(np.diff(table[:, column]) > 0)) + 1:
             given = f"values[{row}] has {name} {table[row, column]:.15g}"
             raise ProblemError(f"{given}; it must rise from row to row")
-    return table
-
-
-def refuse_open(table: FloatArray, over: str) -> None:
-    """Refuse rows over an angle (deg) that do not cover a turn, or end otherwise than they begin."""
     first, last = table[0, 0], table[-1, 0]
-    if abs(last - first - 360) > 1e-9:
+    if turn and abs(last - first - 360) > 1e-9:
         raise ProblemError(
-            f"values cover {over} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
+            f"values cover {rising[0]} {first:.15g} to {last:.15g} deg; they must cover a turn, as 0 to 360"
         )
-    if (table[0, 1:] != table[-1, 1:]).any():
+    if turn and (table[0, 1:] != table[-1, 1:]).any():
         raise ProblemError("values end otherwise than they begin; a turn ends as it begins")
-
-
-def as_rows(table: FloatArray) -> Rows:
-    """The rows as tuples."""
     return tuple(tuple(row) for row in table.tolist())
 
 

@@ -12,16 +12,7 @@ from numbers import Integral
 
 import numpy as np
 
-from grashof.problems.values.checks import (
-    Rows,
-    as_rows,
-    bounded,
-    from_zero,
-    one_of,
-    pair,
-    refuse_open,
-    rising_rows,
-)
+from grashof.problems.values.checks import Rows, bounded, from_zero, one_of, pair, rising_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
@@ -296,7 +287,4 @@ def _rows(values: object, over: str) -> Rows:
     if columns not in (2, 3):
         raise wrong_value("values[0]", list(rows[0]), f"[{over}, fx, fy] or [{over}, moment]")
     means = f"[{over}, fx, fy]" if columns == 3 else f"[{over}, moment]"
-    table = rising_rows(rows, columns, means, [over])
-    if over in TURNING:
-        refuse_open(table, over)
-    return as_rows(table)
+    return rising_rows(rows, columns, means, [over], turn=over in TURNING)

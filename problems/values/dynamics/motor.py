@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import Rows, as_rows, from_zero, positive_bounded, rising_rows, within
+from grashof.problems.values.checks import Rows, from_zero, positive_bounded, rising_rows, within
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
@@ -60,8 +60,8 @@ class MotorSpec(TableValue):
         if self.values is not None:
             if self.profile != "constant":
                 raise ProblemError("profile is given besides values; give one of them")
-            table = rising_rows(self.values, 2, "[time, angle]", ("time", "angle"), least="three")
-            set_fields(self, values=as_rows(table))
+            rows = rising_rows(self.values, 2, "[time, angle]", ("time", "angle"), least="three")
+            set_fields(self, values=rows)
 
     @property
     def steady(self) -> bool:

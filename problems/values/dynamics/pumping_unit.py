@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grashof.problems.values.checks import (
-    Rows,
-    as_rows,
-    bounded,
-    one_of,
-    positive_bounded,
-    refuse_open,
-    rising_rows,
-)
+from grashof.problems.values.checks import Rows, bounded, one_of, positive_bounded, rising_rows
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
@@ -88,10 +80,8 @@ class PumpingUnitSpec(TableValue):
 
 def _loads(values: object, over: str) -> Rows:
     columns, means = _ROWS[over]
-    table = rising_rows(values, columns, means, [over])
-    if over == CRANK:
-        refuse_open(table, over)
-    elif (table[0, 0], table[-1, 0]) != (0.0, 1.0):
-        covered = f"values cover positions {table[0, 0]:.15g} to {table[-1, 0]:.15g}"
-        raise ProblemError(f"{covered}; they must cover 0 to 1")
-    return as_rows(table)
+    rows = rising_rows(values, columns, means, [over], turn=over == CRANK)
+    first, last = rows[0][0], rows[-1][0]
+    if over == POSITION and (first, last) != (0.0, 1.0):
+        raise ProblemError(f"values cover positions {first:.15g} to {last:.15g}; they must cover 0 to 1")
+    return rows

@@ -87,12 +87,9 @@ class FunctionLaw(ReadOnly):
             given = np.degrees(finite_number(getattr(self, name), where))
             number_within(round(float(given), 9), *RANGE, where)
         if (self.exponent is None) == (self.name == "power"):
-            needed = (
-                'is missing; law = "power" needs it'
-                if self.name == "power"
-                else 'goes with law = "power" only'
-            )
-            raise ProblemError(f"function.exponent {needed}")
+            missing = 'is missing; law = "power" needs it'
+            said = missing if self.name == "power" else 'goes with law = "power" only'
+            raise ProblemError(f"function.exponent {said}")
         if (self.samples is None) == (self.name == SAMPLED) or (
             self.samples is not None and np.size(self.samples) < 4
         ):
