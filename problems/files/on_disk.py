@@ -112,7 +112,7 @@ def file_bytes(path: Path, wanted: str, suggestion: str = "", most: int = MOST_B
 
 
 def installed(library: str, needed: str) -> ModuleType:
-    """A library of the extra `export`; `ProblemError` where it is not installed: what "needs" it."""
+    """A library of the extra `export`; `ProblemError`, which begins with `needed`, where it is absent."""
     try:
         return import_module(library)
     except ModuleNotFoundError:
@@ -122,7 +122,7 @@ def installed(library: str, needed: str) -> ModuleType:
 
 # What Python raises in a library that reads damaged bytes.
 _DAMAGED: tuple[type[Exception], ...] = (
-    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, OSError,
+    ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, MemoryError, NameError, OSError,
     RuntimeError, SyntaxError, TypeError, ValueError, struct.error, zlib.error, lzma.LZMAError,
 )  # fmt: skip
 

@@ -328,8 +328,8 @@ class Problem(ReadOnly):
         return reference_torque(spec, self.task.size, metres(self.length_unit))
 
 
-# Types of the fields; `outlines` and `mechanism` have checks of their own.
-_KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if not hasattr(kind, "__origin__")}
+_LISTED = ("outlines", "mechanism")  # with checks of their own
+_KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
 # Test that a problem states the data for a need, and the error otherwise; other needs are always met.
