@@ -3,11 +3,13 @@
 import dataclasses
 import math
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refusal
 
-from grashof.problems import Box, ProblemError, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Box, Requirements, Rotatability, TransmissionOver
 
 
 def test_resolved_fills_in_what_depends_on_the_size() -> None:
@@ -42,19 +44,29 @@ def test_words_and_members_are_the_same() -> None:
     assert Requirements(transmission_over=TransmissionOver.CYCLE).transmission_over == "cycle"
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"transmission_over": "turn"}, "transmission_over is 'turn'; it must be one of task, cycle"),
-        ({"rotatability_margin": 0.3}, "rotatability_margin is 0.3; it must be from 0 to 0.25"),
-        ({"link_ratio_max": 0.5}, r"link_ratio_max is 0.5; it must be from 1 to 1e\+06"),
-        ({"r3": (-1, 2)}, r"r3 is \[-1, 2\]; lo must be at least 0"),
-        ({"o4": (0, 0)}, r"o4 is \(0, 0\); it must be a Box"),
-    ],
-)
-def test_bad_values_are_named(change: dict[str, object], message: str) -> None:
-    with pytest.raises(ProblemError, match=rf"^requirements.{message}$"):
-        Requirements(**change)  # type: ignore[arg-type]
+SIDES: list[Any] = [(2, 1), (math.nan, 1), (math.inf, math.inf), (1,), "ab"]
+SHOWN = ["[2, 1]", "[nan, 1]", "[inf, inf]", "(1,)", "'ab'"]
+BAD: list[tuple[type, dict[str, Any], str]] = [
+    (
+        Requirements,
+        {"transmission_over": "turn"},
+        "transmission_over is 'turn'; it must be one of task, cycle",
+    ),
+    (Requirements, {"rotatability_margin": 0.3}, "rotatability_margin is 0.3; it must be from 0 to 0.25"),
+    (Requirements, {"link_ratio_max": 0.5}, "link_ratio_max is 0.5; it must be from 1 to 1e+06"),
+    (Requirements, {"r3": (-1, 2)}, "r3 is [-1, 2]; lo must be at least 0"),
+    (Requirements, {"o4": (0, 0)}, "o4 is (0, 0); it must be a Box"),
+    *(
+        (Box, {axis: side}, f"{axis} is {shown}; it must be [lo, hi] with lo <= hi")
+        for axis in ("x", "y")
+        for side, shown in zip(SIDES, SHOWN, strict=True)
+    ),
+]
+
+
+@pytest.mark.parametrize(("make", "given", "said"), BAD)
+def test_bad_values_are_named(make: type, given: dict[str, Any], said: str) -> None:
+    assert refusal(make, **given).removeprefix("requirements.") == said
 
 
 def test_numbers_are_kept_as_floats() -> None:
@@ -68,24 +80,6 @@ def test_a_box_is_open_by_default() -> None:
     assert Box(x=(0, 1)) == Box((0.0, 1.0), (-math.inf, math.inf))
     assert Box(y=(-math.inf, 3)).y == (-math.inf, 3.0)
     assert Box((2, 2), (3, 3)).x == (2.0, 2.0)
-
-
-@pytest.mark.parametrize(
-    ("side", "found"),
-    [
-        ((2, 1), r"\[2, 1\]"),
-        ((math.nan, 1), r"\[nan, 1\]"),
-        ((math.inf, math.inf), r"\[inf, inf\]"),
-        ((1,), r"\(1,\)"),
-        ("ab", "'ab'"),
-    ],
-)
-def test_a_bad_side_is_named(side: tuple[float, float], found: str) -> None:
-    wanted = r"it must be \[lo, hi\] with lo <= hi"
-    with pytest.raises(ProblemError, match=rf"^x is {found}; {wanted}$"):
-        Box(x=side)
-    with pytest.raises(ProblemError, match=rf"^y is {found}; {wanted}$"):
-        Box(y=side)
 
 
 def test_requirements_with_areas_are_values_too() -> None:
