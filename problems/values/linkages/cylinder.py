@@ -67,9 +67,8 @@ below 2: a rod is no longer than its cylinder
                 f"{_WHERE}.ratio_max is {ratio:.15g}; it must be above 1 and below 2: "
                 "a rod is no longer than its cylinder"
             )
-        set_fields(self, ratio_max=ratio)
         on = some_of(self.on, f"{_WHERE}.on", CARRIERS, f"a list of some of {', '.join(CARRIERS)}")
-        set_fields(self, on=tuple(sorted(on, key=list(CARRIERS).index)))
+        set_fields(self, ratio_max=ratio, on=tuple(sorted(on, key=list(CARRIERS).index)))
         if not isinstance(self.base, Box | None):
             raise wrong_value(f"{_WHERE}.base", self.base, "a Box")
 

@@ -46,11 +46,6 @@ def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
     return polygons(values, where)
 
 
-def parts(names: Sequence[str], where: str) -> tuple[str, ...]:
-    """The parts that keep out of areas, each once."""
-    return checks.some_of(names, where, MAY_KEEP_OUT, KEPT_OUT)
-
-
 def word(kind: type[StrEnum], value: str, where: str) -> StrEnum:
     """A word as a member of its enumeration."""
     return kind(checks.one_of(value, where, kind))

@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
-from grashof.problems.values.checks import GREATEST, true_or_false, within
+from grashof.problems.values.checks import GREATEST, some_of, true_or_false, within
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
@@ -372,7 +372,7 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **{name: within(*limits) for name, limits in _RANGES.items()},
     **{name: partial(check.limits, limited) for name, limited in LIMITS.items()},
     "keep_out": check.areas,
-    "keep_out_for": check.parts,
+    "keep_out_for": partial(some_of, words=check.MAY_KEEP_OUT, wanted=check.KEPT_OUT),
 }
 
 _DERIVED = (
