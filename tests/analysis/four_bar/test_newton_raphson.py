@@ -1,31 +1,18 @@
 """Newton-Raphson and the closed form agree on every kind of linkage."""
 
-from collections.abc import Callable
-
 import numpy as np
-import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from drawn_linkages import FOUR_BAR_CLASSES, of_each_class
 
-from grashof.analysis import GrashofClass, driver_ranges, newton_position, solve_position
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
+from grashof.analysis import driver_ranges, newton_position, solve_position
 from grashof.problems import FourBar
-
-CHECKED = settings(max_examples=8)
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
-@pytest.mark.parametrize("kind", FOUR_BAR_CLASSES)
-@given(data=st.data())
-@CHECKED
-def test_newton_raphson_agrees_with_the_closed_form(
-    four_bars: Drawer, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
+@of_each_class(*FOUR_BAR_CLASSES)
+def test_newton_raphson_agrees_with_the_closed_form(linkage: FourBar) -> None:
     low, high = driver_ranges(linkage)[0]
     theta2 = np.linspace(low, high, 41)[1:-1]
     exact = solve_position(linkage, theta2)
