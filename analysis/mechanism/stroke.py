@@ -77,7 +77,7 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
     >>> float(stroke.time_ratio.round(6))
     1.355573
     """
-    theta2 = first_loop(linkage).limits(linkage) % TURN
+    theta2 = first_loop(linkage).limits() % TURN
     state = solve_position(linkage[..., None], theta2)
     turned = turned_from(state.theta4[..., 1], state.theta4[..., 0])
     theta4 = state.theta4[..., :1] + np.stack([np.zeros_like(turned), turned], axis=-1)

@@ -92,8 +92,10 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
 def held(value: float, error: float) -> float:
     """A number rounded to the digits that an error leaves certain: 0 if there are none.
 
-    >>> held(1234.5678, 0.03), held(1234.5678, 1e-9), held(1e-9, 1e-6), held(1.0, float("nan"))
-    (1234.6, 1234.5678, 0.0, nan)
+    >>> held(-123.456, 0.004), held(123.456, 0.006), held(98765.0, 300.0), held(123.456, 1e-8)
+    (-123.46, 123.5, 99000.0, 123.456)
+    >>> held(1e-9, 1e-6), held(1.0, float("nan"))
+    (0.0, nan)
     >>> held(float("inf"), 1.0), held(float("nan"), 1e308)
     (nan, nan)
     """
