@@ -146,10 +146,10 @@ def _track(
 def _joined(parts: list[Track]) -> Track:
     """Parts in order round the turn."""
     parts = sorted(parts, key=lambda part: part.low[0])
-    fields = [[getattr(part, name) for part in parts] for name in ("low", "high", "floor", "ceiling")]
-    low, high, floor, ceiling = (np.concatenate(field) for field in fields)
-    start = np.concatenate([part.start for part in parts], axis=1)
-    end = np.concatenate([part.end for part in parts], axis=1)
+    low, high, start, end, floor, ceiling = (
+        np.concatenate([getattr(part, name) for part in parts], axis=-1)
+        for name in ("low", "high", "start", "end", "floor", "ceiling")
+    )
     return Track(low, high, start, end, parts[0].signs, floor, ceiling, cyclic=True)
 
 

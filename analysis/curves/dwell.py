@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import Curve, Quantity, dense_samples, motion_between, unwrapped
+from grashof.analysis.mechanism.extremes import Quantity, dense_samples, motion_between, unwrapped
 from grashof.analysis.mechanism.kinematics import solve_kinematics
-from grashof.analysis.numerics.peaks import greatest
+from grashof.analysis.numerics.peaks import Curve, greatest
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value

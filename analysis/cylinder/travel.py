@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.even_motion import driver_samples
+from grashof.analysis.mechanism.even_motion import closer_at_ends, driver_samples
 from grashof.analysis.mechanism.mobility import (
     circuit_index,
     dead_ends,
@@ -52,16 +52,14 @@ class Travel:
         """Ascending samples from end to end, close where the linkage may change quickly."""
         if self.turns:
             return driver_samples(self.linkage, self.start, self.end)
-        low, high = min(self.start, self.end), max(self.start, self.end)
-        places: FloatArray = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-        return places
+        return closer_at_ends(*sorted((self.start, self.end)), _SAMPLES)
 
     @property
     def dead(self) -> FloatArray:
         """Places between the ends at which link 2 is in a dead position, shape (K,)."""
         if self.turns:
             return np.zeros(0)
-        low, high = min(self.start, self.end), max(self.start, self.end)
+        low, high = sorted((self.start, self.end))
         places: FloatArray = np.pi * np.arange(np.ceil(low / np.pi), np.floor(high / np.pi) + 1)
         return places[(places > low + _STEADY) & (places < high - _STEADY)]
 

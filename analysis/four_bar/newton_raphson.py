@@ -78,12 +78,12 @@ def newton_position(
     theta3, theta4, x, y = (np.array(part) for part in np.broadcast_arrays(*guess, x, y))
     closed = 1e-14 * (linkage.lengths.sum(axis=-1) + np.abs(linkage.o2).max(axis=-1))
     steps = np.zeros(np.shape(x), dtype=np.int64)
-    for _ in range(max_steps):
+    for step in range(max_steps + 1):
         gap_x = x + r3 * np.cos(theta3) - r4 * np.cos(theta4)
         gap_y = y + r3 * np.sin(theta3) - r4 * np.sin(theta4)
         gap = np.hypot(gap_x, gap_y)
         moving = gap > closed
-        if not moving.any():
+        if step == max_steps or not moving.any():
             break
         sine = np.sin(theta4 - theta3)
         sine = np.where(np.abs(sine) < 1e-12, np.copysign(1e-12, sine), sine)
@@ -92,9 +92,6 @@ def newton_position(
         theta3 = theta3 - np.where(moving, _held(step3), 0.0)
         theta4 = theta4 - np.where(moving, _held(step4), 0.0)
         steps = steps + moving
-    gap = np.hypot(
-        x + r3 * np.cos(theta3) - r4 * np.cos(theta4), y + r3 * np.sin(theta3) - r4 * np.sin(theta4)
-    )
     converged = gap <= 100 * closed
     theta3, theta4 = (
         np.where(converged, np.arctan2(np.sin(found), np.cos(found)), np.nan) for found in (theta3, theta4)

@@ -10,17 +10,16 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 
-from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.even_motion import closer_at_ends, even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import quality, transmission_at_extremes
-from grashof.analysis.numerics.peaks import greatest, own
+from grashof.analysis.numerics.peaks import Curve, greatest, own
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
-Curve: TypeAlias = Callable[[FloatArray], FloatArray]
 
 _SAMPLES = 2881
 _BOX_SAMPLES = 361
@@ -195,10 +194,9 @@ def motion_between(linkage: Linkage, start: float | None, end: float | None) -> 
 
 def dense_samples(start: float, end: float, closed: bool) -> FloatArray:
     """Samples of a curve whose extremes are sought, shape (N,)."""
-    share = np.linspace(0, 1, _SAMPLES)
-    if not closed:  # closer towards ends that may be dead positions
-        share = (1 - np.cos(np.pi * share)) / 2
-    at = start + (end - start) * share
+    if closed:
+        return np.linspace(start, end, _SAMPLES)
+    at = closer_at_ends(start, end, _SAMPLES)  # which may be dead positions
     at[-1] = end
     return at
 

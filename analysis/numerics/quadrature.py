@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
+from grashof.analysis.numerics.peaks import Curve
 from grashof.problems.values.arrays import FloatArray
-
-Curve = Callable[[FloatArray], FloatArray]
 
 NODES, WEIGHTS = legendre.leggauss(16)  # of a panel from -1 to 1
 _TERMS = legendre.legvander(NODES, 15) * (WEIGHTS[:, None] * (np.arange(16) + 0.5))

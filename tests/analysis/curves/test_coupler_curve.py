@@ -33,7 +33,9 @@ def test_derivatives_are_those_of_a_steady_driver(assembly: int) -> None:
         np.testing.assert_allclose([moving.theta, moving.omega, moving.alpha], angles, rtol=1e-9)
 
 
-@of_each_class(*map(GrashofClass, ("double-crank", "rocker-crank", "non-Grashof", "slider-rocker", "Whitworth")))
+@of_each_class(
+    *map(GrashofClass, ("double-crank", "rocker-crank", "non-Grashof", "slider-rocker", "Whitworth"))
+)
 def test_tracks_cover_every_range_and_lie_on_the_curve(linkage: Linkage) -> None:
     ends = driver_ranges(linkage)
     ends = ends[np.isfinite(ends[:, 0])]

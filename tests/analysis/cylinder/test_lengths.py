@@ -99,7 +99,11 @@ def test_levers_are_smooth_through_dead_positions(
 
 @of_each_class(*SMOOTH, examples=3, on=st.sampled_from(LINKS), base=places, point=places, ends=parts)
 def test_extremes_are_those_of_dense_samples(
-    linkage: FourBar, on: str, base: tuple[float, float], point: tuple[float, float], ends: tuple[float, float]
+    linkage: FourBar,
+    on: str,
+    base: tuple[float, float],
+    point: tuple[float, float],
+    ends: tuple[float, float],
 ) -> None:
     low, high = driver_ranges(linkage)[0]
     size, moved = float(linkage.r2), moved_by(linkage, low + (high - low) * np.array(ends))

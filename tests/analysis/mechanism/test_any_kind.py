@@ -111,7 +111,10 @@ def test_infinite_rates_of_dead_positions_have_the_sign_nearby(linkage, end, ome
 
 @of_each_class(*SLIDING, first=st.floats(0, 0.4), last=st.floats(0.6, 1))
 def test_even_motion_has_neither_jumps_nor_crowds(linkage, first, last) -> None:
-    motion, share = even_motion(linkage, inside(linkage, first), inside(linkage, last)), np.linspace(0, 1, 361)
+    motion, share = (
+        even_motion(linkage, inside(linkage, first), inside(linkage, last)),
+        np.linspace(0, 1, 361),
+    )
     theta2 = motion.theta2(share)
     assert (np.diff(theta2) >= 0).all()
     assert motion.share(theta2[10:-10]) == pytest.approx(share[10:-10], abs=1e-6)
@@ -127,9 +130,7 @@ def test_turns_by_dimensions_are_differences_of_positions(linkage, share) -> Non
     assume(0.3 < transmission_angle(linkage, theta2) < np.pi - 0.3)
     step = 1e-6 * float(linkage.lengths.sum())
     deviations = np.eye(len(linkage.mechanism.dimensions)) * step
-    ahead, behind = (
-        solve_position(made_linkages(linkage, sign * deviations)[0], theta2) for sign in (1, -1)
-    )
+    ahead, behind = (solve_position(made_linkages(linkage, sign * deviations)[0], theta2) for sign in (1, -1))
     for link in (3, 4):
         apart = ahead.angles[link] - behind.angles[link]
         slope = ((apart + np.pi) % (2 * np.pi) - np.pi) / (2 * step)

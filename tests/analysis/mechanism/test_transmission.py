@@ -75,7 +75,9 @@ def test_worst_angles_are_the_least_of_a_sweep(
 def test_extremes_inside_an_interval_are_found(theta1: float, assembly: int) -> None:
     o4 = 4 * np.array([np.cos(theta1), np.sin(theta1)])
     linkage = FourBar(o2=(0, 0), o4=o4, r2=1, r3=3, r4=2.6, assembly=assembly)
-    folded, stretched, away, late = quality(transmission_angle(linkage, theta1 + np.array([0, np.pi, 0.6, 2])))
+    folded, stretched, away, late = quality(
+        transmission_angle(linkage, theta1 + np.array([0, np.pi, 0.6, 2]))
+    )
     assert stretched < folded < away
     for turns in TURN * np.arange(-2, 3):
         for start, end, worst in (
