@@ -242,12 +242,10 @@ def _outermost(
 
 def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[float]:
     """Stationary points about a sample, from the widest window in which a polynomial is exact."""
-    middle = at[peak]
+    middle, (least, most) = at[peak], (-np.inf, np.inf) if closed else (at[0], at[-1])
     step = max(at[min(peak + 1, len(at) - 1)] - middle, middle - at[max(peak - 1, 0)])
     for width in (16.0, 4.0, 1.0):
-        low, high = middle - width * step, middle + width * step
-        if not closed:
-            low, high = max(low, at[0]), min(high, at[-1])
+        low, high = max(middle - width * step, least), min(middle + width * step, most)
         values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
         if not np.isfinite(values).all():
             if closed:  # undefined beyond its ends
@@ -259,9 +257,6 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
             roots = chebyshev.chebroots(chebyshev.chebder(terms))
             roots = roots.real[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1)]
             return [float((low + high) / 2 + (high - low) / 2 * root) for root in roots]
-    low, high = middle - step, middle + step
-    if not closed:
-        low, high = max(low, at[0]), min(high, at[-1])
     found = scipy.optimize.minimize_scalar(
         lambda place: -float(curve(np.array([place]))[0]), bounds=(low, high), method="bounded",
         options={"xatol": 1e-12},
