@@ -52,7 +52,7 @@ class Travel:
         """Ascending samples from end to end, close where the linkage may change quickly."""
         if self.turns:
             return driver_samples(self.linkage, self.start, self.end)
-        return closer_at_ends(*sorted((self.start, self.end)), _SAMPLES)
+        return closer_at_ends(min(self.start, self.end), max(self.start, self.end), _SAMPLES)
 
     @property
     def dead(self) -> FloatArray:
