@@ -84,7 +84,7 @@ def test_a_round_curve_has_none() -> None:
 
 def test_tolerance_is_a_share_of_the_speed_of_a() -> None:
     pointed = with_cusp(FourBar((0, 0), (4, 0), 1, 4, 3), 1.0)
-    blunt = replace(pointed, coupler_point=pointed.coupler_point + [1e-4, 0])
+    blunt = replace(pointed, coupler_point=np.add(pointed.coupler_point, [1e-4, 0]))
     assert cusps(blunt).size == 0
     assert cusps(blunt, tolerance=1e-3) == pytest.approx([1.0], abs=1e-3)
 
