@@ -207,7 +207,7 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
         passage = _passages(linkage, w, place)
         if passage is None:
             continue
-        theta2, sign = _polished(linkage, *passage)
+        theta2, sign = _polished(linkage, *passage), passage[1]
         gap = _gap(linkage, theta2, sign)
         same = sign[0] == sign[1] and abs(_wrapped(theta2[1] - theta2[0])) < _CUSP
         if not same and gap <= _ROUNDING * _size(linkage):
@@ -308,7 +308,7 @@ def _passages(linkage: FourBar, w: complex, place: complex) -> tuple[FloatArray,
     return np.angle(a - o2), np.where(side >= 0, 1, -1)
 
 
-def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> tuple[FloatArray, IntArray]:
+def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> FloatArray:
     """Newton steps towards equal P at both driver angles, while they improve."""
     gap = _gap(linkage, theta2, sign)
     for _ in range(_STEPS):
@@ -322,7 +322,7 @@ def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> tuple[Flo
         if not left < gap:
             break
         theta2, gap = trial, left
-    return _wrapped(theta2), sign
+    return _wrapped(theta2)
 
 
 def _gap(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> float:

@@ -169,11 +169,8 @@ class FittedPath:
     @property
     def fits(self) -> list[PathFit]:
         """All fits of this path, by least squares and through neighbouring points."""
-        every = (_regression(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in DEGREES)
-        through = (
-            _interpolation(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in NEWTON_DEGREES
-        )
-        return [*every, *through]
+        ways = (_regression, DEGREES), (_interpolation, NEWTON_DEGREES)
+        return [fit(self, of, n) for fit, degrees in ways for of in (Y_OF_X, OF_THETA2) for n in degrees]
 
     def parts(self, of: str) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Parameter and values at the points and on the path."""

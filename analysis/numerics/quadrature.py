@@ -114,7 +114,7 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., M, 2)."""
+    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., 2, M)."""
 
     low: FloatArray
     high: FloatArray
@@ -129,28 +129,22 @@ class _Pieces:
         values = np.asarray(curve(places.ravel()), dtype=np.float64)
         values = values.reshape(*values.shape[:-1], *places.shape)
         sizes = np.abs(values) @ WEIGHTS * np.abs(half)
-        return cls(low, high, values @ WEIGHTS * half, sizes, values @ _TO_ENDS)
+        return cls(low, high, values @ WEIGHTS * half, sizes, (values @ _TO_ENDS).swapaxes(-1, -2))
 
     @property
     def width(self) -> FloatArray:
         return np.abs(self.high - self.low)
 
     def __getitem__(self, kept: slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> _Pieces:
-        part, size, ends = self.part[..., kept], self.size[..., kept], self.ends[..., kept, :]
-        return _Pieces(self.low[kept], self.high[kept], part, size, ends)
+        return _Pieces(*(getattr(self, name)[..., kept] for name in self.__slots__))
 
     def and_those(self, others: _Pieces) -> _Pieces:
-        return _Pieces(
-            np.concatenate([self.low, others.low]),
-            np.concatenate([self.high, others.high]),
-            np.concatenate([self.part, others.part], axis=-1),
-            np.concatenate([self.size, others.size], axis=-1),
-            np.concatenate([self.ends, others.ends], axis=-2),
-        )
+        both = ([getattr(self, name), getattr(others, name)] for name in self.__slots__)
+        return _Pieces(*(np.concatenate(each, axis=-1) for each in both))
 
     def apart(self, narrowest: float) -> npt.NDArray[np.bool_]:
         """Whether a jump that matters may hide at an end of a panel, in order, shape (M,)."""
-        jump = np.abs(self.ends[..., 1:, 0] - self.ends[..., :-1, 1])
+        jump = np.abs(self.ends[..., 0, 1:] - self.ends[..., 1, :-1])
         none = np.zeros((*jump.shape[:-1], 1))
         beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
         hidden = beside * _GAP * self.width > _SETTLED * self.size.sum(axis=-1, keepdims=True)
