@@ -55,8 +55,7 @@ def test_a_polynomial_is_itself() -> None:
     for newton in (False, True):
         fit = chosen(path, OF_THETA2, newton=newton)[3]
         assert fit.error_path < 1e-14
-        assert fit.line == pytest.approx(fit.line)
-        np.testing.assert_allclose(fit.line[[0, -1]], curve[1][[0, -1]] if newton else fit.line[[0, -1]])
+        np.testing.assert_allclose(fit.line[[0, -1]], curve[1][[0, -1]])
     assert chosen(path, Y_OF_X, newton=False)[4].error_path < 0.01
 
 
