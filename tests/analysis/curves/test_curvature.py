@@ -8,7 +8,15 @@ from drawn_linkages import of_each_class
 from hypothesis import assume
 from hypothesis import strategies as st
 
-from grashof.analysis import GrashofClass, curvature, cusps, driver_ranges, full_rotation, solve_position
+from grashof.analysis import (
+    GrashofClass,
+    centrodes,
+    curvature,
+    cusps,
+    driver_ranges,
+    full_rotation,
+    solve_position,
+)
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar, ProblemError
 
@@ -45,12 +53,7 @@ def test_a_batch_and_what_does_not_close() -> None:
 
 def with_cusp(linkage: FourBar, theta2: float) -> FourBar:
     """The same with P at the instant centre of the coupler: where O2A and O4B cross."""
-    state = solve_position(linkage, theta2)
-    crank, rocker = (state.a - linkage.o2), (state.b - linkage.o4)
-    along = np.linalg.solve(np.column_stack([crank, -rocker]), linkage.o4 - linkage.o2)[0]
-    centre = linkage.o2 + along * crank
-    arm = complex(*(centre - state.a)) * np.exp(-1j * state.theta3)
-    return replace(linkage, coupler_point=(arm.real, arm.imag))
+    return replace(linkage, coupler_point=centrodes(linkage, theta2).moving)
 
 
 @of_each_class(GrashofClass.DOUBLE_CRANK, GrashofClass.NON_GRASHOF, examples=4, share=st.floats(0.05, 0.95))

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-import scipy
 from drawn_linkages import SMOOTH, SWINGING, linkages, of_each_class
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -32,7 +29,6 @@ from grashof.analysis import (
 )
 from grashof.analysis.curves.coupler_curve import coupler_curve
 from grashof.analysis.judge.tolerance import made_linkages
-from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.analysis.mechanism.sensitivity import turn_sensitivity
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, InvertedSliderCrank, SliderCrank
@@ -164,22 +160,6 @@ def test_extremes_and_boxes_are_those_of_dense_samples(linkage) -> None:
     assert (ends.low, ends.high) == pytest.approx((mu.min(), mu.max()), abs=2e-3)
     assert ends.low <= mu.min() + 1e-9
     assert ends.high >= mu.max() - 1e-9
-
-
-@of_each_class(*MOVING, examples=1)
-def test_means_are_those_of_another_quadrature(linkage) -> None:
-    start, end = motion_of(linkage)
-
-    def curve(theta2):
-        return np.nan_to_num(np.cos(solve_position(linkage, theta2).theta3))
-
-    mean, error = mean_over(linkage, curve, start, end)
-    parts = [
-        scipy.integrate.quad(lambda theta2: float(curve(theta2)), *ends, limit=100)[0]
-        for ends in pairwise(np.linspace(start, end, 9))
-    ]
-    assert error < 1e-8
-    assert float(mean) == pytest.approx(sum(parts) / (end - start), abs=1e-7)
 
 
 @of_each_class(*MOVING, share=SHARES)

@@ -81,12 +81,6 @@ def test_dead_positions_close_in_spite_of_rounding(linkage: FourBar) -> None:
     assert np.isfinite(outside.a).all()
 
 
-def test_own_assembly_is_the_default() -> None:
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, assembly=-1)
-    np.testing.assert_array_equal(solve_position(linkage, 0.7).b, solve_position(linkage, 0.7, -1).b)
-    assert solve_position(linkage, 0.7).b[1] < 0
-
-
 @pytest.mark.parametrize("away", [0.0, 1e-310, 1e-200, 1e-17])
 def test_driver_pivot_on_the_output_pivot_is_open_without_a_warning(away: float) -> None:
     linkage = FourBar(o2=(0, 0), o4=(2, away), r2=2, r3=1, r4=1.5)
