@@ -73,8 +73,7 @@ def test_a_corner_and_a_ridge() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.quick("2")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     """Compared with a dense search on both curves, refined about the furthest points."""
     rng = np.random.default_rng(seed)
@@ -90,12 +89,12 @@ def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     def q(place: Array) -> Complexes:
         return np.interp(place, np.arange(len(loop)), loop)
 
-    dense = np.linspace(0, 2 * np.pi, 20_001)
+    dense = np.linspace(0, 2 * np.pi, 5001)
 
     def from_curve(place: Array) -> Array:
         points = q(place)[:, None]
         near = dense[np.abs(points - p(dense)).argmin(axis=1)]
-        width = 2 * np.pi / 20_000
+        width = dense[1]
         for _ in range(4):
             around = near[:, None] + width * np.linspace(-1, 1, 33)
             far = np.abs(points - p(around))
