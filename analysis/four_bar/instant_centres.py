@@ -44,11 +44,8 @@ def instant_centres(
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        The linkage's own by default.
+    linkage, theta2, assembly
+        As for `solve_position`.
 
     Returns
     -------

@@ -245,13 +245,10 @@ def solve_kinematics(
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch that broadcasts against the driver (``batch[:, None]``: all linkages at all angles).
+    linkage, assembly
+        As for `solve_position`.
     theta2, omega2, alpha2, jerk2 : array_like, shape (...), rad over s^0 to s^3
         The driver; by default it turns steadily at 1 rad/s. See also `driver_motion`.
-    assembly : array_like, shape (...), optional
-        +1 or -1, of the first loop; the linkage's own by default. For the second loop of a six-bar use
-        ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------

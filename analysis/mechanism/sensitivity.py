@@ -17,12 +17,8 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-        Driver angle, global.
-    assembly : array_like, shape (...), optional
-        +1 or -1 of the first loop; the linkage's own by default.
+    linkage, theta2, assembly
+        As for `solve_position`.
 
     Returns
     -------

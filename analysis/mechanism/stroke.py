@@ -122,12 +122,10 @@ def link_stroke(
 
     Parameters
     ----------
-    linkage : Linkage
-        A single linkage.
+    linkage, start, end
+        As for `extremes`.
     link : int, optional
         The last one by default: the output of a six-bar.
-    start, end : float, rad, optional
-        Driver angles; by default a full turn, or the first of `driver_ranges`.
 
     Returns
     -------
