@@ -59,15 +59,6 @@ def test_a_polynomial_is_itself() -> None:
     assert chosen(path, Y_OF_X, newton=False)[4].error_path < 0.01
 
 
-def test_newton_goes_through_every_point() -> None:
-    path = path_of(4)
-    for of in (Y_OF_X, OF_THETA2):
-        for fit in chosen(path, of, newton=True).values():
-            assert len(fit.pieces) == len(path.theta2) - fit.degree
-            near = np.abs(fit.line[:, None] - path.points).sum(axis=-1).min(axis=0)
-            assert near.max() < 1e-12
-
-
 def test_equal_x_give_no_y_of_x() -> None:
     theta2, fine = FittedPath.angles(0.0, 1.0, 7)
     points, path = (np.stack([1 + 1e-16 * np.cos(t), t], axis=-1) for t in (theta2, fine))

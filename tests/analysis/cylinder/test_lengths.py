@@ -172,17 +172,6 @@ def test_the_lever_angle_of_a_slider_is_its_way_s_to_the_cylinder() -> None:
     np.testing.assert_allclose(np.sin(found.angle), np.abs(np.cos(between)), rtol=1e-12)
 
 
-def test_a_rod_in_its_block_is_a_cylinder_from_a_to_o4() -> None:
-    """Where nothing is offset, the slide itself is a cylinder on link 2."""
-    linkage = InvertedSliderCrank((0, 0), (3, 0), 1.2)
-    theta2 = np.linspace(0.3, 2.5, 11)
-    at = solve_position(linkage, theta2)
-    found = cylinder_state(Cylinder("driver", (3, 0), (1.2, 0)), linkage, at)
-    np.testing.assert_allclose(found.length, at.travel, rtol=1e-12)
-    lever = np.abs(np.sin(at.theta2 - at.theta3))
-    np.testing.assert_allclose(np.sin(found.angle), lever, rtol=1e-9)
-
-
 def test_places_are_driver_angles_where_link_2_turns_fully() -> None:
     moved = moved_by(CRANK, [0.5, 1.0, 2.0])
     assert (moved.turns, moved.start, moved.end, len(moved.dead)) == (True, 0.5, 2.0, 0)
