@@ -87,3 +87,9 @@ def test_extremes_inside_an_interval_are_found(theta1: float, assembly: int) -> 
         ):  # fmt: skip
             found = worst_transmission(linkage, theta1 + turns + start, theta1 + turns + end)
             assert found == pytest.approx(worst, rel=1e-9)
+
+
+def test_transmission_angle_is_nan_where_the_linkage_cannot_close() -> None:
+    triple_rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)  # swings 108.21 deg either way
+    mu = transmission_angle(triple_rocker, np.radians([108.3, 180, -108.3, 108.1, 0, -108.1]))
+    assert np.isnan(mu).tolist() == [True] * 3 + [False] * 3
