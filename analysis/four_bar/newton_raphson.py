@@ -89,15 +89,11 @@ def newton_position(
         sine = np.where(np.abs(sine) < 1e-12, np.copysign(1e-12, sine), sine)
         step3 = (gap_x * np.cos(theta4) + gap_y * np.sin(theta4)) / (r3 * sine)
         step4 = (gap_x * np.cos(theta3) + gap_y * np.sin(theta3)) / (r4 * sine)
-        theta3 = theta3 - np.where(moving, _held(step3), 0.0)
-        theta4 = theta4 - np.where(moving, _held(step4), 0.0)
+        theta3 = theta3 - np.where(moving, np.clip(step3, -_LONGEST_STEP, _LONGEST_STEP), 0.0)
+        theta4 = theta4 - np.where(moving, np.clip(step4, -_LONGEST_STEP, _LONGEST_STEP), 0.0)
         steps = steps + moving
     converged = gap <= 100 * closed
     theta3, theta4 = (
         np.where(converged, np.arctan2(np.sin(found), np.cos(found)), np.nan) for found in (theta3, theta4)
     )
     return NewtonPosition(theta3[()], theta4[()], gap[()], steps[()], converged)
-
-
-def _held(step: FloatArray) -> FloatArray:
-    return np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
