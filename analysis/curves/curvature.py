@@ -272,8 +272,7 @@ def _candidates(linkage: FourBar, w: complex) -> ComplexArray:
     ground = complex(*(linkage.o4 - linkage.o2))
     reach = below * turn - above  # p = ground * turn / (turn - k)
     kept = np.abs(reach) > _ROUNDING
-    places: ComplexArray = complex(*linkage.o2) + ground * turn * below[kept] / reach[kept]
-    return places
+    return np.asarray(complex(*linkage.o2) + ground * turn * below[kept] / reach[kept])
 
 
 def _projective_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:

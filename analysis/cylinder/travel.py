@@ -114,5 +114,4 @@ def _in_order(phases: FloatArray, way: int) -> FloatArray | None:
     step = (way * np.diff(phases) + _STEADY) % TURN - _STEADY
     if step.sum() >= TURN - _STEADY:
         return None
-    found: FloatArray = phases[0] + way * np.concatenate([[0.0], np.cumsum(step)])
-    return found
+    return np.asarray(phases[0] + way * np.concatenate([[0.0], np.cumsum(step)]))

@@ -103,8 +103,7 @@ class FourBarLoop(_DiagonalLoop):
         """(r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4."""
         r1, r2, r3, r4 = np.moveaxis(self.linkage.lengths[..., :4], -1, 0)
         stretched, folded = r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)
-        shares: FloatArray = np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None]
-        return shares
+        return np.asarray(np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None])
 
     def even(self) -> tuple[float, float]:
         r1, r2, r3, r4 = map(float, self.linkage.lengths[:4])
