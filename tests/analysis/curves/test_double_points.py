@@ -64,7 +64,7 @@ def test_every_range_of_every_class(linkage: FourBar) -> None:
             hits = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
             seam = np.abs(hits - [low, high]).max(axis=1) < 1e-6  # where a closed curve ends
             sampled.append(hits[~seam])
-    for pair in np.concatenate(sampled):  # small loops may hide between samples, no crossing of theirs does
+    for pair in np.concatenate(sampled):  # small loops hide between samples; no sampled crossing is missed
         p = solve_position(linkage, pair).p.mean(axis=0)
         assert len(found)
         assert np.hypot(*(found.points - p).T).min() < 2e-2 * linkage.lengths.max()
