@@ -30,7 +30,7 @@ SWINGING = (GrashofClass.DOUBLE_ROCKER, GrashofClass.ROCKER_CRANK, GrashofClass.
 def of_each_class(
     *kinds: GrashofClass, examples: int = 6, **others: st.SearchStrategy[Any]
 ) -> Callable[[Callable[..., None]], Any]:
-    """Run a test with drawn linkages of each class; it may take `linkage`, `kind`, `data` and the `others`."""
+    """Run a test with drawn linkages of each class; it may take `linkage`, `kind`, `data` and `others`."""
 
     def decorated(test: Callable[..., None]) -> Any:
         taken = inspect.signature(test).parameters
