@@ -14,7 +14,7 @@ from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
 from grashof.problems import Linkage
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, turned_from
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray, Limits, turned_from
 
 PIECES = 180  # of each range of the driver, for the search of points on the curve
 _FINE = 180  # samples of half a turn, or of a range, from which the nodes are placed
@@ -83,19 +83,38 @@ def tracks(linkage: Linkage, pieces: int, same_branch: bool) -> list[Track]:
     Without dead positions on its own assembly if `same_branch`; otherwise one over all ranges and assemblies.
     """
     if closes_everywhere(linkage):
-        return [_turn(linkage, pieces, _signs(linkage, same_branch))]
+        # Denser about the ground line, where a linkage near a change point moves fast.
+        half = closer_at_ends(0.0, np.pi, _FINE + 1)
+        fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
+        return [_track(linkage, fine, (-np.inf, np.inf), pieces, same_branch, cyclic=True)]
     ends = [(low, high) for low, high in driver_ranges(linkage).tolist() if high > low]
     single = [between(linkage, *each, each, pieces, same_branch) for each in ends]
     return single if same_branch or len(single) < 2 else [_joined(single)]
 
 
 def between(
-    linkage: Linkage, start: float, end: float, ends: tuple[float, float], pieces: int, same_branch: bool
+    linkage: Linkage, start: float, end: float, ends: Limits, pieces: int, same_branch: bool
 ) -> Track:
     """The part of a range with these `ends` from `start` to `end` > `start`."""
-    signs = _signs(linkage, same_branch)
-    nodes = _nodes(linkage, closer_at_ends(start, end, _FINE + 1), pieces, signs)
-    return _track(linkage, nodes, signs, *ends, cyclic=False)
+    return _track(linkage, closer_at_ends(start, end, _FINE + 1), ends, pieces, same_branch, cyclic=False)
+
+
+def _track(
+    linkage: Linkage, fine: FloatArray, ends: Limits, pieces: int, same_branch: bool, *, cyclic: bool
+) -> Track:
+    """Pieces between `fine` angles, on which P and the driver, half and half, move equally far."""
+    signs = int(linkage.assembly) * np.array([1] if same_branch else [1, -1])
+    p = solve_position(linkage, fine, signs[:, None]).p
+    step = np.hypot(*np.moveaxis(np.diff(p, axis=1), -1, 0)).max(axis=0)
+    step = np.nan_to_num(step)
+    turn = np.diff(fine)
+    moved = np.concatenate([[0.0], np.cumsum(step / max(step.sum(), 1e-300) + turn / turn.sum())])
+    nodes: FloatArray = np.interp(np.linspace(0, moved[-1], pieces + 1), moved, fine)
+    if cyclic:
+        nodes[-1] = nodes[0] + TURN
+    z = solve_position(linkage, nodes, signs[:, None]).p @ np.array([1, 1j])
+    floor, ceiling = (np.full(pieces, end) for end in ends)
+    return Track(nodes[:-1], nodes[1:], z[:, :-1], z[:, 1:], signs, floor, ceiling, cyclic)
 
 
 def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
@@ -109,47 +128,13 @@ def range_around(linkage: Linkage, theta2: float) -> tuple[float, float]:
     return float(min(low, theta2)), float(max(high, theta2))
 
 
-def _turn(linkage: Linkage, pieces: int, signs: IntArray) -> Track:
-    # Denser about the ground line, where a linkage near a change point moves fast.
-    half = closer_at_ends(0.0, np.pi, _FINE + 1)
-    fine = linkage.theta1 + np.concatenate([half, half[1:] + np.pi])
-    nodes = _nodes(linkage, fine, pieces, signs)
-    nodes[-1] = nodes[0] + TURN
-    return _track(linkage, nodes, signs, -np.inf, np.inf, cyclic=True)
-
-
-def _signs(linkage: Linkage, same_branch: bool) -> IntArray:
-    own = int(linkage.assembly)
-    return np.array([own] if same_branch else [own, -own])
-
-
-def _nodes(linkage: Linkage, fine: FloatArray, pieces: int, signs: IntArray) -> FloatArray:
-    """`pieces` + 1 of the angles between which P and the driver, half and half, move equally far."""
-    p = solve_position(linkage, fine, signs[:, None]).p
-    step = np.hypot(*np.moveaxis(np.diff(p, axis=1), -1, 0)).max(axis=0)
-    step = np.nan_to_num(step)
-    turn = np.diff(fine)
-    moved = np.concatenate([[0.0], np.cumsum(step / max(step.sum(), 1e-300) + turn / turn.sum())])
-    nodes: FloatArray = np.interp(np.linspace(0, moved[-1], pieces + 1), moved, fine)
-    return nodes
-
-
-def _track(
-    linkage: Linkage, nodes: FloatArray, signs: IntArray, floor: float, ceiling: float, *, cyclic: bool
-) -> Track:
-    p = solve_position(linkage, nodes, signs[:, None]).p @ np.array([1, 1j])
-    low, high = nodes[:-1], nodes[1:]
-    bounds = np.full_like(low, floor), np.full_like(low, ceiling)
-    return Track(low, high, p[:, :-1], p[:, 1:], signs, *bounds, cyclic)
-
-
 def _joined(parts: list[Track]) -> Track:
     """Parts in order round the turn."""
     parts = sorted(parts, key=lambda part: part.low[0])
-    fields = [[getattr(part, name) for part in parts] for name in ("low", "high", "floor", "ceiling")]
-    low, high, floor, ceiling = (np.concatenate(field) for field in fields)
-    start = np.concatenate([part.start for part in parts], axis=1)
-    end = np.concatenate([part.end for part in parts], axis=1)
+    low, high, start, end, floor, ceiling = (
+        np.concatenate([getattr(part, name) for part in parts], axis=-1)
+        for name in ("low", "high", "start", "end", "floor", "ceiling")
+    )
     return Track(low, high, start, end, parts[0].signs, floor, ceiling, cyclic=True)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -31,11 +32,8 @@ def curvature(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike |
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        The linkage's own by default.
+    linkage, theta2, assembly
+        As for `solve_position`.
 
     Returns
     -------
@@ -167,6 +165,9 @@ class DoublePoints(ReadOnly):
         return len(self.points)
 
 
+_Passages: TypeAlias = tuple[FloatArray, FloatArray, IntArray]  # point, driver angles, assemblies; (2,) each
+
+
 def all_double_points(linkage: FourBar) -> DoublePoints:
     """Double points of the complete coupler curve, both assemblies together: at most three.
 
@@ -197,21 +198,19 @@ def all_double_points(linkage: FourBar) -> DoublePoints:
     """
     w = complex(*linkage.coupler_point)
     if min(abs(w), abs(w - float(linkage.r3))) <= _ROUNDING * float(linkage.r3):
-        return _collected([], [], [])
-    points, angles, signs = [], [], []
+        return _collected([])
+    found: list[_Passages] = []
     for place in _candidates(linkage, w):
         passage = _passages(linkage, w, place)
         if passage is None:
             continue
-        theta2, sign = _polished(linkage, *passage)
+        theta2, sign = _polished(linkage, *passage), passage[1]
         gap = _gap(linkage, theta2, sign)
         same = sign[0] == sign[1] and abs(_wrapped(theta2[1] - theta2[0])) < _CUSP
         if not same and gap <= _ROUNDING * _size(linkage):
-            order = np.argsort(theta2)
-            points.append(complex(coupler_curve(linkage, theta2[0], sign[0])[0]))
-            angles.append(theta2[order])
-            signs.append(sign[order])
-    return _collected(points, angles, signs)
+            order, p = np.argsort(theta2), coupler_curve(linkage, theta2[0], sign[0])[0]
+            found.append((np.array([p.real, p.imag]), theta2[order], sign[order]))
+    return _collected(found)
 
 
 def double_points(
@@ -246,23 +245,17 @@ def double_points(
     intervals = driver_intervals(linkage, theta2_start, theta2_end)
     every = all_double_points(linkage)
     own = (every.assembly == int(linkage.assembly)).all(axis=1)
-    points, angles, signs = [], [], []
+    found: list[_Passages] = []
     for low, high in intervals:
         inside = low - SLACK + (every.theta2 - low + SLACK) % TURN
-        for row in np.flatnonzero(own & (inside <= high + SLACK).all(axis=1)):
-            points.append(complex(*every.points[row]))
-            angles.append(np.sort(inside[row]))
-            signs.append(every.assembly[row])
-    return _collected(points, angles, signs)
+        kept = own & (inside <= high + SLACK).all(axis=1)
+        found += zip(every.points[kept], np.sort(inside[kept]), every.assembly[kept], strict=True)
+    return _collected(found)
 
 
-def _collected(points: list[complex], angles: list[FloatArray], signs: list[IntArray]) -> DoublePoints:
-    z = np.array(points, dtype=np.complex128)
-    return DoublePoints(
-        points=frozen_array(np.stack([z.real, z.imag], axis=-1)),
-        theta2=frozen_array(np.reshape(angles, (-1, 2))),
-        assembly=np.reshape(np.array(signs, dtype=np.int64), (-1, 2)),
-    )
+def _collected(found: list[_Passages]) -> DoublePoints:
+    points, theta2, assembly = np.array(found, dtype=np.float64).reshape(-1, 3, 2).swapaxes(0, 1)
+    return DoublePoints(frozen_array(points), frozen_array(theta2), assembly.astype(np.int64))
 
 
 def _candidates(linkage: FourBar, w: complex) -> ComplexArray:
@@ -279,8 +272,7 @@ def _candidates(linkage: FourBar, w: complex) -> ComplexArray:
     ground = complex(*(linkage.o4 - linkage.o2))
     reach = below * turn - above  # p = ground * turn / (turn - k)
     kept = np.abs(reach) > _ROUNDING
-    places: ComplexArray = complex(*linkage.o2) + ground * turn * below[kept] / reach[kept]
-    return places
+    return np.asarray(complex(*linkage.o2) + ground * turn * below[kept] / reach[kept])
 
 
 def _projective_roots(cubic: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -312,7 +304,7 @@ def _passages(linkage: FourBar, w: complex, place: complex) -> tuple[FloatArray,
     return np.angle(a - o2), np.where(side >= 0, 1, -1)
 
 
-def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> tuple[FloatArray, IntArray]:
+def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> FloatArray:
     """Newton steps towards equal P at both driver angles, while they improve."""
     gap = _gap(linkage, theta2, sign)
     for _ in range(_STEPS):
@@ -326,7 +318,7 @@ def _polished(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> tuple[Flo
         if not left < gap:
             break
         theta2, gap = trial, left
-    return _wrapped(theta2), sign
+    return _wrapped(theta2)
 
 
 def _gap(linkage: FourBar, theta2: FloatArray, sign: IntArray) -> float:

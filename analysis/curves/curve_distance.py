@@ -123,8 +123,7 @@ def _even(corners: ComplexArray, count: int) -> ComplexArray:
     pieces = np.maximum(np.ceil(length / length.sum() * count), 1).astype(np.int64)
     first = np.repeat(np.cumsum(pieces) - pieces, pieces)
     share = (np.arange(pieces.sum()) - first) / np.repeat(pieces, pieces)
-    result: ComplexArray = np.repeat(corners, pieces) + share * np.repeat(edges, pieces)
-    return result
+    return np.asarray(np.repeat(corners, pieces) + share * np.repeat(edges, pieces))
 
 
 def _distances(points: ComplexArray, polygon: ComplexArray) -> FloatArray:
@@ -132,8 +131,7 @@ def _distances(points: ComplexArray, polygon: ComplexArray) -> FloatArray:
     edge = np.roll(polygon, -1) - polygon
     offset = points[:, None] - polygon
     share = np.clip((offset * edge.conj()).real / np.maximum(np.abs(edge) ** 2, 1e-300), 0.0, 1.0)
-    result: FloatArray = np.abs(offset - share * edge)
-    return result
+    return np.asarray(np.abs(offset - share * edge))
 
 
 def _frechet(to_edge: FloatArray, from_edge: FloatArray) -> float:

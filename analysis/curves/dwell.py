@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.mechanism.even_motion import even_motion
-from grashof.analysis.mechanism.extremes import Curve, Quantity, dense_samples, motion_between, unwrapped
+from grashof.analysis.mechanism.extremes import Quantity, dense_samples, motion_between, unwrapped
 from grashof.analysis.mechanism.kinematics import solve_kinematics
-from grashof.analysis.numerics.peaks import greatest
+from grashof.analysis.numerics.peaks import Curve, greatest, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.errors import wrong_value
@@ -108,14 +108,13 @@ class _Samples:
         cls, linkage: Linkage, curve: Curve, ends: tuple[float, float], closed: bool, period: float | None
     ) -> _Samples:
         at = even_motion(linkage, *ends).theta2(dense_samples(0.0, 1.0, closed))
-        values = unwrapped(at, curve(at), period)
-        once = cls(curve, period, at, values, len(at))
-        turning = once._turning()
-        at, kept = np.unique(np.concatenate([at, turning]), return_index=True)
-        values = np.concatenate([values, once.counted(turning)])[kept]
+        once = cls(curve, period, at, unwrapped(at, curve(at), period), len(at))
+        at, _ = with_extremes(lambda each: once.counted(each.ravel()).reshape(each.shape), at, periodic=False)
+        once = cls(curve, period, at, once.counted(at), len(at))
         if not closed:
-            return cls(curve, period, at, values, len(at))
+            return once
         # Two turns, as the dwell may extend across the ends.
+        values = once.values
         gain = 0.0 if period is None else period * np.round((values[-1] - values[0]) / period)
         twice = np.concatenate([at, at[1:] + (ends[1] - ends[0])])
         return cls(curve, period, twice, np.concatenate([values, values[1:] + gain]), len(at))
@@ -127,22 +126,6 @@ class _Samples:
             near = np.interp(places, self.at, self.values)
             found = found - self.period * np.round((found - near) / self.period)
         return np.asarray(found)
-
-    def _turning(self) -> FloatArray:
-        """Driver angles at local extremes of the quantity."""
-        rises = np.diff(self.values) > 0
-        turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
-        if not turns.size:
-            return self.at[:0]
-        low, high = self.at[turns - 1][:, None], self.at[turns + 1][:, None]
-        sign = np.where(rises[turns - 1], 1.0, -1.0)[:, None]
-
-        def heights(share: FloatArray) -> FloatArray:
-            places = low + (high - low) * share
-            return sign * self.counted(places.ravel()).reshape(places.shape)
-
-        share = greatest(heights, np.linspace(0, 1, 9), most=1)[1]
-        return np.asarray(low[:, 0] + (high - low)[:, 0] * share)
 
     def longest(self, tolerance: float) -> tuple[float, float]:
         """Ends of the longest part in which the quantity varies by at most the tolerance."""

@@ -125,7 +125,7 @@ def fit_polynomial(parameter: npt.ArrayLike, values: npt.ArrayLike, degree: int)
         coefficients=frozen_array(coefficients),
         r2=float(_r2(wrong.sum(), spread.sum(), np.abs(y).max())),
         r2_each=frozen_array(_r2(wrong, spread, np.abs(y).max()).reshape(y.shape[1:])),
-        error_max=float(np.sqrt((miss**2).sum(axis=-1).max())),
+        error_max=furthest(miss),
     )
 
 
@@ -193,8 +193,12 @@ def greatest_error(
     1.0
     """
     t, y = samples(parameter, values)
-    miss = (np.asarray(curve(t)) - y).reshape(len(t), -1)
-    return float(np.sqrt((miss**2).sum(axis=-1).max()))
+    return furthest(np.asarray(curve(t)) - y)
+
+
+def furthest(miss: FloatArray) -> float:
+    """Greatest length of differences, shape (N,) or (N, K)."""
+    return float(np.sqrt((miss.reshape(len(miss), -1) ** 2).sum(axis=-1).max()))
 
 
 def coupler_fit_r2(

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial, samples, turns_back
+from grashof.analysis.curves.fit import PolynomialFit, fit_polynomial, furthest, samples, turns_back
 from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray, frozen_array
 from grashof.problems.values.checks import finite_number
@@ -169,11 +169,8 @@ class FittedPath:
     @property
     def fits(self) -> list[PathFit]:
         """All fits of this path, by least squares and through neighbouring points."""
-        every = (_regression(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in DEGREES)
-        through = (
-            _interpolation(self, of, degree) for of in (Y_OF_X, OF_THETA2) for degree in NEWTON_DEGREES
-        )
-        return [*every, *through]
+        ways = (_regression, DEGREES), (_interpolation, NEWTON_DEGREES)
+        return [fit(self, of, n) for fit, degrees in ways for of in (Y_OF_X, OF_THETA2) for n in degrees]
 
     def parts(self, of: str) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Parameter and values at the points and on the path."""
@@ -221,7 +218,7 @@ def _regression(path: FittedPath, of: str, degree: int) -> PathFit:
     fit = fit_polynomial(places, values, degree)
     grid = np.linspace(fine.min(), fine.max(), len(fine))
     line = np.stack([grid, fit(grid)], axis=-1) if of == Y_OF_X else fit(fine)
-    return PathFit(of, False, degree, (fit,), fit.r2, fit.error_max, _greatest(fit(fine) - true), line)
+    return PathFit(of, False, degree, (fit,), fit.r2, fit.error_max, furthest(fit(fine) - true), line)
 
 
 def _interpolation(path: FittedPath, of: str, degree: int) -> PathFit:
@@ -236,7 +233,7 @@ def _interpolation(path: FittedPath, of: str, degree: int) -> PathFit:
         piece = newton_interpolation(places[nodes], values[nodes])
         until = first + 1 if first < last else len(places) - 1
         used = slice(_BETWEEN * first, _BETWEEN * until + 1)
-        errors.append(_greatest(piece(fine[used]) - true[used]))
+        errors.append(furthest(piece(fine[used]) - true[used]))
         if of == Y_OF_X:
             ways = pairwise(places[first : until + 1])
             x = np.concatenate([np.linspace(*way, _BETWEEN) for way in ways])
@@ -253,8 +250,3 @@ def _different(path: FittedPath, of: str, places: FloatArray) -> int:
     """Number of places that differ by more than rounding."""
     size = np.ptp(path.path, axis=0).max() if of == Y_OF_X else np.ptp(path.fine)
     return 1 + int((np.diff(np.sort(places)) > _EQUAL * size).sum())
-
-
-def _greatest(miss: FloatArray) -> float:
-    size = np.abs(miss) if miss.ndim == 1 else np.hypot(*miss.T)
-    return float(size.max())

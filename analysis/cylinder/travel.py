@@ -7,14 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.even_motion import driver_samples
-from grashof.analysis.mechanism.mobility import (
-    circuit_index,
-    dead_ends,
-    driver_ranges,
-    full_rotation,
-    range_index,
-)
+from grashof.analysis.mechanism import mobility
+from grashof.analysis.mechanism.even_motion import closer_at_ends, driver_samples
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
@@ -52,16 +46,14 @@ class Travel:
         """Ascending samples from end to end, close where the linkage may change quickly."""
         if self.turns:
             return driver_samples(self.linkage, self.start, self.end)
-        low, high = min(self.start, self.end), max(self.start, self.end)
-        places: FloatArray = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _SAMPLES))) / 2
-        return places
+        return closer_at_ends(min(self.start, self.end), max(self.start, self.end), _SAMPLES)
 
     @property
     def dead(self) -> FloatArray:
         """Places between the ends at which link 2 is in a dead position, shape (K,)."""
         if self.turns:
             return np.zeros(0)
-        low, high = min(self.start, self.end), max(self.start, self.end)
+        low, high = sorted((self.start, self.end))
         places: FloatArray = np.pi * np.arange(np.ceil(low / np.pi), np.floor(high / np.pi) + 1)
         return places[(places > low + _STEADY) & (places < high - _STEADY)]
 
@@ -82,19 +74,19 @@ def travel(
     theta2 (N,), unwrapped where link 2 turns fully, and assembly (N,) are those of a single linkage at its
     targets; `ends` the driver angles at which a motion on one branch begins and ends, if not at targets.
     """
-    circuits = circuit_index(linkage, theta2, assembly)
+    circuits = mobility.circuit_index(linkage, theta2, assembly)
     if circuits[0] < 0 or (circuits != circuits[0]).any():
         return None
     sign = int(assembly[0])
-    if full_rotation(linkage):
+    if mobility.full_rotation(linkage):
         start, end = (theta2[0], theta2[-1]) if ends is None else ends
         if (assembly != sign).any() or (ends is None and not _one_way(theta2)):
             return None
         return Travel(linkage, float(start), float(end), theta2, np.nan, np.nan, sign)
-    index, inside = range_index(linkage, theta2)
+    index, inside = mobility.range_index(linkage, theta2)
     if (index != index[0]).any():
         return None
-    low, high = dead_ends(linkage, *driver_ranges(linkage)[int(index[0])])
+    low, high = mobility.dead_ends(linkage, *mobility.driver_ranges(linkage)[int(index[0])])
     middle, half = (low + high) / 2, (high - low) / 2
 
     def phases(angles: FloatArray, sides: IntArray | int) -> FloatArray:
@@ -102,7 +94,7 @@ def travel(
 
     targets = phases(inside, assembly)
     if ends is not None:
-        start, end = phases(range_index(linkage, np.array(ends))[1], sign)
+        start, end = phases(mobility.range_index(linkage, np.array(ends))[1], sign)
         return Travel(linkage, float(start), float(end), targets, middle, half, sign)
     around = [found for way in (1, -1) if (found := _in_order(targets, way)) is not None]
     if not around:
@@ -122,5 +114,4 @@ def _in_order(phases: FloatArray, way: int) -> FloatArray | None:
     step = (way * np.diff(phases) + _STEADY) % TURN - _STEADY
     if step.sum() >= TURN - _STEADY:
         return None
-    found: FloatArray = phases[0] + way * np.concatenate([[0.0], np.cumsum(step)])
-    return found
+    return np.asarray(phases[0] + way * np.concatenate([[0.0], np.cumsum(step)]))

@@ -212,13 +212,14 @@ def least_transmission(
     rows = len(start)
     lo, hi, gap = np.full(rows, np.inf), np.full(rows, np.pi / 2), np.full(rows, np.inf)
     pieces, count = Pieces.covering(start, end), np.zeros(rows, dtype=np.int64)
-    reach = closure_of(linkages).reach(linkages)
+    closure = closure_of(linkages)
+    reach = closure.reach(linkages)
     required = np.full(rows, -np.inf) if required is None else required
     for turn in range(_ROUNDS):
         if not len(pieces.row):
             break
         np.add.at(count, pieces.row, 1)
-        margins = _margins(linkages, pieces)
+        margins = closure.margins(linkages[pieces.row], crank(pieces.middle, pieces.half))
         mid = [margin.mid for margin in margins]
         np.minimum.at(hi, pieces.row, _angle(*mid).hi)
         np.minimum.at(gap, pieces.row, np.minimum(mid[0].hi, mid[1].hi) / reach[pieces.row])
@@ -230,10 +231,6 @@ def least_transmission(
         np.minimum.at(lo, pieces.row[done], least[done])
         pieces = pieces.halves(np.flatnonzero(~done))
     return Least(lo, hi, gap, count)
-
-
-def _margins(linkages: Linkage, pieces: Pieces) -> Margins:
-    return closure_of(linkages).margins(linkages[pieces.row], crank(pieces.middle, pieces.half))
 
 
 def _angle(near: Interval, far: Interval) -> Interval:

@@ -19,7 +19,7 @@ from grashof.analysis.mechanism.extremes import extremes_of
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.analysis.numerics.minimax import least_peak
-from grashof.analysis.numerics.quadrature import Curve
+from grashof.analysis.numerics.peaks import Curve
 from grashof.problems import AssemblyError, Linkage, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value

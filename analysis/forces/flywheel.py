@@ -12,7 +12,8 @@ from grashof.analysis.forces.mass import Masses
 from grashof.analysis.mechanism.even_motion import EvenMotion, even_motion
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.analysis.numerics.quadrature import Curve, Panels, gauss_legendre, held, integrate
+from grashof.analysis.numerics.peaks import Curve
+from grashof.analysis.numerics.quadrature import Panels, gauss_legendre, held, integrate
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 

@@ -44,11 +44,8 @@ def instant_centres(
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-    assembly : array_like, shape (...), optional
-        The linkage's own by default.
+    linkage, theta2, assembly
+        As for `solve_position`.
 
     Returns
     -------
@@ -90,8 +87,7 @@ def _meeting(first: FloatArray, along: FloatArray, second: FloatArray, beside: F
     """Intersection of two lines, each given by a point and a direction."""
     with np.errstate(divide="ignore", invalid="ignore"):
         share = cross(second - first, beside) / cross(along, beside)
-        meeting: FloatArray = first + share[..., None] * along
-    return meeting
+        return np.asarray(first + share[..., None] * along)
 
 
 _FAR = 1e12  # lengths of link 2

@@ -78,29 +78,22 @@ def newton_position(
     theta3, theta4, x, y = (np.array(part) for part in np.broadcast_arrays(*guess, x, y))
     closed = 1e-14 * (linkage.lengths.sum(axis=-1) + np.abs(linkage.o2).max(axis=-1))
     steps = np.zeros(np.shape(x), dtype=np.int64)
-    for _ in range(max_steps):
+    for step in range(max_steps + 1):
         gap_x = x + r3 * np.cos(theta3) - r4 * np.cos(theta4)
         gap_y = y + r3 * np.sin(theta3) - r4 * np.sin(theta4)
         gap = np.hypot(gap_x, gap_y)
         moving = gap > closed
-        if not moving.any():
+        if step == max_steps or not moving.any():
             break
         sine = np.sin(theta4 - theta3)
         sine = np.where(np.abs(sine) < 1e-12, np.copysign(1e-12, sine), sine)
         step3 = (gap_x * np.cos(theta4) + gap_y * np.sin(theta4)) / (r3 * sine)
         step4 = (gap_x * np.cos(theta3) + gap_y * np.sin(theta3)) / (r4 * sine)
-        theta3 = theta3 - np.where(moving, _held(step3), 0.0)
-        theta4 = theta4 - np.where(moving, _held(step4), 0.0)
+        theta3 = theta3 - np.where(moving, np.clip(step3, -_LONGEST_STEP, _LONGEST_STEP), 0.0)
+        theta4 = theta4 - np.where(moving, np.clip(step4, -_LONGEST_STEP, _LONGEST_STEP), 0.0)
         steps = steps + moving
-    gap = np.hypot(
-        x + r3 * np.cos(theta3) - r4 * np.cos(theta4), y + r3 * np.sin(theta3) - r4 * np.sin(theta4)
-    )
     converged = gap <= 100 * closed
     theta3, theta4 = (
         np.where(converged, np.arctan2(np.sin(found), np.cos(found)), np.nan) for found in (theta3, theta4)
     )
     return NewtonPosition(theta3[()], theta4[()], gap[()], steps[()], converged)
-
-
-def _held(step: FloatArray) -> FloatArray:
-    return np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)

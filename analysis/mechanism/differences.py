@@ -143,21 +143,15 @@ def compare_differences(
     for first, second, positions, velocity, acceleration in curves:
         for derivative, (name, exact) in enumerate(((first, velocity), (second, acceleration)), start=1):
             for accuracy in (2, 4):
-                differences = central_differences(time, positions, derivative, accuracy)
-                found.append(_deviation(name, accuracy, differences, exact, angles))
+                apart, size = (
+                    np.hypot(*values.T) if values.ndim == 2 else np.abs(values)
+                    for values in (central_differences(time, positions, derivative, accuracy) - exact, exact)
+                )
+                known = np.isfinite(apart)
+                if not known.any():
+                    raise ProblemError("no sample has neighbours in which the linkage closes")
+                worst = int(np.argmax(np.where(known, apart, -1.0)))
+                largest, peak = float(apart[worst]), float(size[known].max())
+                share = largest / peak if peak else 0.0
+                found.append(Deviation(name, accuracy, largest, share, float(angles[worst])))
     return tuple(found)
-
-
-def _deviation(
-    name: str, accuracy: int, differences: FloatArray, exact: FloatArray, theta2: FloatArray
-) -> Deviation:
-    apart = np.abs(differences - exact)
-    size = np.abs(exact)
-    if exact.ndim == 2:
-        apart, size = np.hypot(*apart.T), np.hypot(*size.T)
-    known = np.isfinite(apart)
-    if not known.any():
-        raise ProblemError("no sample has neighbours in which the linkage closes")
-    worst = int(np.argmax(np.where(known, apart, -1.0)))
-    largest, peak = float(apart[worst]), float(size[known].max())
-    return Deviation(name, accuracy, largest, largest / peak if peak else 0.0, float(theta2[worst]))

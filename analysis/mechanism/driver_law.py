@@ -13,8 +13,8 @@ import scipy
 
 from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
-from grashof.analysis.numerics.peaks import last_where
-from grashof.analysis.numerics.quadrature import Curve, integrate
+from grashof.analysis.numerics.peaks import Curve, last_where
+from grashof.analysis.numerics.quadrature import integrate
 from grashof.analysis.numerics.taylor import derivatives
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
@@ -109,8 +109,7 @@ class DriverLaw:
         """The driver at times from the start, shape (...), s; a steady one continues, others stop."""
         now = np.asarray(time, dtype=np.float64)
         if self.motor.steady:
-            still = np.zeros(now.shape)
-            return DriverMotion(self.start + self.omega2 * now, self.omega2 + still, still, still)
+            return _steady(self.start + self.omega2 * now, self.omega2)
         return self._moved(np.clip(now / self.duration, 0.0, 1.0))
 
     def time_at(self, theta2: npt.ArrayLike) -> FloatArray:
@@ -124,8 +123,7 @@ class DriverLaw:
         """The driver at driver angles of the motion, shape (...), rad."""
         angle = np.asarray(theta2, dtype=np.float64)
         if self.motor.steady:
-            still = np.zeros(angle.shape)
-            return DriverMotion(angle, self.omega2 + still, still, still)
+            return _steady(angle, self.omega2)
         return self._moved(self._shape.time(self._way(angle)))._replace(theta2=angle)
 
     def holds(self, theta2: npt.ArrayLike) -> BoolArray:
@@ -199,13 +197,17 @@ class SteadyDrivers:
 
     def at_place(self, place: FloatArray) -> DriverMotion:
         """As `DriverLaw.at_place`."""
-        still = np.zeros(place.shape)
-        return DriverMotion(place, self.omega2 + still, still, still)
+        return _steady(place, self.omega2)
 
     def time_at(self, theta2: npt.ArrayLike) -> FloatArray:
         """As `DriverLaw.time_at`."""
         way = np.asarray(theta2, dtype=np.float64) - self.start
         return np.asarray(way / np.where(self.omega2, self.omega2, np.nan))
+
+
+def _steady(theta2: FloatArray, omega2: FloatArray | float) -> DriverMotion:
+    still = np.zeros(theta2.shape)
+    return DriverMotion(theta2, omega2 + still, still, still)
 
 
 def _trapezoid(ramp: float) -> _Shape:

@@ -10,17 +10,16 @@ import numpy as np
 import scipy
 from numpy.polynomial import chebyshev
 
-from grashof.analysis.mechanism.even_motion import even_motion
+from grashof.analysis.mechanism.even_motion import closer_at_ends, even_motion
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import dead_ends, driver_ranges, full_rotation
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.transmission import quality, transmission_at_extremes
-from grashof.analysis.numerics.peaks import greatest, own
+from grashof.analysis.numerics.peaks import Curve, greatest, own
 from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 
 Quantity: TypeAlias = Callable[[Kinematics], FloatArray]
-Curve: TypeAlias = Callable[[FloatArray], FloatArray]
 
 _SAMPLES = 2881
 _BOX_SAMPLES = 361
@@ -195,10 +194,9 @@ def motion_between(linkage: Linkage, start: float | None, end: float | None) -> 
 
 def dense_samples(start: float, end: float, closed: bool) -> FloatArray:
     """Samples of a curve whose extremes are sought, shape (N,)."""
-    share = np.linspace(0, 1, _SAMPLES)
-    if not closed:  # closer towards ends that may be dead positions
-        share = (1 - np.cos(np.pi * share)) / 2
-    at = start + (end - start) * share
+    if closed:
+        return np.linspace(start, end, _SAMPLES)
+    at = closer_at_ends(start, end, _SAMPLES)  # which may be dead positions
     at[-1] = end
     return at
 
@@ -244,12 +242,10 @@ def _outermost(
 
 def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[float]:
     """Stationary points about a sample, from the widest window in which a polynomial is exact."""
-    middle = at[peak]
+    middle, (least, most) = at[peak], (-np.inf, np.inf) if closed else (at[0], at[-1])
     step = max(at[min(peak + 1, len(at) - 1)] - middle, middle - at[max(peak - 1, 0)])
     for width in (16.0, 4.0, 1.0):
-        low, high = middle - width * step, middle + width * step
-        if not closed:
-            low, high = max(low, at[0]), min(high, at[-1])
+        low, high = max(middle - width * step, least), min(middle + width * step, most)
         values = curve((low + high) / 2 + (high - low) / 2 * _NODES)
         if not np.isfinite(values).all():
             if closed:  # undefined beyond its ends
@@ -261,9 +257,6 @@ def _stationary(curve: Curve, at: FloatArray, peak: int, closed: bool) -> list[f
             roots = chebyshev.chebroots(chebyshev.chebder(terms))
             roots = roots.real[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) <= 1)]
             return [float((low + high) / 2 + (high - low) / 2 * root) for root in roots]
-    low, high = middle - step, middle + step
-    if not closed:
-        low, high = max(low, at[0]), min(high, at[-1])
     found = scipy.optimize.minimize_scalar(
         lambda place: -float(curve(np.array([place]))[0]), bounds=(low, high), method="bounded",
         options={"xatol": 1e-12},

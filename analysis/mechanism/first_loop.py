@@ -1,10 +1,22 @@
-"""First loops in closed form, by their dyads: driver ranges, classes, limit positions."""
+"""First loops in closed form, by their dyads: driver ranges, classes, limit positions.
+
+Each kind has the same methods:
+
+- `span`: where the loop closes with the cosine of the transmission angle at most `cosine` in size.
+- `shares`: `rotatability`, shape (..., 2).
+- `even`: a and b of `first_motion`, 1 for one that is 0 (a change point); NaN where undefined.
+- `class_of`: the class of a single linkage.
+- `apart`: the length that the transmission angle depends on, at theta2 - theta1 = phi; `apart_on_line`: the
+  same at phi = 0 and pi, where it is least and greatest.
+- `limits`: driver angles at which the output turns back, shape (..., 2), rad; NaN where there are none.
+"""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -13,9 +25,6 @@ from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import DyadKind
 
 CHANGE = 1e-12  # share of the lengths within which a linkage has a change point
-
-L_contra = TypeVar("L_contra", bound=Linkage, contravariant=True)
-P_contra = TypeVar("P_contra", bound=FourBar | SixBar | InvertedSliderCrank, contravariant=True)  # with O4
 
 
 class GrashofClass(StrEnum):
@@ -48,38 +57,6 @@ class Span(NamedTuple):
     closes: BoolArray
 
 
-class FirstLoop(ABC, Generic[L_contra]):
-    """A driver and a dyad on the ground, in closed form; stateless."""
-
-    @abstractmethod
-    def span(self, linkage: L_contra, cosine: float = 1.0) -> Span:
-        """Where the loop closes with the cosine of the transmission angle at most `cosine` in size."""
-
-    @abstractmethod
-    def shares(self, linkage: L_contra) -> FloatArray:
-        """`rotatability`, shape (..., 2)."""
-
-    @abstractmethod
-    def even(self, linkage: L_contra) -> tuple[float, float]:
-        """The a and b of `first_motion`, 1 for one that is 0 (a change point); NaN where undefined."""
-
-    @abstractmethod
-    def class_of(self, linkage: L_contra, tolerance: float) -> GrashofClass:
-        """Class of a single linkage."""
-
-    @abstractmethod
-    def apart(self, linkage: L_contra, phi: FloatArray) -> FloatArray:
-        """The length that the transmission angle depends on, at theta2 - theta1 = phi."""
-
-    @abstractmethod
-    def apart_on_line(self, linkage: L_contra) -> tuple[FloatArray, FloatArray]:
-        """The same at phi = 0 and pi, where it is least and greatest."""
-
-    @abstractmethod
-    def limits(self, linkage: L_contra) -> FloatArray:
-        """Driver angles at which the output turns back, shape (..., 2), rad; NaN where there are none."""
-
-
 _BY_SHORTEST = (
     GrashofClass.DOUBLE_CRANK,
     GrashofClass.CRANK_ROCKER,
@@ -89,62 +66,67 @@ _BY_SHORTEST = (
 FOUR_BAR_CLASSES = (*_BY_SHORTEST, GrashofClass.CHANGE_POINT, GrashofClass.NON_GRASHOF)
 
 
-class _DiagonalLoop(FirstLoop[P_contra]):
+@dataclass(frozen=True, slots=True)
+class _DiagonalLoop:
     """A loop whose `apart` is the diagonal A-O4."""
 
-    def apart(self, linkage: P_contra, phi: FloatArray) -> FloatArray:
+    linkage: FourBar | SixBar | InvertedSliderCrank
+
+    def apart(self, phi: FloatArray) -> FloatArray:
         """The squared diagonal as (r1 - r2)^2 + 4 r1 r2 sin^2(phi/2), without cancellation near 0."""
-        r1, r2 = linkage.r1, linkage.r2
+        r1, r2 = self.linkage.r1, self.linkage.r2
         return np.asarray(np.sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * np.sin(phi / 2) ** 2))
 
-    def apart_on_line(self, linkage: P_contra) -> tuple[FloatArray, FloatArray]:
-        return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2
+    def apart_on_line(self) -> tuple[FloatArray, FloatArray]:
+        return np.abs(self.linkage.r1 - self.linkage.r2), self.linkage.r1 + self.linkage.r2
 
 
-class FourBarLoop(_DiagonalLoop[FourBar | SixBar]):
+@dataclass(frozen=True, slots=True)
+class FourBarLoop(_DiagonalLoop):
     """The four-bar, that of a six-bar too."""
 
-    def span(self, linkage: FourBar | SixBar, cosine: float = 1.0) -> Span:
+    linkage: FourBar | SixBar
+
+    def span(self, cosine: float = 1.0) -> Span:
         """4 r1 r2 a = (r1 - r2)^2 - least^2, 4 r1 r2 b = most^2 - (r1 + r2)^2: least and most diagonals.
 
         They are r3 -+ r4 where they may be in line, otherwise third sides of the triangle A-B-O4.
         """
-        r1, r2, r3, r4 = np.moveaxis(linkage.lengths[..., :4], -1, 0)
+        r1, r2, r3, r4 = np.moveaxis(self.linkage.lengths[..., :4], -1, 0)
         bent = 2 * r3 * r4 * (1 - cosine)
         least, most = (r3 - r4) ** 2 + bent, (r3 + r4) ** 2 - bent
         longest, shortest = (r1 + r2) ** 2, (r1 - r2) ** 2
         more_a, more_b = longest - least, most - shortest
         return Span(shortest - least, more_a, most - longest, more_b, (more_a >= 0) & (more_b >= 0))
 
-    def shares(self, linkage: FourBar | SixBar) -> FloatArray:
+    def shares(self) -> FloatArray:
         """(r3 + r4 - r1 - r2) and (|r1 - r2| - |r3 - r4|), as shares of r1 + r2 + r3 + r4."""
-        r1, r2, r3, r4 = np.moveaxis(linkage.lengths[..., :4], -1, 0)
+        r1, r2, r3, r4 = np.moveaxis(self.linkage.lengths[..., :4], -1, 0)
         stretched, folded = r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)
-        shares: FloatArray = np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None]
-        return shares
+        return np.asarray(np.stack([stretched, folded], axis=-1) / (r1 + r2 + r3 + r4)[..., None])
 
-    def even(self, linkage: FourBar | SixBar) -> tuple[float, float]:
-        r1, r2, r3, r4 = map(float, linkage.lengths[:4])
+    def even(self) -> tuple[float, float]:
+        r1, r2, r3, r4 = map(float, self.linkage.lengths[:4])
         if not r1 * r2 > 0:  # the ground pivots coincide: all links turn together
             return np.nan, np.nan
-        stretched, folded = self.shares(linkage).tolist()
+        stretched, folded = self.shares().tolist()
         scale = (r1 + r2 + r3 + r4) / (4 * r1 * r2)
         a = folded * scale * (abs(r1 - r2) + abs(r3 - r4)) if abs(folded) > CHANGE else 1.0
         b = stretched * scale * (r1 + r2 + r3 + r4) if abs(stretched) > CHANGE else 1.0
         return a, b
 
-    def class_of(self, linkage: FourBar | SixBar, tolerance: float) -> GrashofClass:
+    def class_of(self, tolerance: float) -> GrashofClass:
         """Shortest and longest compared with the others (Grashof 1883; Norton, sec. 2.13)."""
-        lengths = linkage.lengths[:4]
+        lengths = self.linkage.lengths[:4]
         shortest, p, q, longest = np.sort(lengths)
         excess = p + q - shortest - longest
         if abs(excess) <= tolerance * lengths.sum():
             return GrashofClass.CHANGE_POINT
         return _BY_SHORTEST[int(np.argmin(lengths))] if excess > 0 else GrashofClass.NON_GRASHOF
 
-    def limits(self, linkage: FourBar | SixBar) -> FloatArray:
+    def limits(self) -> FloatArray:
         """O2, A and B in line: triangles O2-B-O4 with O2B = r2 + r3 or |r2 - r3| (Norton, secs. 3.2, 3.4)."""
-        r1, r2, r3, r4 = np.moveaxis(linkage.lengths[..., :4], -1, 0)
+        r1, r2, r3, r4 = np.moveaxis(self.linkage.lengths[..., :4], -1, 0)
         reach = np.stack([r2 + r3, np.abs(r3 - r2)], axis=-1)
         r1, r4 = r1[..., None], r4[..., None]
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -153,74 +135,80 @@ class FourBarLoop(_DiagonalLoop[FourBar | SixBar]):
                 np.sqrt((r1 + reach - r4) * (r1 + reach + r4)),
             )
         # B lies left of A->O4 when it lies left of O2->O4 as seen along O2->B, unless A lies beyond B.
-        side = linkage.assembly[..., None] * np.stack([np.ones_like(r2), np.sign(r3 - r2)], axis=-1)
+        side = self.linkage.assembly[..., None] * np.stack([np.ones_like(r2), np.sign(r3 - r2)], axis=-1)
         opposite = np.stack([np.zeros_like(r2), np.where(r3 > r2, np.pi, 0.0)], axis=-1)
-        return np.asarray(linkage.theta1[..., None] + 2 * side * half + opposite)
+        return np.asarray(self.linkage.theta1[..., None] + 2 * side * half + opposite)
 
 
-class SliderCrankLoop(FirstLoop[SliderCrank]):
+@dataclass(frozen=True, slots=True)
+class SliderCrankLoop:
     """The slider-crank; its `apart` is h, from A to the slide's line, positive to the left."""
 
-    def span(self, linkage: SliderCrank, cosine: float = 1.0) -> Span:
+    linkage: SliderCrank
+
+    def span(self, cosine: float = 1.0) -> Span:
         """2 r2 a = r3 + offset - r2, 2 r2 b = r3 - offset - r2: h = offset - r2 cos(phi) within +-r3."""
-        r2, r3, offset = linkage.r2, linkage.r3 * cosine, linkage.offset
+        r2, r3, offset = self.linkage.r2, self.linkage.r3 * cosine, self.linkage.offset
         low, high = offset - r2, offset + r2
         return Span(r3 + low, r3 + high, r3 - high, r3 - low, (r3 >= low) & (r3 >= -high))
 
-    def shares(self, linkage: SliderCrank) -> FloatArray:
+    def shares(self) -> FloatArray:
         """r3 - r2 - offset and r3 - r2 + offset, as shares of r2 + r3 + |offset|."""
-        r2, r3, offset = linkage.r2, linkage.r3, linkage.offset
+        r2, r3, offset = self.linkage.r2, self.linkage.r3, self.linkage.offset
         room = r3 - r2
         return np.stack([room - offset, room + offset], axis=-1) / (r2 + r3 + np.abs(offset))[..., None]
 
-    def even(self, linkage: SliderCrank) -> tuple[float, float]:
-        span, (stretched, folded) = self.span(linkage), self.shares(linkage).tolist()
-        scale = 2 * float(linkage.r2)
+    def even(self) -> tuple[float, float]:
+        span, (stretched, folded) = self.span(), self.shares().tolist()
+        scale = 2 * float(self.linkage.r2)
         a = float(span.a) / scale if abs(folded) > CHANGE else 1.0
         return a, float(span.b) / scale if abs(stretched) > CHANGE else 1.0
 
-    def class_of(self, linkage: SliderCrank, tolerance: float) -> GrashofClass:
-        shares = self.shares(linkage)
+    def class_of(self, tolerance: float) -> GrashofClass:
+        shares = self.shares()
         if np.abs(shares).min() <= tolerance:
             return GrashofClass.CHANGE_POINT
         return GrashofClass.SLIDER_CRANK if shares.min() > 0 else GrashofClass.SLIDER_ROCKER
 
-    def apart(self, linkage: SliderCrank, phi: FloatArray) -> FloatArray:
-        return np.asarray(linkage.offset - linkage.r2 * np.cos(phi))
+    def apart(self, phi: FloatArray) -> FloatArray:
+        return np.asarray(self.linkage.offset - self.linkage.r2 * np.cos(phi))
 
-    def apart_on_line(self, linkage: SliderCrank) -> tuple[FloatArray, FloatArray]:
-        return linkage.offset - linkage.r2, linkage.offset + linkage.r2
+    def apart_on_line(self) -> tuple[FloatArray, FloatArray]:
+        return self.linkage.offset - self.linkage.r2, self.linkage.offset + self.linkage.r2
 
-    def limits(self, linkage: SliderCrank) -> FloatArray:
+    def limits(self) -> FloatArray:
         """O2, A and B in line: sin(theta3 - slide_angle) = offset / (r3 +- r2)."""
-        r2, r3, offset = (x[..., None] for x in (linkage.r2, linkage.r3, linkage.offset))
+        r2, r3, offset = (x[..., None] for x in (self.linkage.r2, self.linkage.r3, self.linkage.offset))
         reach = np.concatenate([r3 + r2, r3 - r2], axis=-1)
         opposite = np.array([0.0, np.pi])
         with np.errstate(invalid="ignore"):
             level = np.sqrt((np.abs(reach) - np.abs(offset)) * (np.abs(reach) + np.abs(offset)))
-            rise = np.arctan2(np.where(reach < 0, -offset, offset), linkage.assembly[..., None] * level)
-        return np.asarray(linkage.slide_angle[..., None] + rise + opposite)
+            rise = np.arctan2(np.where(reach < 0, -offset, offset), self.linkage.assembly[..., None] * level)
+        return np.asarray(self.linkage.slide_angle[..., None] + rise + opposite)
 
 
-class InvertedLoop(_DiagonalLoop[InvertedSliderCrank]):
+@dataclass(frozen=True, slots=True)
+class InvertedLoop(_DiagonalLoop):
     """The inverted slider-crank."""
 
-    def span(self, linkage: InvertedSliderCrank, cosine: float = 1.0) -> Span:
+    linkage: InvertedSliderCrank
+
+    def span(self, cosine: float = 1.0) -> Span:
         """4 r1 r2 a = (r1 - r2)^2 - (offset / cosine)^2; nothing limits the diagonal where it is longest."""
-        least, most, away = self._diagonals(linkage)
+        least, most, away = self._diagonals()
         away = away / cosine
         a, more_a = (least - away) * (least + away), (most - away) * (most + away)
         endless = np.full_like(a, np.inf)
         return Span(a, more_a, endless, endless, away <= most)
 
-    def shares(self, linkage: InvertedSliderCrank) -> FloatArray:
+    def shares(self) -> FloatArray:
         """1, and |r1 - r2| - |offset| as a share of r1 + r2 + |offset|."""
-        least, most, away = self._diagonals(linkage)
+        least, most, away = self._diagonals()
         folded = (least - away) / (most + away)
         return np.stack([np.ones_like(folded), folded], axis=-1)
 
-    def even(self, linkage: InvertedSliderCrank) -> tuple[float, float]:
-        least, most, away = map(float, self._diagonals(linkage))
+    def even(self) -> tuple[float, float]:
+        least, most, away = map(float, self._diagonals())
         scale = (most - least) * (most + least)  # 4 r1 r2
         if not scale > 0:
             return np.nan, np.nan
@@ -229,45 +217,45 @@ class InvertedLoop(_DiagonalLoop[InvertedSliderCrank]):
         narrow = least**2 / scale  # the diagonal is shortest there
         return narrow if narrow > CHANGE else 1.0, np.inf
 
-    def class_of(self, linkage: InvertedSliderCrank, tolerance: float) -> GrashofClass:
-        share = float(self.shares(linkage)[1])
+    def class_of(self, tolerance: float) -> GrashofClass:
+        share = float(self.shares()[1])
         if abs(share) <= tolerance:
             return GrashofClass.CHANGE_POINT
         if share < 0:
             return GrashofClass.INVERTED_SLIDER_ROCKER
-        return GrashofClass.CRANK_SHAPER if linkage.r2 < linkage.r1 else GrashofClass.WHITWORTH
+        return GrashofClass.CRANK_SHAPER if self.linkage.r2 < self.linkage.r1 else GrashofClass.WHITWORTH
 
-    def limits(self, linkage: InvertedSliderCrank) -> FloatArray:
+    def limits(self) -> FloatArray:
         """Crank square to the rod: r1 sin(theta1 - theta3) = +-r2 - offset, theta2 = theta3 +- 90 deg."""
         side = np.array([1.0, -1.0])
-        r1, r2, offset = (x[..., None] for x in (linkage.r1, linkage.r2, linkage.offset))
+        r1, r2, offset = (x[..., None] for x in (self.linkage.r1, self.linkage.r2, self.linkage.offset))
         beside = side * r2 - offset
         with np.errstate(invalid="ignore"):
-            along = linkage.assembly[..., None] * np.sqrt((r1 - beside) * (r1 + beside))
-            theta3 = linkage.theta1[..., None] - np.arctan2(beside, along)
+            along = self.linkage.assembly[..., None] * np.sqrt((r1 - beside) * (r1 + beside))
+            theta3 = self.linkage.theta1[..., None] - np.arctan2(beside, along)
         return np.asarray(theta3 + side * np.pi / 2)
 
-    @staticmethod
-    def _diagonals(linkage: InvertedSliderCrank) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _diagonals(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """The shortest and the longest diagonal, and the offset's size."""
-        return np.abs(linkage.r1 - linkage.r2), linkage.r1 + linkage.r2, np.abs(linkage.offset)
+        return (*self.apart_on_line(), np.abs(self.linkage.offset))
 
 
-_LOOPS: dict[DyadKind, FirstLoop[Any]] = {
-    DyadKind.RRR: FourBarLoop(),
-    DyadKind.RRP: SliderCrankLoop(),
-    DyadKind.RPR: InvertedLoop(),
+FirstLoop: TypeAlias = FourBarLoop | SliderCrankLoop | InvertedLoop
+_LOOPS: dict[DyadKind, Callable[[Any], FirstLoop]] = {
+    DyadKind.RRR: FourBarLoop,
+    DyadKind.RRP: SliderCrankLoop,
+    DyadKind.RPR: InvertedLoop,
 }
 
 
-def first_loop(linkage: Linkage) -> FirstLoop[Any]:
+def first_loop(linkage: Linkage) -> FirstLoop:
     """Closed forms of the first loop of a linkage."""
-    return _LOOPS[linkage.mechanism.dyads[0].kind]
+    return _LOOPS[linkage.mechanism.dyads[0].kind](linkage)
 
 
 def first_ranges(linkage: Linkage, transmission: float = 0.0) -> FloatArray:
     """Driver angles at which the first loop closes, shape (..., 2, 2), rad; see `driver_ranges`."""
-    a, more_a, b, more_b, assembled = first_loop(linkage).span(linkage, float(np.cos(transmission)))
+    a, more_a, b, more_b, assembled = first_loop(linkage).span(float(np.cos(transmission)))
     # Half-angle forms keep their digits near 0 and pi.
     half_stretched = np.arctan2(np.sqrt(np.maximum(more_b, 0)), np.sqrt(np.maximum(-b, 0)))
     half_folded = np.arctan2(np.sqrt(np.maximum(-a, 0)), np.sqrt(np.maximum(more_a, 0)))

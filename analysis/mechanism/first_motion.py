@@ -131,7 +131,7 @@ def first_motion(linkage: Linkage, start: float, end: float) -> FirstMotion:
     it (a, b < 0); c^2 = a / (1 + a), X^2 = -(1 + b) / b, and k' is
     c / X, c / sqrt(c^2 + X^2) and |c| / X. At a change point (a or b = 0) that factor is left out.
 
-    Slider-cranks have the same form with a and b of their own (`FirstLoop.even`). For an inverted one b is
+    Slider-cranks have the same form with a and b of their own (`first_loop`). For an inverted one b is
     infinite, and sin mu has the diagonal A-O4 as denominator.
     """
     plain = FirstMotion(float(start), float(end))
@@ -162,7 +162,7 @@ def turns_into(least: float, most: float, low: float, high: float) -> float | No
 
 def _home(linkage: Linkage, low: float, high: float) -> tuple[_Swing, float, float, float] | None:
     """Motion of the driver between two angles, the angle it is counted from, and a and b."""
-    a, b = first_loop(linkage).even(linkage)
+    a, b = first_loop(linkage).even()
     if np.isnan(a):
         return None
     theta1 = float(linkage.theta1)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
@@ -244,13 +245,10 @@ def solve_kinematics(
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch that broadcasts against the driver (``batch[:, None]``: all linkages at all angles).
+    linkage, assembly
+        As for `solve_position`.
     theta2, omega2, alpha2, jerk2 : array_like, shape (...), rad over s^0 to s^3
         The driver; by default it turns steadily at 1 rad/s. See also `driver_motion`.
-    assembly : array_like, shape (...), optional
-        +1 or -1, of the first loop; the linkage's own by default. For the second loop of a six-bar use
-        ``linkage.changed(assembly_2=...)``.
 
     Returns
     -------
@@ -280,10 +278,10 @@ def solve_kinematics(
     [-4.120914, 6.997985, 296.089193, 470.13353]
     """
     driver = [np.asarray(value, dtype=np.float64) for value in (theta2, omega2, alpha2, jerk2)]
-    kind, operands = linkage.mechanism, operands_of(linkage, assembly)
+    kind = linkage.mechanism
     slides = [dyad.slides for dyad in kind.dyads]
     rows = 10 * len(slides) + 4 * sum(slides)
-    solved = in_blocks(_solution(kind, len(operands)), [*operands, *driver], rows)
+    solved = in_blocks(partial(_solution, kind), [*operands_of(linkage, assembly), *driver], rows)
     shape = solved.shape[1:]
     theta2, omega2, alpha2, jerk2 = (
         (value if value.shape == shape else np.broadcast_to(value, shape))[()] for value in driver
@@ -315,23 +313,19 @@ _WHY_DEAD = {
 }
 
 
-def _solution(kind: Mechanism, count: int) -> Callable[..., list[FloatArray]]:
+def _solution(kind: Mechanism, *operands: FloatArray) -> list[FloatArray]:
     """For each loop: angles and rates of its links, 1 where dead, its margin; travel and rates of a slide."""
-
-    def solve(*operands: FloatArray) -> list[FloatArray]:
-        theta2, omega2, alpha2, jerk2 = operands[count:]
-        loops, _ = close(kind, operands[:count], theta2)
-        found: list[FloatArray] = []
-        for loop, moved in zip(loops, move(loops, (omega2, alpha2, jerk2))[0], strict=True):
-            orders, (theta3, theta4) = moved.orders, loop.closed.angles
-            found += [theta3, *(order.turn3 for order in orders)]
-            found += [theta4, *(order.turn4 for order in orders)]
-            found += [moved.dead.astype(np.float64), loop.closed.margin]
-            if loop.dyad.row.slides:
-                found += [loop.travel, *(order.travel for order in orders)]
-        return found
-
-    return solve
+    *sizes, theta2, omega2, alpha2, jerk2 = operands
+    loops, _ = close(kind, sizes, theta2)
+    found: list[FloatArray] = []
+    for loop, moved in zip(loops, move(loops, (omega2, alpha2, jerk2))[0], strict=True):
+        orders, (theta3, theta4) = moved.orders, loop.closed.angles
+        found += [theta3, *(order.turn3 for order in orders)]
+        found += [theta4, *(order.turn4 for order in orders)]
+        found += [moved.dead.astype(np.float64), loop.closed.margin]
+        if loop.dyad.row.slides:
+            found += [loop.travel, *(order.travel for order in orders)]
+    return found
 
 
 def _arm(at: FloatArray, angular: tuple[FloatArray, ...]) -> FloatArray:

@@ -43,7 +43,7 @@ def grashof_class(linkage: Linkage, tolerance: float = CHANGE) -> GrashofClass:
     >>> str(grashof_class(FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)))
     'crank-rocker'
     """
-    return first_loop(linkage).class_of(linkage, tolerance)
+    return first_loop(linkage).class_of(tolerance)
 
 
 def triple_rocker_kind(linkage: Linkage) -> str:
@@ -74,7 +74,7 @@ def rotatability(linkage: Linkage) -> FloatArray:
     The diagonal A-O4 runs from |r1 - r2| to r1 + r2 and has to stay between |r3 - r4| and r3 + r4
     (McCarthy & Soh, *Geometric Design of Linkages*, sec. 2.2).
     """
-    return first_loop(linkage).shares(linkage)
+    return first_loop(linkage).shares()
 
 
 def full_rotation(linkage: Linkage) -> BoolArray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -11,15 +10,13 @@ import numpy as np
 from grashof.analysis.mechanism.closing import close, dyad_of, operands_of
 from grashof.analysis.mechanism.first_loop import CHANGE, first_ranges
 from grashof.analysis.mechanism.first_motion import FirstMotion, first_motion, panel_edges
-from grashof.analysis.numerics.peaks import last_where, with_extremes
+from grashof.analysis.numerics.peaks import Curve, last_where, with_extremes
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray, IntArray, turned_from
 
 _PANELS = 480
 _TOGETHER = 1e-7  # share of the lengths: error of the width where rounding misses a dead first loop
 SAME = 1e-9  # rad: greatest difference of two values of one dead position
-
-Curve = Callable[[FloatArray], FloatArray]
 
 
 class Cut(NamedTuple):

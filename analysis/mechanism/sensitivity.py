@@ -17,12 +17,8 @@ def sensitivity(linkage: Linkage, theta2: npt.ArrayLike, assembly: npt.ArrayLike
 
     Parameters
     ----------
-    linkage : Linkage
-        One, or a batch whose axes broadcast against `theta2`.
-    theta2 : array_like, shape (...), rad
-        Driver angle, global.
-    assembly : array_like, shape (...), optional
-        +1 or -1 of the first loop; the linkage's own by default.
+    linkage, theta2, assembly
+        As for `solve_position`.
 
     Returns
     -------
@@ -108,12 +104,12 @@ class _Varied:
 
     def _own(self, names: LoopNames) -> tuple[dict[str, ComplexArray], dict[str, ComplexArray]]:
         """Displacements of C and D by their coordinates on their links."""
-        (on_c, on_d), far = names.dyad.hosts, dict[str, ComplexArray]()
-        if names.links[0] == 3:
-            far = {"r1": np.exp(1j * self.linkage.theta1)} if names.pinned else far
-            return self.along(2, "r2"), far
-        far = self.along(on_d, f"{names.d}_u", f"{names.d}_v") if names.pinned else far
-        return self.along(on_c, f"{names.c}_u", f"{names.c}_v"), far
+        (on_c, on_d), first = names.dyad.hosts, names.links[0] == 3
+        c = self.along(2, "r2") if first else self.along(on_c, f"{names.c}_u", f"{names.c}_v")
+        if not names.pinned:
+            return c, {}
+        ground = {"r1": np.exp(1j * self.linkage.theta1)}
+        return c, ground if first else self.along(on_d, f"{names.d}_u", f"{names.d}_v")
 
 
 def _complex(vector: Vector) -> ComplexArray:

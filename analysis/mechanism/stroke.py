@@ -77,7 +77,7 @@ def output_stroke(linkage: Linkage) -> OutputStroke:
     >>> float(stroke.time_ratio.round(6))
     1.355573
     """
-    theta2 = first_loop(linkage).limits(linkage) % TURN
+    theta2 = first_loop(linkage).limits() % TURN
     state = solve_position(linkage[..., None], theta2)
     turned = turned_from(state.theta4[..., 1], state.theta4[..., 0])
     theta4 = state.theta4[..., :1] + np.stack([np.zeros_like(turned), turned], axis=-1)
@@ -122,12 +122,10 @@ def link_stroke(
 
     Parameters
     ----------
-    linkage : Linkage
-        A single linkage.
+    linkage, start, end
+        As for `extremes`.
     link : int, optional
         The last one by default: the output of a six-bar.
-    start, end : float, rad, optional
-        Driver angles; by default a full turn, or the first of `driver_ranges`.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def transmission_angle(linkage: Linkage, theta2: npt.ArrayLike, loop: int = 1) -
     if loop == 2:
         apart = width(linkage)(np.asarray(theta2, dtype=np.float64))
     else:
-        apart = first_loop(linkage).apart(linkage, np.subtract(theta2, linkage.theta1))
+        apart = first_loop(linkage).apart(np.subtract(theta2, linkage.theta1))
     return dyad_of(linkage, loop).transmission_at(apart)
 
 
@@ -139,6 +139,6 @@ def worst_transmission_cycle(linkage: Linkage) -> FloatArray:
 
 def ground_line_transmission(linkage: Linkage) -> tuple[FloatArray, FloatArray]:
     """Extremes of mu of the first loop over a turn: O2A along theta1, towards O4 and away from it."""
-    folded, stretched = first_loop(linkage).apart_on_line(linkage)
+    folded, stretched = first_loop(linkage).apart_on_line()
     dyad = dyad_of(linkage)
     return dyad.transmission_at(folded), dyad.transmission_at(stretched)

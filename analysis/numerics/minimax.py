@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
+from grashof.analysis.numerics.peaks import Curve
 from grashof.problems import SolverError
 from grashof.problems.values.arrays import FloatArray
-
-Curve = Callable[[FloatArray], FloatArray]
 
 _SAMPLES = 181
 _ROUNDS = 40

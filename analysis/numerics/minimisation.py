@@ -174,8 +174,7 @@ def _in_order(wish: FloatArray, weight: FloatArray, low: FloatArray, high: Float
         ordered[row] = scipy.optimize.isotonic_regression(wish[row], weights=weight[row]).x
     for row in np.flatnonzero(ordered[:, -1] - ordered[:, 0] > TURN):
         ordered[row] = _within_a_turn(ordered[row], weight[row])
-    bounded: FloatArray = np.clip(ordered, low, high)
-    return bounded
+    return np.clip(ordered, low, high)
 
 
 def _within_a_turn(ordered: FloatArray, weight: FloatArray) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -15,10 +16,10 @@ _ROUNDS = 4  # each narrows the place of a peak eight times; a parabola follows
 _CLOSER = 5  # rounds for each extreme of one curve
 _HALVINGS = 64
 
-Curves = Callable[[FloatArray], FloatArray]
+Curve: TypeAlias = Callable[[FloatArray], FloatArray]  # one curve, or the rows of several
 
 
-def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def peaks(curves: Curve, stretches: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over stretches of ascending samples (..., N).
 
     Peaks narrower than the spacing of the samples may be missed; shorter rows repeat their last sample. NaN
@@ -38,7 +39,7 @@ def peaks(curves: Curves, stretches: Sequence[FloatArray]) -> tuple[FloatArray, 
 
 
 def greatest(
-    curves: Curves, places: FloatArray, most: int = _MOST, rounds: int = _ROUNDS
+    curves: Curve, places: FloatArray, most: int = _MOST, rounds: int = _ROUNDS
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest value and its place, (R, ...), of R curves over ascending dense samples (..., N).
 
@@ -69,9 +70,7 @@ def greatest(
     return _taken(every, best)[..., 0], _taken(where, best)[..., 0]
 
 
-def with_extremes(
-    curve: Callable[[FloatArray], FloatArray], places: FloatArray, *, periodic: bool
-) -> tuple[FloatArray, FloatArray]:
+def with_extremes(curve: Curve, places: FloatArray, *, periodic: bool) -> tuple[FloatArray, FloatArray]:
     """Ascending dense places (N,) of a smooth curve with its extremes (M,) inserted, and the extremes.
 
     The curve is monotone between. If `periodic` the places cover a period, whose last one is omitted.

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
+from grashof.analysis.numerics.peaks import Curve
 from grashof.problems.values.arrays import FloatArray
-
-Curve = Callable[[FloatArray], FloatArray]
 
 NODES, WEIGHTS = legendre.leggauss(16)  # of a panel from -1 to 1
 _TERMS = legendre.legvander(NODES, 15) * (WEIGHTS[:, None] * (np.arange(16) + 0.5))
@@ -92,8 +90,10 @@ def integrate(curve: Curve, edges: npt.ArrayLike, narrowest: float = 1e-14) -> P
 def held(value: float, error: float) -> float:
     """A number rounded to the digits that an error leaves certain: 0 if there are none.
 
-    >>> held(1234.5678, 0.03), held(1234.5678, 1e-9), held(1e-9, 1e-6), held(1.0, float("nan"))
-    (1234.6, 1234.5678, 0.0, nan)
+    >>> held(-123.456, 0.004), held(123.456, 0.006), held(98765.0, 300.0), held(123.456, 1e-8)
+    (-123.46, 123.5, 99000.0, 123.456)
+    >>> held(1e-9, 1e-6), held(1.0, float("nan"))
+    (0.0, nan)
     >>> held(float("inf"), 1.0), held(float("nan"), 1e308)
     (nan, nan)
     """
@@ -114,7 +114,7 @@ def gauss_legendre(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Pieces:
-    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., M, 2)."""
+    """M panels: integrals of the curve and its magnitude (..., M), polynomials at both ends (..., 2, M)."""
 
     low: FloatArray
     high: FloatArray
@@ -129,28 +129,22 @@ class _Pieces:
         values = np.asarray(curve(places.ravel()), dtype=np.float64)
         values = values.reshape(*values.shape[:-1], *places.shape)
         sizes = np.abs(values) @ WEIGHTS * np.abs(half)
-        return cls(low, high, values @ WEIGHTS * half, sizes, values @ _TO_ENDS)
+        return cls(low, high, values @ WEIGHTS * half, sizes, (values @ _TO_ENDS).swapaxes(-1, -2))
 
     @property
     def width(self) -> FloatArray:
         return np.abs(self.high - self.low)
 
     def __getitem__(self, kept: slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]) -> _Pieces:
-        part, size, ends = self.part[..., kept], self.size[..., kept], self.ends[..., kept, :]
-        return _Pieces(self.low[kept], self.high[kept], part, size, ends)
+        return _Pieces(*(getattr(self, name)[..., kept] for name in self.__slots__))
 
     def and_those(self, others: _Pieces) -> _Pieces:
-        return _Pieces(
-            np.concatenate([self.low, others.low]),
-            np.concatenate([self.high, others.high]),
-            np.concatenate([self.part, others.part], axis=-1),
-            np.concatenate([self.size, others.size], axis=-1),
-            np.concatenate([self.ends, others.ends], axis=-2),
-        )
+        both = ([getattr(self, name), getattr(others, name)] for name in self.__slots__)
+        return _Pieces(*(np.concatenate(each, axis=-1) for each in both))
 
     def apart(self, narrowest: float) -> npt.NDArray[np.bool_]:
         """Whether a jump that matters may hide at an end of a panel, in order, shape (M,)."""
-        jump = np.abs(self.ends[..., 1:, 0] - self.ends[..., :-1, 1])
+        jump = np.abs(self.ends[..., 0, 1:] - self.ends[..., 1, :-1])
         none = np.zeros((*jump.shape[:-1], 1))
         beside = np.maximum(np.concatenate([none, jump], -1), np.concatenate([jump, none], -1))
         hidden = beside * _GAP * self.width > _SETTLED * self.size.sum(axis=-1, keepdims=True)

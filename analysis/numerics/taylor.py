@@ -72,9 +72,12 @@ class Taylor(NDArrayOperatorsMixin):
     ) -> Any:
         if function is not np.where or len(args) != 3 or options:
             raise TypeError(f"no rule for np.{function.__name__}")
-        chosen, first, second = args
-        both = [value if isinstance(value, Taylor) else Taylor([value]) for value in (first, second)]
-        return Taylor([np.where(chosen, *pair) for pair in zip(both[0].terms, both[1].terms, strict=True)])
+        chosen, *both = args
+        return _where(chosen, *(value if isinstance(value, Taylor) else Taylor([value]) for value in both))
+
+
+def _where(chosen: npt.ArrayLike, x: Taylor, y: Taylor) -> Taylor:
+    return Taylor([np.where(chosen, *pair) for pair in zip(x.terms, y.terms, strict=True)])
 
 
 def _product(x: Taylor, y: Taylor) -> Taylor:
@@ -117,14 +120,6 @@ def _power(x: Taylor, y: Taylor) -> Taylor:
     return _composed(slopes)(x)
 
 
-def _extreme(first_wins: Callable[[FloatArray, FloatArray], Any]) -> Callable[[Taylor, Taylor], Taylor]:
-    def rule(x: Taylor, y: Taylor) -> Taylor:
-        first = first_wins(x.terms[0], y.terms[0])
-        return Taylor([np.where(first, *pair) for pair in zip(x.terms, y.terms, strict=True)])
-
-    return rule
-
-
 def _logistic_slopes(t: FloatArray) -> tuple[FloatArray, ...]:
     return t, 1 - t**2, -2 * t * (1 - t**2), (6 * t**2 - 2) * (1 - t**2)
 
@@ -143,8 +138,8 @@ _RULES: dict[np.ufunc, Callable[..., Taylor]] = {
     np.positive: lambda x: x,
     np.absolute: lambda x: Taylor([np.sign(x.terms[0]) * term for term in x.terms]),
     np.remainder: lambda x, y: Taylor([np.remainder(x.terms[0], y.terms[0]), *x.terms[1:]]),
-    np.minimum: _extreme(np.less_equal),
-    np.maximum: _extreme(np.greater_equal),
+    np.minimum: lambda x, y: _where(x.terms[0] <= y.terms[0], x, y),
+    np.maximum: lambda x, y: _where(x.terms[0] >= y.terms[0], x, y),
     np.sin: _composed(lambda x: (np.sin(x), np.cos(x), -np.sin(x), -np.cos(x))),
     np.cos: _composed(lambda x: (np.cos(x), -np.sin(x), -np.cos(x), np.sin(x))),
     np.tan: lambda x: _quotient(_RULES[np.sin](x), _RULES[np.cos](x)),

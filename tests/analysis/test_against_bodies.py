@@ -10,10 +10,7 @@ import pytest
 from body_coordinates import carried, reach
 from random_linkages import GRID, KINDS, Moving, agree
 
-from grashof.analysis import (
-    driver_ranges,
-    solve_kinematics,
-)
+from grashof.analysis import driver_ranges, solve_kinematics, solve_position
 from grashof.problems import InvertedSliderCrank, SliderCrank
 
 COUNT, STEPS = 60, 25
@@ -64,7 +61,10 @@ def test_positions_and_rates_to_the_jerk(both: Both) -> None:
     found = np.stack([carried(both.motion, link, at) for link, at, _ in own], axis=-1)
     for k, name in enumerate(("position", "velocity", "acceleration", "jerk")):
         agree(found[k], np.stack([getattr(point, name) for *_, point in own], axis=-1), both.clear)
-    turned = [state.angular(link) for link in both.links]
+    turned, place = [state.angular(link) for link in both.links], solve_position(linkage, both.turn)
+    for link, turning in zip(both.links, turned, strict=True):
+        np.testing.assert_array_equal(place.angles[link], turning.theta)
+        np.testing.assert_array_equal(getattr(place, f"theta{link}"), turning.theta)
     for k in (1, 2, 3):
         agree(both.motion[k, ..., 2::3], np.stack([rates[k] for rates in turned], axis=-1), both.clear)
 

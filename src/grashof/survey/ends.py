@@ -9,7 +9,8 @@ from numpy.polynomial import chebyshev
 
 from grashof.analysis import rotatability
 from grashof.analysis.mechanism.first_loop import CHANGE
-from grashof.analysis.numerics.quadrature import Curve, held
+from grashof.analysis.numerics.peaks import Curve
+from grashof.analysis.numerics.quadrature import held
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.sweep import INSET, inner_dead_positions, least_quality

@@ -1,13 +1,11 @@
 """Distances of closed curves: shapes with a known answer, and the definitions on dense samples."""
 
-from collections.abc import Callable
-
 import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.spatial.distance import directed_hausdorff
 
-from grashof.analysis import solve_position
+from grashof.analysis import extremes_of, solve_position
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.judge.planted import random_full_crank
 from grashof.problems import FourBar
@@ -75,8 +73,7 @@ def test_a_corner_and_a_ridge() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.quick("2")
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     """Compared with a dense search on both curves, refined about the furthest points."""
     rng = np.random.default_rng(seed)
@@ -92,32 +89,21 @@ def test_the_hausdorff_distance_to_nine_digits(seed: int) -> None:
     def q(place: Array) -> Complexes:
         return np.interp(place, np.arange(len(loop)), loop)
 
-    dense = np.linspace(0, 2 * np.pi, 20_001)
+    dense = np.linspace(0, 2 * np.pi, 5001)
 
     def from_curve(place: Array) -> Array:
         points = q(place)[:, None]
         near = dense[np.abs(points - p(dense)).argmin(axis=1)]
-        width = 2 * np.pi / 20_000
+        width = dense[1]
         for _ in range(4):
             around = near[:, None] + width * np.linspace(-1, 1, 33)
             far = np.abs(points - p(around))
             near, width = around[np.arange(len(near)), far.argmin(axis=1)], width / 12
         return far.min(axis=1)
 
-    def furthest(curve: Callable[[Array], Array], end: float, count: int) -> float:
-        at = np.linspace(0, end, count)
-        values, best = curve(at), 0.0
-        for top in np.argsort(-values)[:4]:
-            place, width = at[top], at[1]
-            for _ in range(8):
-                around = np.clip(place + width * np.linspace(-1, 1, 33), 0, end)
-                place, width = around[curve(around).argmax()], width / 12
-            best = max(best, float(curve(np.array([place]))[0]))
-        return best
-
     expected = max(
-        furthest(lambda theta2: from_polygon(p(theta2), loop[:-1]), 2 * np.pi, 20_001),
-        furthest(from_curve, len(loop) - 1.0, 2001),
+        extremes_of(lambda theta2: from_polygon(p(theta2), loop[:-1]), 0, 2 * np.pi).high,
+        extremes_of(from_curve, 0, len(loop) - 1.0).high,
     )
     assert hausdorff == pytest.approx(expected, rel=1e-9)
 

@@ -1,20 +1,14 @@
 """Double points in closed form, compared with crossings of the sampled curve and with geometry."""
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
+from drawn_linkages import SMOOTH, of_each_class
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import GrashofClass, driver_ranges, solve_position
-from grashof.analysis.curves.curvature import DoublePoints, all_double_points, double_points
+from grashof.analysis import DoublePoints, all_double_points, double_points, driver_ranges, solve_position
 from grashof.analysis.judge.planted import random_full_crank
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar, ProblemError
-
-FourBars = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
-CLASSES = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
 
 
 def crossings(theta2: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -57,11 +51,8 @@ def test_one_turn_has_those_of_the_sampled_curve() -> None:
     assert sum(counts) >= 3
 
 
-@pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=6)
-@given(data=st.data())
-def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(kind))
+@of_each_class(*SMOOTH)
+def test_every_range_of_every_class(linkage: FourBar) -> None:
     found = double_points(linkage)
     assert_double(linkage, found)
     assert (found.assembly == linkage.assembly).all()
@@ -73,21 +64,14 @@ def test_every_range_of_every_class(four_bars: FourBars, kind: GrashofClass, dat
             hits = crossings(theta2, solve_position(linkage, theta2).p @ [1, 1j])
             seam = np.abs(hits - [low, high]).max(axis=1) < 1e-6  # where a closed curve ends
             sampled.append(hits[~seam])
-    for pair in np.concatenate(
-        sampled
-    ):  # small loops may hide between samples, but no sampled crossing is missed
+    for pair in np.concatenate(sampled):  # small loops hide between samples; no sampled crossing is missed
         p = solve_position(linkage, pair).p.mean(axis=0)
         assert len(found)
         assert np.hypot(*(found.points - p).T).min() < 2e-2 * linkage.lengths.max()
 
 
-@pytest.mark.parametrize("kind", CLASSES)
-@settings(max_examples=6)
-@given(data=st.data())
-def test_o2_o4_subtends_the_angle_of_a_b_at_p(
-    four_bars: FourBars, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
+@of_each_class(*SMOOTH)
+def test_o2_o4_subtends_the_angle_of_a_b_at_p(linkage: FourBar) -> None:
     every = all_double_points(linkage)
     assert_double(linkage, every)
     assert len(every) <= 3
@@ -95,8 +79,7 @@ def test_o2_o4_subtends_the_angle_of_a_b_at_p(
     assume(min(abs(w), abs(w - linkage.r3)) > 1e-6 * linkage.r3)  # beside A or B the angle at P has no digits
     for point in every.points @ [1, 1j]:
         seen = (point - complex(*linkage.o4)) / (point - complex(*linkage.o2))
-        coupler = (w - linkage.r3) / w
-        turn = seen / coupler  # real: the angles are equal up to half a turn
+        turn = seen * w / (w - linkage.r3)  # real: the angles are equal up to half a turn
         assert abs(turn.imag) < 1e-7 * abs(turn)
 
 
@@ -112,10 +95,8 @@ def test_a_double_point_in_o2(side: int) -> None:
 
 def test_part_of_the_motion() -> None:
     linkage = FourBar(o2=(0, 0), o4=(2, 0), r2=1, r3=2.5, r4=2.5, coupler_point=(1, -2))
-    assert len(double_points(linkage, -2, 2)) == 1
-    assert len(double_points(linkage, 2, -2)) == 1
-    assert len(double_points(linkage, -np.pi / 2, np.pi / 2)) == 1
-    assert len(double_points(linkage, -1, 2)) == 0
+    for start, end, count in ((-2, 2, 1), (2, -2, 1), (-np.pi / 2, np.pi / 2, 1), (-1, 2, 0)):
+        assert len(double_points(linkage, start, end)) == count
     counted_on = double_points(linkage, 4, 10)
     np.testing.assert_allclose(counted_on.theta2, [[1.5 * np.pi, 2.5 * np.pi]], atol=1e-13)
     with pytest.raises(ProblemError, match="one end"):

@@ -55,18 +55,8 @@ def test_a_polynomial_is_itself() -> None:
     for newton in (False, True):
         fit = chosen(path, OF_THETA2, newton=newton)[3]
         assert fit.error_path < 1e-14
-        assert fit.line == pytest.approx(fit.line)
-        np.testing.assert_allclose(fit.line[[0, -1]], curve[1][[0, -1]] if newton else fit.line[[0, -1]])
+        np.testing.assert_allclose(fit.line[[0, -1]], curve[1][[0, -1]])
     assert chosen(path, Y_OF_X, newton=False)[4].error_path < 0.01
-
-
-def test_newton_goes_through_every_point() -> None:
-    path = path_of(4)
-    for of in (Y_OF_X, OF_THETA2):
-        for fit in chosen(path, of, newton=True).values():
-            assert len(fit.pieces) == len(path.theta2) - fit.degree
-            near = np.abs(fit.line[:, None] - path.points).sum(axis=-1).min(axis=0)
-            assert near.max() < 1e-12
 
 
 def test_equal_x_give_no_y_of_x() -> None:

@@ -107,9 +107,3 @@ def test_along_the_slide_it_bears_the_slider_s_load_alone() -> None:
         )
         force = cylinder_force(state, Cylinder("output", base, (0, 0)), masses, loads)
         np.testing.assert_allclose(force, -(pull + mu * 30), rtol=1e-9)
-
-
-@every
-def test_without_loads_there_is_no_force(linkage: Linkage) -> None:
-    state = solve_kinematics(linkage, range_of(linkage), 0.0)
-    assert (cylinder_force(state, jack_on("output", linkage), uniform_bars(linkage, 2.0), Loads()) == 0).all()

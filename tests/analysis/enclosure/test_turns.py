@@ -18,7 +18,7 @@ from grashof.analysis.judge.planted import (
     random_slider_crank,
 )
 from grashof.analysis.mechanism.kinematics import solve_kinematics
-from grashof.analysis.mechanism.transmission import worst_transmission
+from grashof.analysis.mechanism.transmission import quality, worst_transmission
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 
 MAKERS = (random_full_crank, random_slider_crank, random_inverted_slider_crank)
@@ -39,17 +39,12 @@ def batch(request: Any) -> Linkage:
     return Linkage.stacked([request.param(rng) for _ in range(6)])
 
 
-def quality(linkage: Linkage, theta2: np.ndarray) -> np.ndarray:
-    mu = transmission_angle(linkage, theta2)
-    return np.minimum(mu, np.pi - mu)
-
-
 def test_the_enclosure_holds_the_least_angle_and_is_sharp(batch: Linkage) -> None:
     rng = np.random.default_rng(1)
     start = rng.uniform(-4, 4, 6)
     end = start + rng.uniform(-6.3, 6.3, 6)
     least = least_transmission(batch, start, end)
-    dense = quality(batch[:, None], np.linspace(start, end, 20_000, axis=1)).min(axis=1)
+    dense = quality(transmission_angle(batch[:, None], np.linspace(start, end, 20_000, axis=1))).min(axis=1)
     assert (least.lo <= dense).all()
     assert (least.hi - least.lo <= SHARP).all()
     exact = worst_transmission(batch, start, end)
@@ -61,7 +56,8 @@ def test_the_enclosure_holds_the_least_angle_and_is_sharp(batch: Linkage) -> Non
 def test_the_enclosure_holds_beside_change_points(linkage: Linkage) -> None:
     one, turn = Linkage.stacked([linkage]), np.array([0.3])
     least = least_transmission(one, turn, turn + 2 * np.pi)
-    dense = quality(linkage, linkage.theta1 + np.linspace(-np.pi, np.pi, 20_001)).min()
+    around = linkage.theta1 + np.linspace(-np.pi, np.pi, 20_001)
+    dense = quality(transmission_angle(linkage, around)).min()
     assert least.lo[0] <= dense + 1e-12
     assert least.hi[0] - least.lo[0] < 1e-7  # rounding of near, and a root of it
     assert least.pieces[0] < 2000

@@ -1,30 +1,25 @@
 """Instant centres, centrodes that roll on each other, circles of points without curvature or acceleration."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from drawn_linkages import FOUR_BAR_CLASSES, of_each_class
+from hypothesis import assume
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from grashof.analysis import (
-    GrashofClass,
     centrodes,
     coupler_circles,
-    curvature,
     driver_ranges,
     instant_centres,
     solve_kinematics,
     solve_position,
 )
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
 
-CHECKED = settings(max_examples=25)
 JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
 
 
 def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
@@ -34,23 +29,16 @@ def carrying(linkage: FourBar, theta2: float, place: np.ndarray) -> FourBar:
     return replace(linkage, coupler_point=(arm.real, arm.imag))
 
 
-@pytest.mark.slow
-@given(data=st.data())
-@CHECKED
-def test_points_of_the_circles(four_bars: Drawer, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(data.draw(st.sampled_from(sorted(FOUR_BAR_CLASSES)))))
+@of_each_class(*FOUR_BAR_CLASSES, share=st.floats(0.02, 0.97), angle=st.floats(0.3, 6.0))
+def test_points_of_the_circles(linkage: FourBar, share: float, angle: float) -> None:
     low, high = driver_ranges(linkage)[0]
-    theta2 = float(low + (high - low) * data.draw(st.floats(0.02, 0.97)))
+    theta2 = float(low + (high - low) * share)
     stands = solve_position(linkage, theta2)
-    if not abs(np.sin(stands.theta4 - stands.theta3)) > 0.01:
-        return
+    assume(abs(np.sin(stands.theta4 - stands.theta3)) > 0.01)
     state, found = solve_kinematics(linkage, theta2), coupler_circles(linkage, theta2)
-    if not abs(state.omega3) > 0.01:
-        return
-    if not (1e-3 < found.inflection_diameter < 1e3 * float(linkage.r1) and abs(state.alpha3) > 0.01):
-        return
+    assume(abs(state.omega3) > 0.01 and abs(state.alpha3) > 0.01)
+    assume(1e-3 < found.inflection_diameter < 1e3 * float(linkage.r1))
     np.testing.assert_allclose(found.pole, instant_centres(linkage, theta2).i13, rtol=1e-7, atol=1e-7)
-    angle = data.draw(st.floats(0.3, 6.0))
     way = np.array([np.cos(angle), np.sin(angle)])
     on_circle = carrying(linkage, theta2, found.inflection + found.inflection_diameter / 2 * way)
     p = solve_kinematics(on_circle, theta2).p
@@ -62,15 +50,6 @@ def test_points_of_the_circles(four_bars: Drawer, data: st.DataObject) -> None:
     still = solve_kinematics(carrying(linkage, theta2, found.acceleration_pole), theta2).p
     scale = float(state.omega3**2 + abs(state.alpha3)) * (found.inflection_diameter + float(linkage.r2))
     assert np.abs(still.acceleration).max() < 1e-7 * scale
-
-
-def test_a_path_on_the_inflection_circle_has_no_curvature() -> None:
-    for theta2 in (0.4, 2.0, 5.0):
-        found = coupler_circles(JACK, theta2)
-        for angle in np.linspace(0.2, 6, 7):
-            way = found.inflection_diameter / 2 * np.array([np.cos(angle), np.sin(angle)])
-            p = carrying(JACK, theta2, found.inflection + way)
-            assert abs(curvature(p, theta2)) * JACK.r2 < 1e-9
 
 
 def test_euler_and_savary() -> None:

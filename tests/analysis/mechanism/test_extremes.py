@@ -1,12 +1,12 @@
 """Extremes, strokes and boxes: published figures, fine sweeps, and curves with known answers."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from drawn_linkages import of_each_class
 
 from grashof.analysis import (
     Extremes,
@@ -25,21 +25,16 @@ from grashof.analysis import (
 from grashof.analysis.mechanism.extremes import diagonal
 from grashof.problems import AssemblyError, DeadPositionWarning, FourBar, ProblemError
 
-CHECKED = settings(max_examples=5)
 TURN = 2 * np.pi
 SPEED = TURN / 3
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+TURNING = (GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK)
+ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
 CRANK_ROCKER = FourBar(o2=(0, 0), o4=(100, 0), r2=40, r3=120, r4=80)
 
 QUANTITIES: dict[str, Callable[[Any], Any]] = {
-    "theta3": lambda state: state.theta3,
-    "theta4": lambda state: state.theta4,
-    "omega3": lambda state: state.omega3,
-    "omega4": lambda state: state.omega4,
-    "alpha3": lambda state: state.alpha3,
-    "alpha4": lambda state: state.alpha4,
-    "vB_mag": lambda state: state.b.speed,
-    "aB_mag": lambda state: state.b.acceleration_magnitude,
+    **{name: attrgetter(name) for name in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4")},
+    "vB_mag": attrgetter("b.speed"),
+    "aB_mag": attrgetter("b.acceleration_magnitude"),
     "P_x": lambda state: state.p.position[..., 0],
     "P_y": lambda state: state.p.position[..., 1],
 }
@@ -69,24 +64,6 @@ def test_extremes_of_the_reference_figures(
     assert checked == {"pumpjack": 19, "lufkin": 8}[name]
 
 
-@pytest.mark.quick("omega4-crank-rocker", "vB_mag-crank-rocker", "P_y-double-crank")
-@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
-@pytest.mark.parametrize("quantity", ["omega4", "alpha3", "vB_mag", "P_y"])
-@given(data=st.data())
-@CHECKED
-def test_no_sample_of_a_fine_sweep_lies_outside(
-    four_bars: Drawer, kind: GrashofClass, quantity: str, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
-    found = extremes(linkage, QUANTITIES[quantity])
-    sweep = QUANTITIES[quantity](solve_kinematics(linkage, np.linspace(0, TURN, 10001)))
-    rounding = 1e-12 * np.abs(sweep).max()
-    assert found.low - rounding <= sweep.min() <= found.low + 1e-3 * np.ptp(sweep) + rounding
-    assert found.high + rounding >= sweep.max() >= found.high - 1e-3 * np.ptp(sweep) - rounding
-    for value, where in ((found.low, found.at_low), (found.high, found.at_high)):
-        assert QUANTITIES[quantity](solve_kinematics(linkage, where)) == pytest.approx(value, abs=rounding)
-
-
 def test_curves_with_known_extremes() -> None:
     found = extremes_of(lambda x: x**3 - x, -2, 2)
     assert found == Extremes(-6, 6, -2, 2)
@@ -104,12 +81,11 @@ def test_curves_with_known_extremes() -> None:
 
 
 def test_extremes_of_a_rocking_driver_end_in_its_dead_positions() -> None:
-    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     with pytest.warns(DeadPositionWarning):
-        found = extremes(rocker, lambda state: state.omega4)
+        found = extremes(ROCKER, lambda state: state.omega4)
     assert {abs(found.low), abs(found.high)} == {np.inf}
-    swing = extremes(rocker, lambda state: state.theta4, start=-1.0, end=1.0)
-    angles = solve_kinematics(rocker, np.linspace(-1, 1, 10001)).theta4
+    swing = extremes(ROCKER, lambda state: state.theta4, start=-1.0, end=1.0)
+    angles = solve_kinematics(ROCKER, np.linspace(-1, 1, 10001)).theta4
     assert swing.low == pytest.approx(angles.min(), abs=1e-7)
     assert swing.high == pytest.approx(angles.max(), abs=1e-7)
 
@@ -129,40 +105,24 @@ def test_mu_is_0_or_180_deg_at_dead_positions(
     linkage: FourBar, expected: list[tuple[float | None, float | None]]
 ) -> None:
     for (low, high), ends in zip(driver_ranges(linkage).tolist(), expected, strict=False):
-        for start, end in (
-            (low, high),
-            dead_ends(linkage, low, high),
-            (high, low),
-            (low + TURN, high + TURN),
-        ):
+        inner = transmission_angle(linkage, np.linspace(low, high, 5001)[1:-1])
+        sampled = np.degrees([inner.min(), inner.max()])
+        moved = low + TURN, high + TURN
+        for start, end in ((low, high), dead_ends(linkage, low, high), (high, low), moved):
             found = transmission_extremes(linkage, start, end)
-            inner = transmission_angle(linkage, low + (high - low) * np.linspace(0, 1, 5001)[1:-1])
-            for value, end_value, sampled in zip(
-                (found.low, found.high), ends, (inner.min(), inner.max()), strict=True
-            ):
-                if end_value is None:
-                    assert value == pytest.approx(sampled, abs=1e-5)
-                else:
-                    assert np.degrees(value) == end_value
+            for value, exact, close in zip(np.degrees([found.low, found.high]), ends, sampled, strict=True):
+                assert value == (pytest.approx(close, abs=6e-4) if exact is None else exact)
             assert min(start, end) <= found.at_low <= max(start, end)
 
 
-@pytest.mark.parametrize("kind", [GrashofClass.CRANK_ROCKER, GrashofClass.DOUBLE_CRANK])
-@given(data=st.data())
-@CHECKED
-def test_mu_of_a_turn_is_outermost_on_the_ground_line(
-    four_bars: Drawer, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
-    found, generic = transmission_extremes(linkage, 0.0, TURN), extremes(linkage, mu_of)
+@of_each_class(*TURNING)
+def test_mu_of_a_turn_is_outermost_on_the_ground_line(linkage: FourBar) -> None:
+    found = transmission_extremes(linkage, 0.0, TURN)
+    generic = extremes(linkage, lambda state: transmission_angle(linkage, state.theta2))
     assert (found.low, found.high) == pytest.approx((generic.low, generic.high), rel=1e-13)
     part = transmission_extremes(linkage, 0.3, 1.1)
     inner = transmission_angle(linkage, np.linspace(0.3, 1.1, 5001))
     assert (part.low, part.high) == pytest.approx((inner.min(), inner.max()), abs=1e-6)
-
-
-def mu_of(state: Any) -> Any:
-    return transmission_angle(state.linkage, state.theta2)
 
 
 def test_extremes_within_a_thousandth_of_a_radian() -> None:
@@ -188,9 +148,8 @@ def test_bad_input_is_refused() -> None:
         extremes(CRANK_ROCKER, lambda state: state.b.position)
     with pytest.raises(AssemblyError, match="at any driver angle"):
         extremes(FourBar((0, 0), (9, 0), 1, 1, 1), theta4)
-    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
     with pytest.raises(AssemblyError, match="no value at driver angle"):
-        extremes(rocker, theta4, start=0.0, end=3.0)
+        extremes(ROCKER, theta4, start=0.0, end=3.0)
 
 
 def test_strokes_of_the_reference_figures(
@@ -202,8 +161,6 @@ def test_strokes_of_the_reference_figures(
     for swing in (stroke.swing, swept):
         assert np.degrees(swing) == pytest.approx(float(given_stroke["rocker_swing_deg"]), rel=1e-12)
     assert stroke.chord == pytest.approx(float(given_stroke["chord_stroke_of_B"]), rel=1e-12)
-    arc = float(given_stroke["arc_stroke_horsehead_A=4.572m"])
-    assert 4.572 * stroke.swing == pytest.approx(arc, rel=1e-12)
     # The extremes of theta4, 246.76 and 72.50 deg.
     assert stroke.time_ratio == pytest.approx(1.0658, abs=1e-4)
 
@@ -225,41 +182,15 @@ def test_strokes_of_the_real_unit(golden: dict[str, Any]) -> None:
         np.testing.assert_allclose(psi, ends, rtol=1e-12)
 
 
-@given(data=st.data())
-@settings(max_examples=8)
-def test_the_output_turns_back_where_the_angle_is_extreme(four_bars: Drawer, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(GrashofClass.CRANK_ROCKER))
-    stroke = output_stroke(linkage)
-    state = solve_kinematics(linkage, stroke.theta2)
-    assert np.abs(state.omega4).max() < 1e-10
-    np.testing.assert_allclose(np.sin(stroke.theta4 - state.theta4), 0, atol=1e-12)
-    swept = extremes(linkage, lambda state: state.theta4, period=TURN)
-    assert stroke.swing == pytest.approx(swept.stroke, rel=1e-9)
-    where = np.sort(np.array([swept.at_low, swept.at_high]) % TURN)
-    apart = (np.sort(stroke.theta2) - where + np.pi) % TURN - np.pi
-    assert np.abs(apart).max() < 1e-9
-    assert stroke.time_ratio >= 1
-
-
-def test_an_output_that_turns_fully_has_no_stroke() -> None:
-    double_crank = FourBar(o2=(0, 0), o4=(1, 0), r2=2.5, r3=2, r4=2.6)
-    stroke = output_stroke(double_crank)
-    assert np.isnan(stroke.swing)
-    assert np.isnan(stroke.theta2).all()
-    assert np.isnan(stroke.time_ratio)
-
-
 def test_box_of_a_single_position_holds_every_point_of_the_linkage() -> None:
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(0, 5))
+    """Of one that cannot close, the ground pivots."""
     # A at (1, 0), B where the circles of 4 about A and 3 about O4 meet: (11, sqrt(80)) / 3.
+    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3, coupler_point=(0, 5))
     box = reach_box(linkage, 0.0, 0.0)
     coupler = np.array([8, np.sqrt(80)]) / 12
     p = np.array([1, 0]) + 5 * np.array([-coupler[1], coupler[0]])
     np.testing.assert_allclose(box, [[p[0], 0], [4, p[1]]], atol=1e-12)
     assert diagonal(box) == pytest.approx(np.hypot(4 - p[0], p[1]), rel=1e-12)
-
-
-def test_box_of_a_linkage_that_cannot_close_is_that_of_its_pivots() -> None:
     apart = FourBar(o2=(1, 2), o4=(10, -1), r2=1, r3=2, r4=2)
     assert reach_box(apart, 0.0, 1.0).tolist() == [[1.0, -1.0], [10.0, 2.0]]
 

@@ -2,14 +2,12 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from body_coordinates import circuit, margins, start
 from body_plans import plan_of
-from hypothesis import given, settings
+from drawn_linkages import SMOOTH, SWINGING, close_loop, of_each_class
 from hypothesis import strategies as st
 from random_linkages import any_linkages
 
@@ -23,37 +21,24 @@ from grashof.analysis import (
     rotatability,
     triple_rocker_kind,
 )
-from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.analysis.mechanism.transmission import quality, transmission_angle
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, SliderCrank
 
-CHECKED = settings(max_examples=8)
 TURN = 2 * math.pi
-Brute = Callable[..., tuple[npt.NDArray[np.complex128], ...]]
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
-SMOOTH = [kind for kind in FOUR_BAR_CLASSES if kind is not GrashofClass.CHANGE_POINT]
-SWINGING = [GrashofClass.DOUBLE_ROCKER, GrashofClass.ROCKER_CRANK, GrashofClass.NON_GRASHOF]
+ANGLES = st.lists(st.floats(-3 * TURN, 3 * TURN), min_size=1, max_size=20)
 
 
-@pytest.mark.parametrize("kind", SMOOTH)
-@given(data=st.data())
-@CHECKED
-def test_rotatability_decides_through_which_side_the_driver_swings(
-    four_bars: Drawer, close_loop: Brute, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
+@of_each_class(*SMOOTH)
+def test_rotatability_decides_through_which_side_the_driver_swings(linkage: FourBar) -> None:
     _, b, _ = close_loop(linkage, linkage.theta1 + np.array([np.pi, 0.0]), 1)
     np.testing.assert_array_equal(rotatability(linkage) > 0, np.isfinite(b))
 
 
-@given(data=st.data())
-@CHECKED
-def test_change_points_are_named_and_do_not_count_as_turning(four_bars: Drawer, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(GrashofClass.CHANGE_POINT))
+@of_each_class(GrashofClass.CHANGE_POINT, examples=8)
+def test_change_points_are_named_and_do_not_count_as_turning(linkage: FourBar) -> None:
     assert grashof_class(linkage) is GrashofClass.CHANGE_POINT
-    least = np.abs(rotatability(linkage)).min()
-    assert least < 1e-12
+    assert np.abs(rotatability(linkage)).min() < 1e-12
     shorter = np.array([0.0, 1e-6]) * float(linkage.r3)
     slightly_off = FourBar(linkage.o2, linkage.o4, linkage.r2, linkage.r3 + shorter, linkage.r4)
     assert grashof_class(slightly_off[1]) is not GrashofClass.CHANGE_POINT
@@ -71,32 +56,23 @@ def test_exact_change_points_have_one_range_and_no_full_rotation(
     assert circuit_index(linkage, [0.5, -0.5, 2.5], [1, 1, -1]).tolist() == [0, 0, 1]
 
 
-def test_figures_of_the_reference_file(golden_linkages: dict[str, FourBar]) -> None:
-    for linkage in golden_linkages.values():
-        assert grashof_class(linkage) is GrashofClass.CRANK_ROCKER
-        assert full_rotation(linkage)
-        assert triple_rocker_kind(linkage) == ""
-
-
 def test_triple_rockers_are_named_by_their_longest_link() -> None:
+    assert triple_rocker_kind(FourBar((0, 0), (4, 0), 1, 4, 3)) == ""
     for longest in range(4):
-        r1, r2, r3, r4 = np.where(np.arange(4) == longest, 5.0, 2.0)
-        linkage = FourBar(o2=(0, 0), o4=(r1, 0), r2=r2, r3=r3, r4=r4)
+        r1, *others = np.where(np.arange(4) == longest, 5.0, 2.0)
+        linkage = FourBar((0, 0), (r1, 0), *others)
         assert grashof_class(linkage) is GrashofClass.NON_GRASHOF
         assert triple_rocker_kind(linkage) == f"RRR{longest + 1}"
 
 
-@pytest.mark.parametrize("kind", SMOOTH)
-@given(data=st.data())
-@CHECKED
+@of_each_class(*SMOOTH, first=st.floats(-TURN, TURN))
 def test_driver_ranges_hold_exactly_the_angles_that_close(
-    four_bars: Drawer, close_loop: Brute, kind: GrashofClass, data: st.DataObject
+    linkage: FourBar, kind: GrashofClass, first: float
 ) -> None:
-    linkage = data.draw(four_bars(kind))
     ranges = driver_ranges(linkage)
     ranges = ranges[np.isfinite(ranges).all(axis=1)]
     assert len(ranges) == (2 if kind in (GrashofClass.DOUBLE_ROCKER, GrashofClass.ROCKER_CRANK) else 1)
-    around = data.draw(st.floats(-TURN, TURN)) + np.linspace(0, TURN, 3601)
+    around = first + np.linspace(0, TURN, 3601)
     _, b, _ = close_loop(linkage, around, 1)
     assert (np.abs(ranges.mean(axis=1)) <= np.pi + 1e-12).all()
     low, high = ranges.T
@@ -112,22 +88,15 @@ def test_driver_ranges_hold_exactly_the_angles_that_close(
         assert high - low == pytest.approx(TURN, rel=1e-15)
 
 
-@pytest.mark.parametrize("kind", SMOOTH)
-@given(data=st.data())
-@CHECKED
-def test_range_index_counts_angles_inside_their_range(
-    four_bars: Drawer, close_loop: Brute, kind: GrashofClass, data: st.DataObject
-) -> None:
-    linkage = data.draw(four_bars(kind))
-    angles = np.array(data.draw(st.lists(st.floats(-3 * TURN, 3 * TURN), min_size=1, max_size=20)))
+@of_each_class(*SMOOTH, angles=ANGLES.map(np.array))
+def test_range_index_counts_angles_inside_their_range(linkage: FourBar, angles: np.ndarray) -> None:
     index, inside = range_index(linkage, angles)
-    np.testing.assert_array_equal(index >= 0, np.isfinite(close_loop(linkage, angles, 1)[1]))
-    assert np.isnan(inside[index < 0]).all()
-    for angle, number, counted in zip(angles, index, inside, strict=True):
-        if number >= 0:
-            low, high = driver_ranges(linkage)[number]
-            assert low - 1e-9 <= counted <= high + 1e-9
-            assert np.exp(1j * counted) == pytest.approx(np.exp(1j * angle), abs=1e-12)
+    known = index >= 0
+    np.testing.assert_array_equal(known, np.isfinite(close_loop(linkage, angles, 1)[1]))
+    assert np.isnan(inside[~known]).all()
+    low, high = driver_ranges(linkage)[index[known]].T
+    assert ((low - 1e-9 <= inside[known]) & (inside[known] <= high + 1e-9)).all()
+    np.testing.assert_allclose(np.exp(1j * inside[known]), np.exp(1j * angles[known]), atol=1e-12)
 
 
 def test_ranges_of_a_linkage_that_cannot_be_assembled() -> None:

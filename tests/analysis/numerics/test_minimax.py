@@ -1,18 +1,18 @@
 """Least peaks: Chebyshev's, and a kinked curve."""
 
+from collections.abc import Callable
+from operator import attrgetter
+
 import numpy as np
 import pytest
 
-from grashof.analysis.mechanism.extremes import extremes_of
-from grashof.analysis.numerics.minimax import Curve, least_peak
+from grashof.analysis import extremes_of
+from grashof.analysis.numerics.minimax import least_peak
+from grashof.analysis.numerics.peaks import Curve
 
 
-def over(start: float, end: float) -> object:
-    def outermost(curve: Curve) -> tuple[float, float]:
-        found = extremes_of(curve, start, end)
-        return found.at_low, found.at_high
-
-    return outermost
+def over(start: float, end: float) -> Callable[[Curve], tuple[float, float]]:
+    return lambda curve: attrgetter("at_low", "at_high")(extremes_of(curve, start, end))
 
 
 @pytest.mark.parametrize("degree", [2, 3, 4, 5])

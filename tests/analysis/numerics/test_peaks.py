@@ -60,21 +60,6 @@ def test_the_highest_of_several_stretches() -> None:
     np.testing.assert_allclose(places, [1, 2])
 
 
-def test_many_curves_are_refined_at_their_own_places() -> None:
-    """Evaluated once at common places, then for each curve at its own."""
-    centres, evaluated = np.random.default_rng(5).uniform(0.1, 2.9, 40), []
-
-    def curves(x: Floats) -> Floats:
-        evaluated.append(x.shape)
-        return np.cos(x - centres[:, None])
-
-    values, places = greatest(curves, np.linspace(0, 3, 31))
-    np.testing.assert_allclose(values, 1, rtol=1e-15)
-    np.testing.assert_allclose(places, centres, atol=1e-7)
-    assert evaluated[0] == (1, 31)
-    assert {shape[0] for shape in evaluated[1:]} == {40}
-
-
 @pytest.mark.parametrize("rounds", [2, 5, 9])
 def test_each_round_finds_a_kink_eight_times_as_closely(rounds: int) -> None:
     _, places = greatest(lambda x: -np.abs(x - 0.7654321), np.linspace(0, 2, 50), rounds=rounds)

@@ -66,12 +66,3 @@ def test_integrals_up_to_places_between(places: list[float]) -> None:
 def test_nodes_and_weights_are_exact_for_polynomials() -> None:
     place, weight = gauss_legendre(np.array([-1.0, 0.5, 2.0]))
     assert weight @ place**31 == pytest.approx((2.0**32 - 1) / 32, rel=1e-13)
-
-
-def test_rounding_to_certain_digits() -> None:
-    assert held(123.456789, 0.004) == 123.46
-    assert held(123.456789, 0.006) == 123.5
-    assert held(-98765.0, 300.0) == -99000.0
-    assert held(0.5, 0.6) == 0.0
-    assert held(123.456789, 1e-8) == 123.456789
-    assert np.isnan(held(1.0, np.inf))
