@@ -28,8 +28,7 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
+from grashof.problems.values.linkages.mechanisms import ANY_KINDS, ROWS, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
@@ -236,7 +235,7 @@ class _Heading(tables.Table):
     """
 
     kind: Annotated[str, tables.one_of(*TASKS)]
-    mechanism: Mechanism = FOUR_BAR
+    mechanism: Mechanism = ()
     title: tables.Text = ""
     source: tables.Text = ""
     length_unit: tables.Text = ""
@@ -265,7 +264,7 @@ class ProblemFile(MachineTables, _Task):
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
             raise ProblemError(f"{self.kind} is missing")
-        if self.dynamics_spec(*(ONE_LOOP[word] for word in mechanisms(self.mechanism))) is not None:
+        if self.dynamics_spec(*(row for word in self.mechanism for row in ROWS.get(word, ()))) is not None:
             metres(self.length_unit)  # refuses one that is not known
         task: Task = mine.value()
         return task
@@ -288,12 +287,12 @@ class ProblemFile(MachineTables, _Task):
             task=self.value(),
             outlines=self.scene.value(),
             requirements=self._requirements(),
-            objective=self.objective.value(),
+            objective=self.objective.value() if "objective" in self.model_fields_set else None,
             dynamics=self.dynamics_spec(),
             driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
-            mechanism=mechanisms(self.mechanism),
+            mechanism=self.mechanism,
         )
         if "objective" in self.model_fields_set and not problem.by_objective:
             raise ProblemError(NO_OBJECTIVE)

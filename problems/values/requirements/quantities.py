@@ -23,6 +23,7 @@ from grashof.problems.values.linkages.mechanisms import (
     LENGTHS,
     PARAMETERS,
     SLIDER_CRANK,
+    WORDS,
     having,
 )
 from grashof.problems.values.linkages.one_loop import FourBar
@@ -53,6 +54,9 @@ class Needs(Enum):
     OUTPUTS = "a function"
     ROTATION = "a function whose output turns"
     TRAVEL = "a function whose output slides"
+    DWELL = "a dwell"
+    DWELL_OF_LINK = "a dwell of a link that swings"
+    DWELL_OF_SLIDE = "a dwell of a slide"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +74,7 @@ class Quantity:
     listed: bool = True  # whether it is a column; a place, which has several parts, is not
     words: str = ""  # its name in a sentence, where that is not its label
     short: str = ""  # heading where there is little room, where that is not its label
-    kinds: tuple[str, ...] = tuple(ONE_LOOP)  # of linkages that have it
+    kinds: tuple[str, ...] = WORDS  # of linkages that have it
     named: str = ""  # its name in candidates.csv, where that is not its key
     full: str = ""  # its name in words in a list of all values, where that is not `words`
 
@@ -101,7 +105,14 @@ _STATED = {
     "r4": "r4, output link O4-B",
     "p_u": "P from A, along the coupler",
     "p_v": "P from A, square to the coupler",
+    "r5": "r5, link 5, C-E",
+    "r6": "r6, link 6, D-E",
+    "c_u": "C, along its link",
+    "c_v": "C, square to its link",
+    "d_u": "D, along its link",
+    "d_v": "D, square to its link",
     "offset": "offset of the slide",
+    "offset_2": "offset of the second slide",
     "cylinder_base_x": "cylinder, fixed pivot, x",
     "cylinder_base_y": "cylinder, fixed pivot, y",
     "cylinder_u": "cylinder, moving pivot, along its link",
@@ -115,8 +126,9 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
 
 def _stated(kind: str, digits: int = 0) -> list[Quantity]:
     """Quantities of the columns of these parameters."""
-    rows = [row for row in PARAMETERS if row.kind == kind]
-    return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
+    kinds = (kind, "station") if kind == "arm" else (kind,)
+    names = dict.fromkeys(name for row in PARAMETERS if row.kind in kinds for name in row.columns)
+    return [_length(name, kinds=having(name), digits=digits) for name in names]
 
 
 def _move(name: str) -> Quantity:
@@ -127,6 +139,17 @@ def _move(name: str) -> Quantity:
     )  # fmt: skip
 
 
+def _of_dwell(key: str, words: str) -> tuple[Quantity, Quantity]:
+    """A band, of a link that swings and of a slide."""
+    given: dict[str, Any] = {"over": Scope.CYCLE, "better": -1, "digits": 3, "words": words}
+    label = key.replace("_", ", ")
+    return (
+        Quantity(key, label, Unit.ANGLE, needs=Needs.DWELL_OF_LINK, **given),
+        Quantity(f"slide_{key}", label, Unit.LENGTH, needs=Needs.DWELL_OF_SLIDE, named=key, **given),
+    )
+
+
+_BAND = "output band in the dwell"
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
 _RMS = " (root mean square)"
@@ -213,7 +236,23 @@ MEASURED: dict[str, Quantity] = {
             full="share made within the allowed error",
         ),
         *_stated("distance", digits=4),
-        Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
+        *(
+            Quantity(name, "direction of the slide", Unit.ANGLE, kinds=having(name))
+            for name in ("slide_angle", "slide_angle_2")
+        ),
+        *(
+            Quantity(
+                f"dwell_{name}", f"dwell {name}", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL,
+                full=f"driver angle at the {end} of the dwell",
+            )
+            for name, end in (("from", "beginning"), ("to", "end"))
+        ),
+        *_of_dwell("band", _BAND),
+        *_of_dwell("band_made", f"{_BAND}, with tolerances"),
+        Quantity(
+            "swing", "swing", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL_OF_LINK, digits=4,
+            full="swing of the last link over the turn",
+        ),
         *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
@@ -297,7 +336,7 @@ class Limit:
 
 def place_of(name: str, over: Scope) -> Quantity:
     """The place of a joint."""
-    kinds = having(name) if over is Scope.DESIGN else tuple(ONE_LOOP)
+    kinds = having(name) if over is Scope.DESIGN else WORDS
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 

@@ -68,7 +68,7 @@ def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
 
 def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
     """Contradictions between a stroke, the kinds of linkages and the requirements, a line each."""
-    wrong = [line for kind in kinds if (line := task.impossible(kind))]
+    wrong: list[str] = []
     if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
         wrong.append(
             f"stroke.time_ratio is {task.time_ratio:.6g}; it must be 1 where requirements.offset is [0, 0]"

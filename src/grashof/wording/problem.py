@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems import (
     CylinderSpec,
+    DwellTask,
     DynamicsSpec,
     FunctionTask,
     LinkageSpec,
@@ -224,6 +225,14 @@ def _stroke(task: Task, unit: str) -> str:
     return f"{way}, time ratio {task.time_ratio:g}, {free} free"
 
 
+def _dwell(task: Task, unit: str) -> str:
+    if task.swing is None:
+        way, free = f"stroke {task.stroke:g}{unit}", "place"
+    else:
+        way, free = f"swing {np.degrees(task.swing):g} deg", "place and scale"
+    return f"dwell of {np.degrees(task.dwell):g} deg, {way}, {free} free"
+
+
 def _function(task: Task, unit: str) -> str:
     """A function by its pairs or its law, with its ranges and senses."""
     first, last = np.degrees(task.span)
@@ -247,6 +256,7 @@ _TASKS: Mapping[type, Callable[[Any, str], str]] = {
     Task: _targets,
     MotionTask: _motion,
     StrokeTask: _stroke,
+    DwellTask: _dwell,
     FunctionTask: _function,
 }
 
