@@ -35,7 +35,7 @@ class DwellFigures:
 
 
 def least_band(linkage: Linkage, rotation: float) -> DwellFigures | None:
-    """The `rotation` of the driver, rad, over which the output of a six-bar moves least; None without a turn.
+    """The `rotation` of the driver, rad, over which the last link moves least; None without such a turn.
 
     The output is monotone between its limit positions, so that those within and the two ends decide.
     """
@@ -43,7 +43,7 @@ def least_band(linkage: Linkage, rotation: float) -> DwellFigures | None:
         return None
     found, output = link_stroke(linkage), _output(linkage)
     limits, inner = found.theta2, found.value
-    if not limits.size:  # it turns fully
+    if np.isnan(found.stroke):  # it turns fully
         return None
     middle = (inner.max() + inner.min()) / 2
     period = None if linkage.mechanism.loops[-1].slide_angle else TURN
@@ -59,14 +59,15 @@ def least_band(linkage: Linkage, rotation: float) -> DwellFigures | None:
         high, low = (
             np.concatenate([ends, np.where(within, inner, beyond)], axis=-1) for beyond in (-np.inf, np.inf)
         )
-        return low.min(axis=-1) - high.max(axis=-1)
+        band: FloatArray = low.min(axis=-1) - high.max(axis=-1)
+        return band
 
     best, start = greatest(bands, np.linspace(0, TURN, _STARTS + 1), _MOST, _ROUNDS)
-    return DwellFigures(float(start[0]), float(start[0]) + rotation, float(-best[0]), float(np.ptp(inner)))
+    return DwellFigures(float(start[0]), float(start[0]) + rotation, float(-best[0]), found.stroke)
 
 
 def made_band(linkage: Linkage, found: DwellFigures, tolerance: float | None = None) -> float:
-    """The band of a dwell with its dimensions off by three standard deviations, all of one `tolerance`, length.
+    """The band of a dwell with its dimensions off by three standard deviations, each a `tolerance`, length.
 
     The greatest difference of two positions within the dwell: the nominal one, and the root of the sum of the
     squares of what each dimension adds to it, linearised; 2e-4 of r1 where no tolerance is given.
@@ -76,7 +77,8 @@ def made_band(linkage: Linkage, found: DwellFigures, tolerance: float | None = N
     value = _output(linkage)(theta2)
     loop = linkage.mechanism.loops[-1]
     if loop.slide_angle:
-        along = np.array([np.cos(linkage.slide_angle_2), np.sin(linkage.slide_angle_2), 0.0])
+        angle = getattr(linkage, loop.slide_angle)
+        along = np.array([np.cos(angle), np.sin(angle), 0.0])
         slope = np.einsum("r,nrd->nd", along, sensitivity(_at_e(linkage), theta2))
     else:
         value = np.unwrap(value)

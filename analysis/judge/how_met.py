@@ -104,7 +104,9 @@ def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly)
 
 
-def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements, _verdict: Verdict) -> Iterator[Defect]:
+def _stroke_defects(
+    linkage: Linkage, task: Task, wanted: Requirements, _verdict: Verdict
+) -> Iterator[Defect]:
     """Misses of the swing (by `tolerance` in rad), stroke and time ratio (by that share of them)."""
     found = output_stroke(linkage)
     ratio = float(found.time_ratio)
@@ -134,7 +136,10 @@ def _standing_still(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     found = least_band(linkage, task.dwell or 0.0)
     start = 0.0 if found is None else found.start if sense > 0 else found.end
     start -= TURN * np.ceil((start - np.pi) / TURN)
-    theta2, assembly = np.array([start, start + sense * (task.dwell or 0.0)]), np.full(2, int(linkage.assembly))
+    theta2, assembly = (
+        np.array([start, start + sense * (task.dwell or 0.0)]),
+        np.full(2, int(linkage.assembly)),
+    )
     motion = TaskMotion.ordered(theta2, sense).closed()
     return Met(
         Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, figures={"dwell": found}
@@ -154,10 +159,22 @@ def _dwell_defects(
     scale = task.size if task.swing is None else 1.0
     miss, within = abs(found.swing - whole), SWING_WITHIN * scale
     if not miss <= within:
-        yield Defect("exact", what, found.swing * unit, f"{whole * unit:.6g} within {within * unit:.2g}", (miss - within) / scale)
+        yield Defect(
+            "exact",
+            what,
+            found.swing * unit,
+            f"{whole * unit:.6g} within {within * unit:.2g}",
+            (miss - within) / scale,
+        )
     if not found.band <= task.most_band:
         key = "the output band in the dwell" + ("" if task.swing is None else " in deg")
-        yield Defect("exact", key, found.band * unit, f"up to {task.most_band * unit:.6g}", (found.band - task.most_band) / scale)
+        yield Defect(
+            "exact",
+            key,
+            found.band * unit,
+            f"up to {task.most_band * unit:.6g}",
+            (found.band - task.most_band) / scale,
+        )
 
 
 def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements, _verdict: Verdict) -> Iterable[Defect]:

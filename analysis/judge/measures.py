@@ -11,8 +11,8 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
-from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
+from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
@@ -213,7 +213,10 @@ def _omega2(values: Values) -> float:
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for row in PARAMETERS if row.paired for name in row.columns},
-    **{name: partial(_of_linkage, name) for name in (*LENGTHS, "offset", "offset_2", "slide_angle", "slide_angle_2")},
+    **{
+        name: partial(_of_linkage, name)
+        for name in (*LENGTHS, "offset", "offset_2", "slide_angle", "slide_angle_2")
+    },
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),
     "link_ratio": _link_ratio,

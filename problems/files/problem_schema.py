@@ -235,7 +235,7 @@ class _Heading(tables.Table):
     """
 
     kind: Annotated[str, tables.one_of(*TASKS)]
-    mechanism: Mechanism = ()
+    mechanism: Mechanism | None = None
     title: tables.Text = ""
     source: tables.Text = ""
     length_unit: tables.Text = ""
@@ -249,7 +249,7 @@ class _Task(_WithTask):  # type: ignore[misc, valid-type]
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None
-    objective: ObjectiveTable = ObjectiveTable()
+    objective: ObjectiveTable | None = None
 
 
 class ProblemFile(MachineTables, _Task):
@@ -264,7 +264,10 @@ class ProblemFile(MachineTables, _Task):
                 raise ProblemError(f'{other} does not belong to kind = "{self.kind}"')
         if mine is None:
             raise ProblemError(f"{self.kind} is missing")
-        if self.dynamics_spec(*(row for word in self.mechanism for row in ROWS.get(word, ()))) is not None:
+        if (
+            self.dynamics_spec(*(row for word in self.mechanism or () for row in ROWS.get(word, ())))
+            is not None
+        ):
             metres(self.length_unit)  # refuses one that is not known
         task: Task = mine.value()
         return task
@@ -279,6 +282,7 @@ class ProblemFile(MachineTables, _Task):
         return replace(wanted, rotatability=Rotatability.ANY)
 
     def problem(self, name: str) -> Problem:
+        stated = {} if self.objective is None else {"objective": self.objective.value()}
         problem = Problem(
             name=name,
             title=self.title,
@@ -287,12 +291,12 @@ class ProblemFile(MachineTables, _Task):
             task=self.value(),
             outlines=self.scene.value(),
             requirements=self._requirements(),
-            objective=self.objective.value() if "objective" in self.model_fields_set else None,
             dynamics=self.dynamics_spec(),
             driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
-            mechanism=self.mechanism,
+            mechanism=self.mechanism or (),
+            **stated,
         )
         if "objective" in self.model_fields_set and not problem.by_objective:
             raise ProblemError(NO_OBJECTIVE)

@@ -83,14 +83,7 @@ class StrokeTable(SpecTable):
 @keys_of(DwellTask)
 class DwellTable(SpecTable):
     beside = MappingProxyType(
-        {
-            **EACH,
-            "dwell_deg": {"swing_deg": 60.0},
-            "swing_deg": {"dwell_deg": 60.0},
-            "stroke": {"dwell_deg": 60.0},
-            "band_deg": {"dwell_deg": 60.0, "swing_deg": 170.0},
-            "band": {"dwell_deg": 60.0, "stroke": 1e9},
-        }
+        {"dwell_deg": {"swing_deg": 60.0}, "swing_deg": {"dwell_deg": 60.0}, "stroke": {"dwell_deg": 60.0}}
     )
 
 
@@ -113,7 +106,13 @@ class FunctionTable(SpecTable):
 
 # The kinds of tasks in the order of files, each with a table of its name.
 TASKS: Mapping[str, type[SpecTable]] = MappingProxyType(
-    {"motion": MotionTable, "path": PathTable, "stroke": StrokeTable, "function": FunctionTable, "dwell": DwellTable}
+    {
+        "motion": MotionTable,
+        "path": PathTable,
+        "stroke": StrokeTable,
+        "function": FunctionTable,
+        "dwell": DwellTable,
+    }
 )
 Outlines = Annotated[
     list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")

@@ -101,7 +101,7 @@ def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Si
 def bars_between(
     near: FloatArray, far: FloatArray, shares: FloatArray, demand: Demand
 ) -> tuple[FloatArray, FloatArray]:
-    """Lengths of two bars that close diagonals from `near` to `far`, from two shares (..., 2); see `_of_bars`.
+    """Lengths of two bars that close diagonals from `near` to `far`, from shares (..., 2); see `_of_bars`.
 
     NaN where no two bars do.
     """
@@ -117,13 +117,15 @@ def bars_between(
 def shares_of_bars(
     near: FloatArray, far: FloatArray, bars: tuple[FloatArray, FloatArray], demand: Demand
 ) -> FloatArray:
-    """The shares from which `bars_between` makes two bars, (..., 2); beyond 0 to 1 where it makes no such bars."""
+    """The shares from which `bars_between` makes two bars, (..., 2); outside 0 to 1 where it cannot."""
     total, difference = bars[0] + bars[1], bars[0] - bars[1]
     shortest, longest = _inverse_totals(near, far, demand)
     low, high = _differences(near, far, total, demand)
     side = (np.abs(difference) - low) / (high - low)
     side = np.where(side < 0, np.inf, side)
-    return np.stack([(1 / total - shortest) / (longest - shortest), (1 + np.copysign(side, difference)) / 2], axis=-1)
+    return np.stack(
+        [(1 / total - shortest) / (longest - shortest), (1 + np.copysign(side, difference)) / 2], axis=-1
+    )
 
 
 def _inverse_totals(near: FloatArray, far: FloatArray, demand: Demand) -> tuple[FloatArray, FloatArray]:

@@ -13,9 +13,9 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from grashof.analysis import Verdict
+from grashof.analysis.judge.dwell_output import DwellFigures
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
-from grashof.analysis.judge.dwell_output import DwellFigures
 from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
@@ -28,8 +28,8 @@ from grashof.synth.search.ledger import Chunk, Tally
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DwellFigures, Objective, Round, Start, Tally, Terms,
-        Verdict,
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DwellFigures, Objective, Round, Start,
+        Tally, Terms, Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}

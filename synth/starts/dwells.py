@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from grashof.problems import Linkage, ProblemError, Requirements, SixBar, Task
-from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.synth.designs.candidate import Candidate
@@ -23,7 +22,7 @@ from grashof.synth.starts.dwell_search import DwellAim, DwellLinkages, drawn, fi
 
 ROUNDS = 3
 FINDS = "feasible finds"
-# Beyond what is required: of the transmission angle, deg, and of link ratio and margin, as shares, for samples.
+# Beyond what is required, for peaks between samples: deg of transmission angle; shares of ratio and margin.
 SPARE_DEG, SPARE = 0.05, 1e-3
 LEAST_DEG = 1.0
 
@@ -34,7 +33,7 @@ class Dwells(DesignFinder):
 
     beginning: ClassVar[str] = "looking for coupler curves with an arc"
     exhausted: ClassVar[str] = "further rounds find the same dwells"
-    rounds_a_pass: ClassVar[int] = ROUNDS  # type: ignore[assignment]
+    rounds_a_pass: ClassVar[int] = ROUNDS
 
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
@@ -64,7 +63,7 @@ class Dwells(DesignFinder):
             ratio=wanted.link_ratio_max * (1 - SPARE),
         )
 
-    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+    def round(self, number: int, _enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
         """The best of some thousand four-bars with arcs."""
         if number >= ROUNDS:
             return None
@@ -103,7 +102,10 @@ class Dwells(DesignFinder):
         if self.task.stroke is not None:
             return self.task.stroke / stroke
         low, high = 0.0, np.inf
-        for name, length in {"r1": 1.0, **{name: float(getattr(found, name)[k]) for name in _LENGTHS}}.items():
+        for name, length in {
+            "r1": 1.0,
+            **{name: float(getattr(found, name)[k]) for name in _LENGTHS},
+        }.items():
             limits = getattr(self.wanted, name, None) or self.wanted.link_length
             if limits is not None:
                 low, high = max(low, limits[0] / length), min(high, limits[1] / length)
@@ -145,5 +147,5 @@ class Dwells(DesignFinder):
 _LENGTHS = ("r2", "r3", "r4", "r5", "r6")
 
 
-def _xy(z: ComplexArray | complex) -> tuple[float, float]:
-    return float(np.real(z)), float(np.imag(z))
+def _xy(z: complex) -> tuple[float, float]:
+    return float(z.real), float(z.imag)

@@ -18,7 +18,7 @@ DISTINCT = 0.0125
 def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     """The numbers that distinguish designs, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
-    Of six-bars all parameters but signs; a direction has the length of r5.
+    Of six-bars all parameters but signs; a direction has the length of all links together.
 
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
@@ -46,7 +46,9 @@ def _of_six_bar(linkage: Linkage, middle: FloatArray) -> FloatArray:
             placed = value - middle if row.kind in ("place", "station") else value
             numbers.append(placed if row.paired else placed[..., None])
         elif row.kind == "angle" and row.name != "body_angle":
-            numbers.append(linkage.r5[..., None] * np.stack([np.cos(value), np.sin(value)], axis=-1))
+            numbers.append(
+                linkage.lengths.sum(axis=-1)[..., None] * np.stack([np.cos(value), np.sin(value)], axis=-1)
+            )
     return np.concatenate(numbers, axis=-1)
 
 

@@ -16,7 +16,10 @@ from grashof.problems.values.linkages.six_bar import SixBar
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
 WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in files and tables
 ROWS = {word: tuple(row for row in MECHANISMS if row.word == word) for word in WORDS}
-SIX_BAR, SIX_BARS = "six-bar", tuple(word for word in WORDS if word not in ONE_LOOP)  # the first means all others
+SIX_BAR, SIX_BARS = (
+    "six-bar",
+    tuple(word for word in WORDS if word not in ONE_LOOP),
+)  # the first means all others
 NOISE = 1e-9  # share of a linkage's longest link that rounding leaves of a length of zero
 # The parameters of all kinds, each once, in the order of tables.
 PARAMETERS: tuple[Parameter, ...] = tuple(
@@ -25,7 +28,9 @@ PARAMETERS: tuple[Parameter, ...] = tuple(
 LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in MECHANISMS for name in kind.lengths}))
 DIMENSIONS: tuple[str, ...] = (
     *LENGTHS,
-    *dict.fromkeys(name for kind in MECHANISMS for name in kind.dimensions if name not in (*LENGTHS, "u", "v")),
+    *dict.fromkeys(
+        name for kind in MECHANISMS for name in kind.dimensions if name not in (*LENGTHS, "u", "v")
+    ),
     "u",
     "v",
 )
@@ -62,7 +67,11 @@ def having(column: str) -> tuple[str, ...]:
         word
         for word, kinds in ROWS.items()
         if any(
-            column in (*kind.dimensions, *(name for row in kind.parameters for name in (row.name, row.key, *row.columns)))
+            column
+            in (
+                *kind.dimensions,
+                *(name for row in kind.parameters for name in (row.name, row.key, *row.columns)),
+            )
             for kind in kinds
         )
     )
@@ -75,7 +84,10 @@ def closing_dyad(kind: str) -> DyadKind:
 
 def freedoms(kind: str) -> int:
     """The number of dimensions of a linkage of a kind, without the angle of the guided body."""
-    every = ([row for row in one.parameters if row.kind != "sign" and row.name != "body_angle"] for one in ROWS[kind])
+    every = (
+        [row for row in one.parameters if row.kind != "sign" and row.name != "body_angle"]
+        for one in ROWS[kind]
+    )
     return min(sum(1 + row.paired for row in rows) for rows in every)
 
 

@@ -171,7 +171,8 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=tuple(ONE_LOOP)), usual=(0.0, 30.0)
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=tuple(ONE_LOOP)),
+        usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),

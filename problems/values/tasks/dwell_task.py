@@ -18,7 +18,9 @@ DWELLS_DEG, SWINGS_DEG = np.array([1.0, 350.0]), np.array([0.1, 179.0])
 BANDS, USUAL_BAND = np.array([1e-9, 0.5]), 0.05  # shares of the swing or stroke
 SWING_WITHIN = float(np.radians(0.01))  # rad, or share of the stroke
 # Kinds with a dwell: D of the last dyad on the ground, C on the coupler.
-DWELLING = tuple(dict.fromkeys(row.word for row in MECHANISMS if row.dyads[1:] and row.dyads[1].hosts == (3, 1)))
+DWELLING = tuple(
+    dict.fromkeys(row.word for row in MECHANISMS if row.dyads[1:] and row.dyads[1].hosts == (3, 1))
+)
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -37,8 +39,8 @@ class DwellTask(Task):
     stroke : float, length, optional
         Greatest less least travel of a slide, met to 1.7e-4 of itself; either this or the swing is given.
     band : float, rad or length, optional
-        Greatest less least output within the dwell, at most; by default a twentieth of the swing or stroke. It
-        is made least in any case.
+        Greatest less least output within the dwell, at most; by default a twentieth of the swing or
+        stroke. It is made least in any case.
 
     Raises
     ------
@@ -99,7 +101,7 @@ class DwellTask(Task):
             if stroke is not None:
                 kept["stroke"] = size_number(stroke, "dwell.stroke")
                 if band is not None:
-                    kept["band"] = number_within(band, *(BANDS * kept["stroke"]), "dwell.band")
+                    kept["band"] = _within(band, BANDS * kept["stroke"], "band")
         refuse(wrong)
         set_fields(self, **kept)
 
@@ -116,7 +118,9 @@ class DwellTask(Task):
         """Task as problem files write it: angles in degrees, `band_deg` of a swing and `band` of a stroke."""
         of_swing = stroke is None
         if (band if of_swing else band_deg) is not None:
-            given, key, other = ("band", "swing_deg", "band_deg") if of_swing else ("band_deg", "stroke", "band")
+            given, key, other = (
+                ("band", "swing_deg", "band_deg") if of_swing else ("band_deg", "stroke", "band")
+            )
             raise ProblemError(f"dwell.{given} does not go with {key}; use {other}")
         angles = {"dwell_deg": dwell_deg, "swing_deg": swing_deg, "band_deg": band_deg}
         dwell, swing, of_angle = (
@@ -168,7 +172,7 @@ class DwellTask(Task):
     @property
     def output_size(self) -> float:
         """The swing (rad) or the stroke (length)."""
-        return float(self.swing if self.stroke is None else self.stroke)
+        return float(self.stroke or self.swing or 0.0)
 
     def exact_for(self, freedoms: int) -> bool:  # noqa: ARG002
         """Yes, whatever the kind."""
@@ -193,4 +197,9 @@ class DwellTask(Task):
 def _angle(angle: float, limits_deg: FloatArray, key: str) -> float:
     """An angle in rad, checked against limits in deg."""
     deg = float(np.degrees(finite_number(angle, f"dwell.{key}")))
-    return float(np.radians(number_within(deg, *limits_deg.tolist(), f"dwell.{key}")))
+    return float(np.radians(_within(deg, limits_deg, key)))
+
+
+def _within(number: float, limits: FloatArray, key: str) -> float:
+    low, high = limits.tolist()
+    return number_within(number, low, high, f"dwell.{key}")
