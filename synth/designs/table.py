@@ -39,6 +39,8 @@ _BEFORE = {
             "assembly mode (+1 or −1)",
             "B left (+1) or right (-1) of the line from A to O4",
         ),
+    },
+    "r5": {
         "assembly_2": (
             "assembly mode of the second loop (+1 or −1)",
             "E left (+1) or right (-1) of the line from C to D; ahead of C along a slide (+1) or behind",

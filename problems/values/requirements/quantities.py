@@ -7,7 +7,7 @@ can steer (`grashof.synth.quantities.formulas`); the two share nothing but the k
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, StrEnum, auto
 from typing import Any
@@ -17,11 +17,10 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import (
     DIMENSIONS,
     LENGTHS,
-    PARAMETERS,
     SLIDER_CRANK,
     WORDS,
     having,
@@ -93,6 +92,7 @@ class Quantity:
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
+_FIRST, _SIX_BARS = FourBar.mechanism, [row for row in MECHANISMS if row.word not in ONE_LOOP]
 # Names of the lengths and places that state a linkage, by column.
 _STATED = {
     "o2_x": "O2, x",
@@ -124,10 +124,12 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
     return Quantity(key, label or key, Unit.LENGTH, **{"full": _STATED.get(key, ""), **others})
 
 
-def _stated(kind: str, digits: int = 0) -> list[Quantity]:
-    """Quantities of the columns of these parameters."""
-    kinds = (kind, "station") if kind == "arm" else (kind,)
-    names = dict.fromkeys(name for row in PARAMETERS if row.kind in kinds for name in row.columns)
+def _stated(
+    of: Iterable[Mechanism], *kinds: str, digits: int = 0, listed: Sequence[Parameter] = ()
+) -> list[Quantity]:
+    """Quantities of the columns of parameters of some kinds; of six-bars those that four-bars lack."""
+    rows = (row for mechanism in of for row in mechanism.parameters if row.kind in kinds)
+    names = dict.fromkeys(name for row in rows if row not in listed for name in row.columns)
     return [_length(name, kinds=having(name), digits=digits) for name in names]
 
 
@@ -170,9 +172,9 @@ _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *_stated("place"),
-        *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
-        *_stated("arm"),
+        *_stated([_FIRST], "place"),
+        *(_length(name, digits=4, kinds=having(name)) for name in _FIRST.lengths),
+        *_stated([_FIRST], "arm"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Scope.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Scope.TARGETS),
@@ -222,7 +224,7 @@ MEASURED: dict[str, Quantity] = {
         _length("size", over=Scope.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
         _length("hausdorff", "Hausdorff distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
-        *(_move(name) for name in FourBar.mechanism.dimensions),
+        *(_move(name) for name in _FIRST.dimensions),
         _length(
             "worst_move", "worst move", needs=Needs.MANUFACTURING,
             full="largest move of a target within the tolerances", **_MISSED,
@@ -235,11 +237,12 @@ MEASURED: dict[str, Quantity] = {
             "share_within_made", "made within", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING, digits=3,
             full="share made within the allowed error",
         ),
-        *_stated("distance", digits=4),
-        *(
-            Quantity(name, "direction of the slide", Unit.ANGLE, kinds=having(name))
-            for name in ("slide_angle", "slide_angle_2")
-        ),
+        *_stated(ONE_LOOP.values(), "distance", digits=4),
+        Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
+        *_stated(_SIX_BARS, "length", digits=4, listed=_FIRST.parameters),
+        *_stated(_SIX_BARS, "arm", "station", listed=_FIRST.parameters),
+        *_stated(_SIX_BARS, "distance", digits=4, listed=_FIRST.parameters),
+        Quantity("slide_angle_2", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle_2")),
         *(
             Quantity(
                 f"dwell_{name}", f"dwell {name}", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL,
@@ -253,7 +256,7 @@ MEASURED: dict[str, Quantity] = {
             "swing", "swing", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL_OF_LINK, digits=4,
             full="swing of the last link over the turn",
         ),
-        *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
+        *(_move(name) for name in DIMENSIONS if name not in _FIRST.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
             "cylinder_closed", "closed cylinder", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
