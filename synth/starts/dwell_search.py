@@ -9,6 +9,7 @@ has such an arc are drawn; Levenberg-Marquardt then makes the output even, and i
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -193,13 +194,16 @@ def _model(aim: DwellAim, round_: int, weight: float) -> Model:
     return model
 
 
-def fitted(aim: DwellAim, batch: Batch) -> tuple[Batch, FloatArray]:
-    """The best of a batch improved, best first, and the root mean square of their residuals."""
+def fitted(aim: DwellAim, batch: Batch, share: float = 1.0) -> tuple[Batch, FloatArray]:
+    """The best of a batch improved, best first, and the root mean square of their residuals.
+
+    With a `share` of the usual numbers.
+    """
     model = _model(aim, ROUND, 1.0)
     error = model(batch)[0]
     for keep, steps in STAGES:
-        best = np.argsort(error, kind="stable")[:keep]
-        batch, error = improve(model, batch[best], steps, NO_ERROR, keep)
+        best = np.argsort(error, kind="stable")[: ceil(share * keep)]
+        batch, error = improve(model, batch[best], steps, NO_ERROR, len(best))
     batch, error = improve(_model(aim, FINE, SWING), batch, 15, NO_ERROR, len(batch))
     kept = np.flatnonzero(np.isfinite(error))
     order = kept[np.argsort(error[kept], kind="stable")]

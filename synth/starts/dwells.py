@@ -21,6 +21,7 @@ from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 
 ROUNDS = 3
+FEW = 0.25  # of the work of a round, where the reason for an empty list is looked for
 FINDS = "feasible finds"
 # Beyond what is required, for peaks between samples: deg of transmission angle; shares of ratio and margin.
 SPARE_DEG, SPARE = 0.05, 1e-3
@@ -78,9 +79,9 @@ class Dwells(DesignFinder):
     def closest_to(
         self, required: ScaledProblem, key: str, rng: np.random.Generator
     ) -> Sequence[Start | Linkage]:
-        """Those of one round."""
+        """Some of one round."""
         del required, key
-        batch, _ = fitted(self.aim, drawn(self.aim, rng))
+        batch, _ = fitted(self.aim, drawn(self.aim, rng), FEW)
         return self._linkages(batch)
 
     def _linkages(self, batch: Batch) -> list[Linkage]:

@@ -236,7 +236,9 @@ class Problem(ReadOnly):
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
-            not_had(where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds)
+            not_had(
+                where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds
+            )
             for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
         ]

@@ -39,7 +39,8 @@ OF_FUNCTIONS = [
     *(f"structural_error_{name}" for name in ("max", "rms")),  # of slides
 ]
 WITHOUT_MEANING = [
-    "error", "cognate_of", "best_at", "caution", "hausdorff", "frechet", *FIRST[FIRST.index("move_r1") :], "stroke",
+    "error", "cognate_of", "best_at", "caution", "hausdorff", "frechet", *FIRST[FIRST.index("move_r1") :],
+    "stroke",
     *OF_FUNCTIONS,
 ]  # fmt: skip
 
@@ -180,7 +181,7 @@ def test_every_column_has_a_name_in_words() -> None:
         assert "_" not in name
         assert name == name.strip() != ""
         assert name[:1].islower() or name.startswith(
-            ("O2", "O4", "P ", "R2", "Grashof", "Hausdorff", "Fréchet", "Pareto")
+            ("O2", "O4", "P ", "C ", "D ", "R2", "Grashof", "Hausdorff", "Fréchet", "Pareto")
         )
     assert NAMES["o2_x"] == "O2, x"
     assert NAMES["transmission_min_task_deg"] == "worst transmission angle over the task"
