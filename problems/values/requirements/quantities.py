@@ -20,7 +20,6 @@ from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import (
     DIMENSIONS,
-    LENGTHS,
     SLIDER_CRANK,
     WORDS,
     having,
@@ -137,7 +136,7 @@ def _move(name: str) -> Quantity:
     about = f"how far the worst target moves per unit of change of {name}"
     return Quantity(
         f"move_{name}", f"move by {name}", Unit.RATIO, Scope.TARGETS, -1, Needs.MANUFACTURING, about=about,
-        kinds=having(name), full=f"sensitivity to {name}",
+        kinds=having(name), full=f"sensitivity to {name.replace('_', ' ')}",
     )  # fmt: skip
 
 
@@ -242,7 +241,9 @@ MEASURED: dict[str, Quantity] = {
         *_stated(_SIX_BARS, "length", digits=4, listed=_FIRST.parameters),
         *_stated(_SIX_BARS, "arm", "station", listed=_FIRST.parameters),
         *_stated(_SIX_BARS, "distance", digits=4, listed=_FIRST.parameters),
-        Quantity("slide_angle_2", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle_2")),
+        Quantity(
+            "slide_angle_2", "direction of the second slide", Unit.ANGLE, kinds=having("slide_angle_2")
+        ),
         *(
             Quantity(
                 f"dwell_{name}", f"dwell {name}", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL,
