@@ -111,11 +111,11 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
         return False
     if getattr(one.cylinder, "on", None) != getattr(other.cylinder, "on", None):
         return False
-    dwells = [None if each.dwell is None else astuple(each.dwell) for each in (one, other)]
-    if (dwells[0] is None) != (dwells[1] is None):
+    if (one.dwell is None) != (other.dwell is None):
         return False
-    if dwells[0] is not None and not near(*dwells, size):
-        return False
+    if one.dwell is not None and other.dwell is not None:
+        if not near(astuple(one.dwell), astuple(other.dwell), size):
+            return False
     apart = ("defects", "grashof_class", "cylinder", "dwell")
     names = (each.name for each in fields(Verdict) if each.name not in apart)
     return one.grashof_class is other.grashof_class and all(

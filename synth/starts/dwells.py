@@ -121,8 +121,11 @@ class Dwells(DesignFinder):
         row = ROWS[self.scaled.problem.mechanism[0]][0]
         c = _xy(scale * found.c[k])
         given: dict[str, Any] = {name: scale * float(getattr(found, name)[k]) for name in _LENGTHS}
-        if self.aim.slides:
-            given |= {"offset_2": given.pop("r6"), "slide_angle_2": float(np.angle(-1j * found.d[k] * turn))}
+        side = int(found.side_2[k])
+        if self.aim.slides:  # E ahead of C: the other assembly is the same slide in the other direction
+            along = side * -1j * found.d[k] * turn
+            given |= {"offset_2": side * given.pop("r6"), "slide_angle_2": float(np.angle(along))}
+            side = 1
         else:
             given["d"] = _xy(o2 + ground * found.d[k])
         return SixBar(
@@ -131,7 +134,7 @@ class Dwells(DesignFinder):
             c=c,
             coupler_point=c,
             assembly=int(found.side[k]),
-            assembly_2=int(found.side_2[k]),
+            assembly_2=side,
             hosts=row.dyads[1].hosts,
             point_link=3,
             **given,
