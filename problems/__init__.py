@@ -28,6 +28,7 @@ from grashof.problems.values.requirements.objective import Objective
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 from grashof.problems.values.specs.problem import Problem, Search
+from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.motion_task import MotionTask
@@ -42,6 +43,7 @@ __all__ = [
     "Cylinder",
     "CylinderSpec",
     "DeadPositionWarning",
+    "DwellTask",
     "DynamicsSpec",
     "FourBar",
     "FunctionLaw",

@@ -37,6 +37,7 @@ class _Claim(NamedTuple):
     shown: _Shown
 
 
+_TWO_LOOPS = Enclosure(False, (0.0, np.pi / 2), 0, "closure of the second loop")
 _UNJOINED = _Claim("a motion of link 2 through all targets", _Shown.OPEN)
 
 
@@ -69,6 +70,9 @@ def enclose(
         for begin in range(0, len(alike), _AT_ONCE):
             chosen = alike[begin : begin + _AT_ONCE]
             batch = [linkages[k] for k in chosen], [verdicts[k] for k in chosen]
+            if len(batch[0][0].mechanism.loops) > 1:
+                found |= dict.fromkeys(chosen, _TWO_LOOPS)
+                continue
             found |= zip(chosen, _of_kind(*batch, task, wanted), strict=True)
     return tuple(found[k] for k in range(len(linkages)))
 

@@ -8,15 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.judge.dwell_output import least_band
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
-from grashof.analysis.judge.verdict import Defect
+from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
-from grashof.problems import FunctionTask, Linkage, Requirements, StrokeTask, Task
+from grashof.problems import DwellTask, FunctionTask, Linkage, Requirements, StrokeTask, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
@@ -102,7 +104,9 @@ def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly)
 
 
-def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
+def _stroke_defects(
+    linkage: Linkage, task: Task, wanted: Requirements, _verdict: Verdict
+) -> Iterator[Defect]:
     """Misses of the swing (by `tolerance` in rad), stroke and time ratio (by that share of them)."""
     found = output_stroke(linkage)
     ratio = float(found.time_ratio)
@@ -126,7 +130,54 @@ def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Itera
             yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)
 
 
-def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements) -> Iterable[Defect]:
+def _standing_still(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
+    """The ends of the dwell of least band, and the turn that begins with it; anywhere where there is none."""
+    sense = -1 if wanted.driver_sense == "cw" else 1
+    found = least_band(linkage, task.dwell or 0.0)
+    start = 0.0 if found is None else found.start if sense > 0 else found.end
+    start -= TURN * np.ceil((start - np.pi) / TURN)
+    theta2, assembly = (
+        np.array([start, start + sense * (task.dwell or 0.0)]),
+        np.full(2, int(linkage.assembly)),
+    )
+    motion = TaskMotion.ordered(theta2, sense).closed()
+    return Met(
+        Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, figures={"dwell": found}
+    )
+
+
+def _dwell_defects(
+    _linkage: Linkage, task: DwellTask, _wanted: Requirements, verdict: Verdict
+) -> Iterator[Defect]:
+    """Misses of the swing or stroke, and of the band where the task limits it."""
+    found = verdict.dwell
+    if found is None:
+        yield Defect("exact", "the number of dwells over a full turn of the driver", 0, "1", 1.0)
+        return
+    whole, unit = task.output_size, 1.0 if task.swing is None else float(np.degrees(1.0))
+    what = "the stroke" if task.swing is None else "the swing in deg"
+    scale = task.size if task.swing is None else 1.0
+    miss, within = abs(found.swing - whole), SWING_WITHIN * scale
+    if not miss <= within:
+        yield Defect(
+            "exact",
+            what,
+            found.swing * unit,
+            f"{whole * unit:.6g} within {within * unit:.2g}",
+            (miss - within) / scale,
+        )
+    if not found.band <= task.most_band:
+        key = "the output band in the dwell" + ("" if task.swing is None else " in deg")
+        yield Defect(
+            "exact",
+            key,
+            found.band * unit,
+            f"up to {task.most_band * unit:.6g}",
+            (found.band - task.most_band) / scale,
+        )
+
+
+def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements, _verdict: Verdict) -> Iterable[Defect]:
     return ()
 
 
@@ -135,11 +186,12 @@ class HowMet:
     """How a kind of task is met, and the defects against its own requirements."""
 
     met: Callable[[Linkage, Any, Requirements], Met]
-    defects: Callable[[Linkage, Any, Requirements], Iterable[Defect]] = _no_defects
+    defects: Callable[[Linkage, Any, Requirements, Verdict], Iterable[Defect]] = _no_defects
 
 
 HOW_MET: Mapping[type, HowMet] = {
     Task: HowMet(_in_plane),
     FunctionTask: HowMet(_as_function),
     StrokeTask: HowMet(_between_limits, _stroke_defects),
+    DwellTask: HowMet(_standing_still, _dwell_defects),
 }

@@ -12,11 +12,12 @@ import numpy as np
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
+from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
-from grashof.analysis.mechanism.stroke import OutputStroke, output_stroke
+from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_stroke
 from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
@@ -158,6 +159,8 @@ def _output_swing(values: Values) -> float:
 
 def _stroke(values: Values) -> float:
     """Of the slider, likewise."""
+    if len(values.linkage.mechanism.loops) > 1:
+        return float(link_stroke(values.linkage).stroke) if values.linkage.mechanism.slides else np.nan
     limits = values.stroke
     if values.verdict.full_rotation:
         return float(limits.chord)
@@ -183,6 +186,18 @@ def _cylinder_column(name: str, values: Values) -> float:
     return np.nan if cylinder is None else cylinder.columns[name]
 
 
+def _of_dwell(name: str, values: Values) -> float:
+    dwell = values.verdict.dwell
+    return np.nan if dwell is None else getattr(dwell, name)
+
+
+def _band_made(values: Values) -> float:
+    dwell, made = values.verdict.dwell, values.problem.manufacturing
+    if dwell is None:
+        return np.nan
+    return made_band(values.linkage, dwell, None if made is None else made.length_tolerance)
+
+
 def _torque_peak(values: Values) -> float:
     """That of `over_task`, without the rest of it."""
     if values._peaks is None:
@@ -198,7 +213,10 @@ def _omega2(values: Values) -> float:
 # Of every quantity that is one number.
 MEASURES: dict[str, Callable[[Values], float]] = {
     **{name: partial(_column, name) for row in PARAMETERS if row.paired for name in row.columns},
-    **{name: partial(_of_linkage, name) for name in (*LENGTHS, "offset", "slide_angle")},
+    **{
+        name: partial(_of_linkage, name)
+        for name in (*LENGTHS, "offset", "offset_2", "slide_angle", "slide_angle_2")
+    },
     "body_angle": lambda values: _angle_error(lambda _: float(values.linkage.body_angle), values),
     "ground_angle": attrgetter("linkage.theta1"),
     "link_ratio": _link_ratio,
@@ -221,6 +239,11 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": _torque_peak,
+    "dwell_from": partial(_of_dwell, "start"),
+    "dwell_to": partial(_of_dwell, "end"),
+    **dict.fromkeys(("band", "slide_band"), partial(_of_dwell, "band")),
+    **dict.fromkeys(("band_made", "slide_band_made"), _band_made),
+    "swing": partial(_of_dwell, "swing"),
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from grashof.analysis.judge.dwell_output import DwellFigures
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -71,6 +72,8 @@ class Verdict:
     structural_error_max, structural_error_rms, structural_error_at : float, rad
         Over the range of a function: greatest, root mean square, and the driver rotation from the first
         pair to the greatest; NaN for other tasks, or where the motion does not cover the range.
+    dwell : DwellFigures, optional
+        Of a dwell: where it is, its band, and the swing; None where the driver or the output turns otherwise.
     output_zero : float, rad
         Direction theta4 at the wanted output zero.
     output_sense : int
@@ -99,6 +102,7 @@ class Verdict:
     structural_error_at: float = np.nan
     output_zero: float = np.nan
     output_sense: int = 1
+    dwell: DwellFigures | None = None
 
     @property
     def ok(self) -> bool:

@@ -113,7 +113,7 @@ def verify(
     drive = _drive(linkage, task, wanted, verdict, targets, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
-        *how.defects(linkage, task, wanted),
+        *how.defects(linkage, task, wanted, verdict),
         *_zones(targets, task),
         *_total_error(targets, task, most_square),
         *drive,

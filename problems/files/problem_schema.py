@@ -21,7 +21,7 @@ from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
-from grashof.problems.values.linkages.mechanisms import ANY_KINDS, FOUR_BAR, mechanisms
+from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
@@ -228,7 +228,7 @@ class _Heading(tables.Table):
     """
 
     kind: Annotated[str, tables.one_of(*TASKS)]
-    mechanism: Mechanism = FOUR_BAR
+    mechanism: Mechanism | None = None
     title: tables.Text = ""
     source: tables.Text = ""
     length_unit: tables.Text = ""
@@ -242,7 +242,7 @@ class _Task(_WithTask):  # type: ignore[misc, valid-type]
     scene: SceneTable = SceneTable()
     requirements: RequirementsTable = RequirementsTable()
     driver: DriverTable | None = None
-    objective: ObjectiveTable = ObjectiveTable()
+    objective: ObjectiveTable | None = None
 
 
 class ProblemFile(MachineTables, _Task):
@@ -272,6 +272,7 @@ class ProblemFile(MachineTables, _Task):
         return replace(wanted, rotatability=Rotatability.ANY)
 
     def problem(self, name: str) -> Problem:
+        stated = {} if self.objective is None else {"objective": self.objective.value()}
         problem = Problem(
             name=name,
             title=self.title,
@@ -280,12 +281,12 @@ class ProblemFile(MachineTables, _Task):
             task=self.value(),
             outlines=self.scene.value(),
             requirements=self._requirements(),
-            objective=self.objective.value(),
             dynamics=self.dynamics_spec(),
             driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),
-            mechanism=mechanisms(self.mechanism),
+            mechanism=self.mechanism or (),
+            **stated,
         )
         if "objective" in self.model_fields_set and not problem.by_objective:
             raise ProblemError(NO_OBJECTIVE)

@@ -14,6 +14,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.specs.problem import Problem
+from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.task import Task, row_of
 
@@ -90,8 +91,23 @@ def _function(task: FunctionTask) -> dict[str, Any]:
     }
 
 
+def _dwell(task: DwellTask) -> dict[str, Any]:
+    """A dwell's table: the band in degrees where the output swings."""
+    degrees = ("dwell", "swing", "band") if task.stroke is None else ("dwell",)
+    given = {name: getattr(task, name) for name in ("dwell", "swing", "stroke", "band")}
+    return {
+        f"{name}_deg" if name in degrees else name: _degrees(value) if name in degrees else value
+        for name, value in given.items()
+        if value is not None
+    }
+
+
 # Tables by the kind of task; most are written by their fields.
-_TASKS: Mapping[type, Callable[[Any], dict[str, Any]]] = {Task: _task, FunctionTask: _function}
+_TASKS: Mapping[type, Callable[[Any], dict[str, Any]]] = {
+    Task: _task,
+    FunctionTask: _function,
+    DwellTask: _dwell,
+}
 
 
 def _poses(task: Task) -> list[Any]:

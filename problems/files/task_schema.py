@@ -12,6 +12,7 @@ from grashof.problems.files.tables import EACH, LIST, NUMBER, SpecTable, Table, 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, outline
 from grashof.problems.values.specs.problem import MOST_TARGETS
+from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.motion_task import MotionTask
 from grashof.problems.values.tasks.path_task import PathTask
@@ -79,6 +80,13 @@ class StrokeTable(SpecTable):
     beside = MappingProxyType({**EACH, "time_ratio": {"swing_deg": 60.0}})
 
 
+@keys_of(DwellTask)
+class DwellTable(SpecTable):
+    beside = MappingProxyType(
+        {"dwell_deg": {"swing_deg": 60.0}, "swing_deg": {"dwell_deg": 60.0}, "stroke": {"dwell_deg": 60.0}}
+    )
+
+
 _PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
 
 
@@ -98,7 +106,13 @@ class FunctionTable(SpecTable):
 
 # The kinds of tasks in the order of files, each with a table of its name.
 TASKS: Mapping[str, type[SpecTable]] = MappingProxyType(
-    {"motion": MotionTable, "path": PathTable, "stroke": StrokeTable, "function": FunctionTable}
+    {
+        "motion": MotionTable,
+        "path": PathTable,
+        "stroke": StrokeTable,
+        "function": FunctionTable,
+        "dwell": DwellTable,
+    }
 )
 Outlines = Annotated[
     list[Corners], listed("a list of outlines, each a list of corners [x, y], or a .dxf or .svg file")

@@ -24,7 +24,7 @@ def wrong_value(where: str, value: object, wanted: str) -> ProblemError:
 def listing(words: Sequence[object], last: str = "or") -> str:
     """Words in a sentence: a, b or c."""
     *most, end = map(str, words)
-    return f"{', '.join(most)} {last} {end}"
+    return f"{', '.join(most)} {last} {end}" if most else end
 
 
 def shown(value: object) -> str:

@@ -105,9 +105,10 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        cognates = not kind.slides and not (task.has_angle.any() or task.has_output.any())
+        one_loop = len(kind.loops) == 1
+        cognates = one_loop and not kind.slides and not (task.has_angle.any() or task.has_output.any())
         curves = same_curve(one, task.is_timed) if cognates else one[None]
-        near = left[_alike_in_shape(curves, signatures[left])]
+        near = left[_alike_in_shape(curves, signatures[left])] if one_loop else left
         images = np.concatenate([each.of(curves, mirrored(kind)) for each in maps])
         best[near[(apart(images, signatures[near]) < ALIKE).any(axis=0)]] = first
         left = left[best[left] != first]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import astuple, fields, replace
 from typing import Any
 
 import numpy as np
@@ -111,7 +111,15 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
         return False
     if getattr(one.cylinder, "on", None) != getattr(other.cylinder, "on", None):
         return False
-    apart = ("defects", "grashof_class", "cylinder")
+    if (one.dwell is None) != (other.dwell is None):
+        return False
+    if (
+        one.dwell is not None
+        and other.dwell is not None
+        and not near(astuple(one.dwell), astuple(other.dwell), size)
+    ):
+        return False
+    apart = ("defects", "grashof_class", "cylinder", "dwell")
     names = (each.name for each in fields(Verdict) if each.name not in apart)
     return one.grashof_class is other.grashof_class and all(
         near(getattr(one, name), getattr(other, name), scales.get(name, 1.0)) for name in names

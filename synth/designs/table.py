@@ -40,6 +40,14 @@ _BEFORE = {
             "B left (+1) or right (-1) of the line from A to O4",
         ),
     },
+    "r5": {
+        "assembly_2": (
+            "assembly mode of the second loop (+1 or −1)",
+            "E left (+1) or right (-1) of the line from C to D; ahead of C along a slide (+1) or behind",
+        ),
+        "hosts": ("hosts", "links that carry C and D, such as 3-1"),
+        "point_link": ("link of P", "link that carries P, in whose frame p_u and p_v are"),
+    },
     "cylinder_base_x": {"cylinder_on": ("cylinder, on link", "")},
     "omega4_max": {
         "circuit_ok": ("all targets on one circuit", ""),
@@ -144,6 +152,7 @@ def facts(candidate: Candidate) -> dict[str, Any]:
         "grashof_class": str(verdict.grashof_class),
         "direction": verdict.direction,
         "assembly": int(candidate.linkage.assembly),
+        **{name: candidate.linkage.columns.get(name) for name in ("assembly_2", "hosts", "point_link")},
         "circuit_ok": verdict.circuit_ok,
         "branch_ok": verdict.branch_ok,
         "order_ok": verdict.order_ok,

@@ -95,19 +95,63 @@ def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Si
     of_margin = np.maximum(2 * margin / (1 - margin), margin * (1 + 1 / cosine))
     r2 = demand.crank(shares[..., 0], longer_driver, np.maximum(of_angle, of_margin))
     near, far = demand.diagonals(r2)
+    return Sizes(np.ones_like(r2), r2, *bars_between(near, far, shares[..., 1:], demand))
+
+
+def bars_between(
+    near: FloatArray, far: FloatArray, shares: FloatArray, demand: Demand
+) -> tuple[FloatArray, FloatArray]:
+    """Lengths of two bars that close diagonals from `near` to `far`, from shares (..., 2); see `_of_bars`.
+
+    NaN where no two bars do.
+    """
+    shortest, longest = _inverse_totals(near, far, demand)
+    with np.errstate(invalid="ignore"):
+        total = 1 / (shortest + shares[..., 0] * np.where(longest <= shortest, longest - shortest, np.nan))
+    low, high = _differences(near, far, total, demand)
+    side = 2 * shares[..., 1] - 1
+    difference = np.copysign(low + np.abs(side) * (high - low), side)
+    return (total + difference) / 2, (total - difference) / 2
+
+
+def shares_of_bars(
+    near: FloatArray, far: FloatArray, bars: tuple[FloatArray, FloatArray], demand: Demand
+) -> FloatArray:
+    """The shares from which `bars_between` makes two bars, (..., 2); outside 0 to 1 where it cannot."""
+    total, difference = bars[0] + bars[1], bars[0] - bars[1]
+    shortest, longest = _inverse_totals(near, far, demand)
+    low, high = _differences(near, far, total, demand)
+    side = (np.abs(difference) - low) / (high - low)
+    side = np.where(side < 0, np.inf, side)
+    return np.stack(
+        [(1 / total - shortest) / (longest - shortest), (1 + np.copysign(side, difference)) / 2], axis=-1
+    )
+
+
+def _inverse_totals(near: FloatArray, far: FloatArray, demand: Demand) -> tuple[FloatArray, FloatArray]:
+    """1 / T of the shortest and of the longest sum T."""
+    margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
+    sine, cosine = np.sin(half), np.cos(half)
+    more = (1 + margin) / (1 - margin)
     room = near - margin * far
     # where the lower limit of |D| meets the upper one by the angle, and by the margin
     by_angle = np.sqrt(((far * cosine) ** 2 - (near * sine) ** 2) / (cosine**2 - sine**2))
     square, middle = (margin * sine) ** 2 + cosine**2, margin * room * sine**2
     by_margin = (middle + np.sqrt(middle**2 + square * (far**2 - (room * sine) ** 2))) / square
     least = np.maximum(more * far, np.maximum(by_angle, by_margin))
-    greatest_inverse = np.maximum(sine / near, margin / room)
-    total = 1 / (1 / least + shares[..., 1] * (greatest_inverse - 1 / least))
+    return 1 / least, np.maximum(sine / near, margin / room)
+
+
+def _differences(
+    near: FloatArray, far: FloatArray, total: FloatArray, demand: Demand
+) -> tuple[FloatArray, FloatArray]:
+    """Bounds of |D| for a sum T."""
+    margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
+    sine, cosine = np.sin(half), np.cos(half)
+    room = near - margin * far
     low = np.sqrt(np.maximum(far**2 - (total * cosine) ** 2, 0.0)) / np.maximum(sine, 1e-300)
     high = np.minimum(np.sqrt(np.maximum(near**2 - (total * sine) ** 2, 0.0)) / cosine, room - margin * total)
-    side = 2 * shares[..., 2] - 1
-    difference = np.copysign(low + np.abs(side) * (high - low), side)
-    return Sizes(np.ones_like(r2), r2, (total + difference) / 2, (total - difference) / 2)
+    return low, high
 
 
 def _of_slider(shares: FloatArray, _longer: BoolArray, demand: Demand) -> Sizes:

@@ -18,6 +18,7 @@ from grashof.problems import (
     SliderCrank,
 )
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.synth.loop.dimensions import FourBarClosure, InvertedSliderCrankClosure, SliderCrankClosure
 from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
@@ -276,5 +277,5 @@ KINDS: Mapping[str, Kind] = {kind.mechanism: kind for kind in (FOUR_BAR, SliderC
 
 
 def kind_of(problem: Problem) -> Kind:
-    """The kind of linkage that a problem of one kind requests."""
-    return KINDS[problem.mechanism[0]]
+    """The kind of the first loop of the linkages that a problem of one kind requests."""
+    return KINDS[ROWS[problem.mechanism[0]][0].one_loop.word]

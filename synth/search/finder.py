@@ -14,6 +14,7 @@ from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.dwells import Dwells
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares
@@ -24,6 +25,7 @@ from grashof.synth.starts.strokes.limit_positions import LimitPositions
 KINDS: tuple[Any, ...] = (
     Functions,
     LimitPositions,
+    Dwells,
     Parallelograms,
     FewPoses,
     ManyPoses,

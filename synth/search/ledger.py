@@ -96,7 +96,7 @@ class Leaders:
     _every: list[Candidate] = field(default_factory=list)
     _order: list[tuple[tuple[float, ...], int]] = field(default_factory=list)  # keys and numbers, best first
     _alike: list[list[int]] = field(default_factory=list)  # numbers of those not distinct from each
-    _signatures: FloatArray = field(default_factory=lambda: np.empty((16, 9)))
+    _signatures: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
 
     def __len__(self) -> int:
         return len(self._every)
@@ -107,7 +107,9 @@ class Leaders:
         for candidate in candidates:
             number, numbers = len(self._every), signature(candidate.linkage, origin)
             if number == len(self._signatures):
-                self._signatures = np.concatenate([self._signatures, np.empty_like(self._signatures)])
+                grown = np.empty((max(16, 2 * number), len(numbers)))
+                grown[:number] = self._signatures[:number] if number else 0.0
+                self._signatures = grown
             near = np.flatnonzero(~(apart(numbers, self._signatures[:number]) > DISTINCT)).tolist()
             self._signatures[number] = numbers
             self._every.append(candidate)

@@ -13,9 +13,10 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from grashof.analysis import Verdict
+from grashof.analysis.judge.dwell_output import DwellFigures
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
-from grashof.problems import Cylinder, Linkage, Objective, Problem
+from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Round, Start, Terms
@@ -27,8 +28,8 @@ from grashof.synth.search.ledger import Chunk, Tally
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, Objective, Round, Start, Tally, Terms,
-        Verdict,
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DwellFigures, Objective, Round, Start,
+        Tally, Terms, Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}
@@ -65,6 +66,8 @@ def plain(value: Any) -> Any:
         return {"counter": [[plain(key), number] for key, number in value.items()]}
     if isinstance(value, Mapping):
         return {"map": [[plain(key), plain(each)] for key, each in value.items()]}
+    if isinstance(value, SixBar):  # its fields differ from mechanism to mechanism
+        return {"SixBar": value.stated}
     if is_dataclass(value) and type(value).__name__ in TYPES:
         name = type(value).__name__
         left_out = _LEFT_OUT.get(name, set())
@@ -109,14 +112,22 @@ def _restored(value: Any, problem: Problem) -> Any:
     if name == "word":
         kind, word = content
         return WORDS[kind](word)
+    if name == "SixBar":
+        return _single(SixBar(**content))
     kind = TYPES[name]
     named = {key: _restored(each, problem) for key, each in content.items()}
     if kind is Start:
         named["kind"] = kind_of(problem)
     refuse_misfits(kind, named)
-    if issubclass(kind, Linkage) and kind(**named).shape:  # raises unless it is a linkage
-        raise ValueError("a batch of linkages")
+    if issubclass(kind, Linkage):
+        _single(kind(**named))  # raises unless it is a linkage
     return Candidate(problem=problem, **named) if kind is Candidate else _made(kind, named)
+
+
+def _single(linkage: Linkage) -> Linkage:
+    if linkage.shape:
+        raise ValueError("a batch of linkages")
+    return linkage
 
 
 def _made(kind: Any, named: dict[str, Any]) -> Any:

@@ -18,11 +18,15 @@ DISTINCT = 0.0125
 def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     """The numbers that distinguish designs, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
+    Of six-bars all parameters but signs; a direction has the length of all links together.
+
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
     where one is given: from the middle of the task they do not depend on the origin of the user.
     """
     middle = np.zeros(2) if origin is None else origin
+    if len(linkage.mechanism.loops) > 1:
+        return _of_six_bar(linkage, middle)
     if "o4" in linkage.mechanism.ground:
         second = linkage.o4 - middle
     else:
@@ -33,6 +37,19 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     return np.concatenate(
         [linkage.o2 - middle, second, np.stack(list(lengths), axis=-1), linkage.coupler_point], axis=-1
     )
+
+
+def _of_six_bar(linkage: Linkage, middle: FloatArray) -> FloatArray:
+    numbers = list[FloatArray]()
+    for row, value in zip(linkage.mechanism.parameters, linkage.parameters, strict=True):
+        if row.in_length:
+            placed = value - middle if row.kind in ("place", "station") else value
+            numbers.append(placed if row.paired else placed[..., None])
+        elif row.kind == "angle" and row.name != "body_angle":
+            numbers.append(
+                linkage.lengths.sum(axis=-1)[..., None] * np.stack([np.cos(value), np.sin(value)], axis=-1)
+            )
+    return np.concatenate(numbers, axis=-1)
 
 
 def mirrored(kind: Mechanism) -> tuple[int, ...]:

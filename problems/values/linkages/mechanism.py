@@ -247,11 +247,15 @@ class Mechanism:
         return ground + tuple(row.name for row in self.parameters if row.kind == "length")
 
     @cached_property
+    def sizes(self) -> tuple[str, ...]:
+        """The lengths of links, and offsets of slides."""
+        return self.lengths + tuple(row.name for row in self.parameters if row.kind == "distance")
+
+    @cached_property
     def dimensions(self) -> tuple[str, ...]:
         """Dimensions subject to tolerances; u and v are those of the coupler point."""
-        offsets = (row.name for row in self.parameters if row.kind == "distance")
         arms = (column for row in self.parameters if row.name in ("c", "d") for column in row.columns)
-        return (*self.lengths, *offsets, *arms, "u", "v")
+        return (*self.sizes, *arms, "u", "v")
 
     @cached_property
     def every_joint(self) -> tuple[Joint, ...]:

@@ -14,20 +14,27 @@ from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCra
 from grashof.problems.values.linkages.six_bar import SixBar
 
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
-WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in linkage files and tables
+WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in files and tables
+ROWS = {word: tuple(row for row in MECHANISMS if row.word == word) for word in WORDS}
+SIX_BAR, SIX_BARS = (
+    "six-bar",
+    tuple(word for word in WORDS if word not in ONE_LOOP),
+)  # the first means all others
 NOISE = 1e-9  # share of a linkage's longest link that rounding leaves of a length of zero
 # The parameters of all kinds, each once, in the order of tables.
 PARAMETERS: tuple[Parameter, ...] = tuple(
-    dict.fromkeys(row for kind in ONE_LOOP.values() for row in kind.parameters)
+    dict.fromkeys(row for kind in MECHANISMS for row in kind.parameters)
 )
-LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in ONE_LOOP.values() for name in kind.lengths}))
+LENGTHS: tuple[str, ...] = tuple(sorted({name for kind in MECHANISMS for name in kind.lengths}))
 DIMENSIONS: tuple[str, ...] = (
     *LENGTHS,
-    *(row.name for row in PARAMETERS if row.kind == "distance"),
+    *dict.fromkeys(
+        name for kind in MECHANISMS for name in kind.dimensions if name not in (*LENGTHS, "u", "v")
+    ),
     "u",
     "v",
 )
-ANY_KINDS = f"{listing(list(ONE_LOOP))}, or a list of these"
+ANY_KINDS = f"{listing([*WORDS, SIX_BAR])}, or a list of these"
 
 
 # Their classes in Python, which describe their parameters; six-bars are `SixBar`.
@@ -58,32 +65,37 @@ def having(column: str) -> tuple[str, ...]:
     """The kinds that have a length or parameter, by its name or its column in tables."""
     return tuple(
         word
-        for word, kind in ONE_LOOP.items()
-        if column in (*kind.lengths, *kind.dimensions)
-        or any(column in (row.name, row.key, *row.columns) for row in kind.parameters)
+        for word, kinds in ROWS.items()
+        if any(
+            column
+            in (
+                *kind.dimensions,
+                *(name for row in kind.parameters for name in (row.name, row.key, *row.columns)),
+            )
+            for kind in kinds
+        )
     )
 
 
 def closing_dyad(kind: str) -> DyadKind:
     """The dyad of links 3 and 4."""
-    return ONE_LOOP[kind].dyads[0].kind
+    return ROWS[kind][0].dyads[0].kind
 
 
 def freedoms(kind: str) -> int:
     """The number of dimensions of a linkage of a kind, without the angle of the guided body."""
-    rows = [row for row in ONE_LOOP[kind].parameters if row.kind != "sign" and row.name != "body_angle"]
-    return sum(1 + row.paired for row in rows)
+    every = (
+        [row for row in one.parameters if row.kind != "sign" and row.name != "body_angle"]
+        for one in ROWS[kind]
+    )
+    return min(sum(1 + row.paired for row in rows) for rows in every)
 
 
 def lengths_text(linkage: Linkage, digits: int = 4) -> str:
     """The lengths of a single linkage, and the offset of its slide: "r1 to r4 4, 1, 4, 3"."""
     if linkage.mechanism.word == FOUR_BAR:
         return f"r1 to r4 {', '.join(f'{length:.{digits}g}' for length in linkage.lengths)}"
-    names = (
-        *linkage.mechanism.lengths,
-        *(row.name for row in linkage.mechanism.parameters if row.kind == "distance"),
-    )
-    sizes = {name: without_noise(float(getattr(linkage, name)), linkage) for name in names}
+    sizes = {name: without_noise(float(getattr(linkage, name)), linkage) for name in linkage.mechanism.sizes}
     return ", ".join(f"{name} {value:.{digits}g}" for name, value in sizes.items())
 
 
@@ -116,7 +128,7 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
     return tuple(given)
 
 
-def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = tuple(ONE_LOOP)) -> str:
+def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = (*WORDS, SIX_BAR)) -> str:
     """A word for a kind of linkages, checked: one of those of problems, or of others."""
     if isinstance(word, str) and word in among:
         return word

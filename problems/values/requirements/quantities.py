@@ -7,7 +7,7 @@ can steer (`grashof.synth.quantities.formulas`); the two share nothing but the k
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, StrEnum, auto
 from typing import Any
@@ -17,8 +17,8 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, LENGTHS, PARAMETERS, SLIDER_CRANK, having
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, SLIDER_CRANK, WORDS, having
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import set_fields
@@ -47,6 +47,9 @@ class Needs(Enum):
     OUTPUTS = "a function"
     ROTATION = "a function whose output turns"
     TRAVEL = "a function whose output slides"
+    DWELL = "a dwell"
+    DWELL_OF_LINK = "a dwell of a link that swings"
+    DWELL_OF_SLIDE = "a dwell of a slide"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +67,7 @@ class Quantity:
     listed: bool = True  # whether it is a column; a place, which has several parts, is not
     words: str = ""  # its name in a sentence, where that is not its label
     short: str = ""  # heading where there is little room, where that is not its label
-    kinds: tuple[str, ...] = tuple(ONE_LOOP)  # of linkages that have it
+    kinds: tuple[str, ...] = WORDS  # of linkages that have it
     named: str = ""  # its name in candidates.csv, where that is not its key
     full: str = ""  # its name in words in a list of all values, where that is not `words`
 
@@ -83,6 +86,7 @@ class Quantity:
         return self.better < 0 and self.key != "size" and self.unit in (Unit.LENGTH, Unit.AREA, Unit.ANGLE)
 
 
+_FIRST, _SIX_BARS = FourBar.mechanism, [row for row in MECHANISMS if row.word not in ONE_LOOP]
 # Names of the lengths and places that state a linkage, by column.
 _STATED = {
     "o2_x": "O2, x",
@@ -95,7 +99,14 @@ _STATED = {
     "r4": "r4, output link O4-B",
     "p_u": "P from A, along the coupler",
     "p_v": "P from A, square to the coupler",
+    "r5": "r5, link 5, C-E",
+    "r6": "r6, link 6, D-E",
+    "c_u": "C along its link",
+    "c_v": "C square to its link",
+    "d_u": "D along its link",
+    "d_v": "D square to its link",
     "offset": "offset of the slide",
+    "offset_2": "offset of the second slide",
     "cylinder_base_x": "cylinder, fixed pivot, x",
     "cylinder_base_y": "cylinder, fixed pivot, y",
     "cylinder_u": "cylinder, moving pivot, along its link",
@@ -107,20 +118,34 @@ def _length(key: str, label: str = "", **others: Any) -> Quantity:
     return Quantity(key, label or key, Unit.LENGTH, **{"full": _STATED.get(key, ""), **others})
 
 
-def _stated(kind: str, digits: int = 0) -> list[Quantity]:
-    """Quantities of the columns of these parameters."""
-    rows = [row for row in PARAMETERS if row.kind == kind]
-    return [_length(name, kinds=having(name), digits=digits) for row in rows for name in row.columns]
+def _stated(
+    of: Iterable[Mechanism], *kinds: str, digits: int = 0, listed: Sequence[Parameter] = ()
+) -> list[Quantity]:
+    """Quantities of the columns of parameters of some kinds; of six-bars those that four-bars lack."""
+    rows = (row for mechanism in of for row in mechanism.parameters if row.kind in kinds)
+    names = dict.fromkeys(name for row in rows if row not in listed for name in row.columns)
+    return [_length(name, kinds=having(name), digits=digits) for name in names]
 
 
 def _move(name: str) -> Quantity:
     about = f"how far the worst target moves per unit of change of {name}"
     return Quantity(
         f"move_{name}", f"move by {name}", Unit.RATIO, Scope.TARGETS, -1, Needs.MANUFACTURING, about=about,
-        kinds=having(name), full=f"sensitivity to {name}",
+        kinds=having(name), full=f"sensitivity to {name.replace('_', ' ')}",
     )  # fmt: skip
 
 
+def _of_dwell(key: str, words: str) -> tuple[Quantity, Quantity]:
+    """A band, of a link that swings and of a slide."""
+    given: dict[str, Any] = {"over": Scope.CYCLE, "better": -1, "digits": 3, "words": words}
+    label = key.replace("_", ", ")
+    return (
+        Quantity(key, label, Unit.ANGLE, needs=Needs.DWELL_OF_LINK, **given),
+        Quantity(f"slide_{key}", label, Unit.LENGTH, needs=Needs.DWELL_OF_SLIDE, named=key, **given),
+    )
+
+
+_BAND = "output band in the dwell"
 _BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
 _FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
 _RMS = " (root mean square)"
@@ -141,9 +166,9 @@ _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 MEASURED: dict[str, Quantity] = {
     quantity.key: quantity
     for quantity in (
-        *_stated("place"),
-        *(_length(name, digits=4, kinds=having(name)) for name in LENGTHS),
-        *_stated("arm"),
+        *_stated([_FIRST], "place"),
+        *(_length(name, digits=4, kinds=having(name)) for name in _FIRST.lengths),
+        *_stated([_FIRST], "arm"),
         Quantity("body_angle", "body angle", Unit.ANGLE, about="orientation of the body minus theta3"),
         Quantity("theta2_start", "driver angle at the first target", Unit.ANGLE, Scope.TARGETS),
         Quantity("theta2_end", "driver angle at the last target", Unit.ANGLE, Scope.TARGETS),
@@ -193,7 +218,7 @@ MEASURED: dict[str, Quantity] = {
         _length("size", over=Scope.TASK, better=-1, digits=4, about=_BOX, full="size of the linkage"),
         _length("hausdorff", "Hausdorff distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
         _length("frechet", "Fréchet distance", over=Scope.CYCLE, better=-1, needs=Needs.CLOSED),
-        *(_move(name) for name in FourBar.mechanism.dimensions),
+        *(_move(name) for name in _FIRST.dimensions),
         _length(
             "worst_move", "worst move", needs=Needs.MANUFACTURING,
             full="largest move of a target within the tolerances", **_MISSED,
@@ -206,9 +231,28 @@ MEASURED: dict[str, Quantity] = {
             "share_within_made", "made within", Unit.SHARE, Scope.TARGETS, +1, Needs.MANUFACTURING, digits=3,
             full="share made within the allowed error",
         ),
-        *_stated("distance", digits=4),
+        *_stated(ONE_LOOP.values(), "distance", digits=4),
         Quantity("slide_angle", "direction of the slide", Unit.ANGLE, kinds=having("slide_angle")),
-        *(_move(name) for name in DIMENSIONS if name not in FourBar.mechanism.dimensions),
+        *_stated(_SIX_BARS, "length", digits=4, listed=_FIRST.parameters),
+        *_stated(_SIX_BARS, "arm", "station", listed=_FIRST.parameters),
+        *_stated(_SIX_BARS, "distance", digits=4, listed=_FIRST.parameters),
+        Quantity(
+            "slide_angle_2", "direction of the second slide", Unit.ANGLE, kinds=having("slide_angle_2")
+        ),
+        *(
+            Quantity(
+                f"dwell_{name}", f"dwell {name}", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL,
+                full=f"driver angle at the {end} of the dwell",
+            )
+            for name, end in (("from", "beginning"), ("to", "end"))
+        ),
+        *_of_dwell("band", _BAND),
+        *_of_dwell("band_made", f"{_BAND}, with tolerances"),
+        Quantity(
+            "swing", "swing", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL_OF_LINK, digits=4,
+            full="swing of the last link over the turn",
+        ),
+        *(_move(name) for name in DIMENSIONS if name not in _FIRST.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
             "cylinder_closed", "closed cylinder", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,
@@ -291,7 +335,7 @@ class Limit:
 
 def place_of(name: str, over: Scope) -> Quantity:
     """The place of a joint."""
-    kinds = having(name) if over is Scope.DESIGN else tuple(ONE_LOOP)
+    kinds = having(name) if over is Scope.DESIGN else WORDS
     return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
 
 

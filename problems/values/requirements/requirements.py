@@ -13,7 +13,8 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, some_of, true_or_false, within
-from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
@@ -55,6 +56,7 @@ _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _TARGETS = "from the first target to the last"
 _ADVANTAGE = "mechanical advantage"
+SLIDING = (*having("slide_angle"), *having("slide_angle_2"))  # kinds with a slide on the ground
 # The quantities for structural errors of a slide, in the unit of length.
 TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
 
@@ -169,7 +171,8 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False), usual=(0.0, 30.0)
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=tuple(ONE_LOOP)),
+        usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
@@ -214,7 +217,7 @@ class Requirements(ReadOnly):
         360.0,
     )
     stroke: Limits | None = between(
-        Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=(SLIDER_CRANK,))
+        Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=SLIDING)
     )
     time_ratio: Limits | None = between(
         Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES), 1.0, 1e6

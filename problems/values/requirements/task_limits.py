@@ -41,7 +41,8 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     if not task.has_output.any():
         return []
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
-    others = [word for word in kinds if word not in suited]
+    suited = tuple(word for word in suited if word in task.kinds)
+    others = [word for word in kinds if word in task.kinds and word not in suited]
     if not others:
         return []
     key = f"output{'' if task.law is None else '_range'}{unit}"
@@ -68,7 +69,7 @@ def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
 
 def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
     """Contradictions between a stroke, the kinds of linkages and the requirements, a line each."""
-    wrong = [line for kind in kinds if (line := task.impossible(kind))]
+    wrong: list[str] = []
     if task.stroke is not None and task.time_ratio > 1 + wanted.tolerance and wanted.offset == (0, 0):
         wrong.append(
             f"stroke.time_ratio is {task.time_ratio:.6g}; it must be 1 where requirements.offset is [0, 0]"

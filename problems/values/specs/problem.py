@@ -15,8 +15,14 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres,
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, freedoms, mechanisms, not_had
+from grashof.problems.values.linkages.mechanisms import (
+    ROWS,
+    SIX_BAR,
+    SIX_BARS,
+    freedoms,
+    mechanisms,
+    not_had,
+)
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
@@ -106,7 +112,7 @@ class Problem(ReadOnly):
 
     task: Task
     requirements: Requirements = field(default_factory=Requirements)
-    objective: Objective = field(default_factory=Objective)
+    objective: Objective = None  # type: ignore[assignment]  # the usual one of the task, once it is checked
     search: Search = field(default_factory=Search)
     name: str = "problem"
     title: str = ""
@@ -115,10 +121,12 @@ class Problem(ReadOnly):
     outlines: tuple[FloatArray, ...] = ()
     manufacturing: Manufacturing | None = None
     dynamics: DynamicsSpec | None = None
-    mechanism: Sequence[str] = (FOUR_BAR,)  # a tuple, once it is checked
+    mechanism: Sequence[str] = ()  # by default the usual one of the task
     driver: CylinderSpec | None = None
 
     def __post_init__(self) -> None:
+        if isinstance(self.task, Task) and self.objective is None:
+            set_fields(self, objective=Objective(**self.task.usual_objective))
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
@@ -127,7 +135,7 @@ class Problem(ReadOnly):
         set_fields(self, requirements=self.requirements.for_task(self.task))
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
-        set_fields(self, mechanism=mechanisms(self.mechanism))
+        set_fields(self, mechanism=self._kinds())
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
@@ -137,8 +145,8 @@ class Problem(ReadOnly):
                 metres(self.length_unit)  # refuses one that is not known
             with checks.noted(wrong):
                 checks.positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
-            for word in self.mechanism:
-                wrong += misplaced(self.dynamics, ONE_LOOP[word])
+            for row in (row for word in self.mechanism for row in ROWS[word]):
+                wrong += misplaced(self.dynamics, row)
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
             if not self.dynamics.acts:
                 wrong.append(
@@ -153,11 +161,18 @@ class Problem(ReadOnly):
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
+        wrong += [line for kind in self.mechanism if (line := self.task.impossible(kind))]
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
-            set_fields(self, task=self.task.sized(stated_size(self.requirements)))
+        set_fields(self, task=self.task.sized(stated_size(self.requirements)))
         checks.refuse(wrong)
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
+
+    def _kinds(self) -> tuple[str, ...]:
+        """The kinds that may do it; "six-bar" stands for those that can."""
+        able = [word for word in SIX_BARS if not self.task.impossible(word)] or SIX_BARS
+        words = mechanisms(self.mechanism) if self.mechanism != () else self.task.usual_mechanism
+        return tuple(dict.fromkeys(kind for word in words for kind in (able if word == SIX_BAR else (word,))))
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""
@@ -207,7 +222,9 @@ class Problem(ReadOnly):
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
         return [
-            not_had(where, self.mechanism, kinds)
+            not_had(
+                where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds
+            )
             for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
         ]
@@ -225,13 +242,14 @@ class Problem(ReadOnly):
         >>> alone.for_kind("slider-crank").requirements == Requirements(r2=(1, 2))
         True
         """
-        usual = Requirements()
+        plain = Requirements()
         others = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
-        wanted = replace(self.requirements, **{name: getattr(usual, name) for name in others})
+        wanted = replace(self.requirements, **{name: getattr(plain, name) for name in others})
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
-        objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else Objective()
+        usual = Objective(**self.task.usual_objective)
+        objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else usual
         if kind in BLOCKS and objective == Objective() and self.by_objective:
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
@@ -331,6 +349,7 @@ class Problem(ReadOnly):
 _LISTED = ("outlines", "mechanism")  # with checks of their own
 _KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
+_NO_DWELL = '{kind} states no such dwell; kind = "dwell" does, with swing_deg or stroke'
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
 # Test that a problem states the data for a need, and the error otherwise; other needs are always met.
 _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
@@ -355,5 +374,14 @@ _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
     Needs.TRAVEL: (
         lambda problem: problem.task.travels,
         "function has an output that turns, not one that slides",
+    ),
+    Needs.DWELL: (lambda problem: problem.task.dwell is not None, _NO_DWELL),
+    Needs.DWELL_OF_LINK: (
+        lambda problem: problem.task.dwell is not None and problem.task.swing is not None,
+        _NO_DWELL,
+    ),
+    Needs.DWELL_OF_SLIDE: (
+        lambda problem: problem.task.dwell is not None and problem.task.stroke is not None,
+        _NO_DWELL,
     ),
 }

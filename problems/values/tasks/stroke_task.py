@@ -145,6 +145,8 @@ class StrokeTask(Task):
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
+        if line := Task.impossible(self, mechanism):
+            return line
         given, dyad = f"stroke.time_ratio is {self.time_ratio:.6g}; it must be", closing_dyad(mechanism)
         if dyad is DyadKind.RRP:
             if self.stroke is None:

@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
+from grashof.problems.values.errors import listing
 from grashof.problems.values.extent import span
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly
@@ -34,6 +36,8 @@ class Task(ReadOnly, ABC):
     kind: ClassVar[str]  # its table in problem files
     target: ClassVar[str]  # word for a target in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
+    usual_mechanism: ClassVar[tuple[str, ...]] = ("four-bar",)  # where a problem does not state one
+    kinds: ClassVar[tuple[str, ...]] = tuple(ONE_LOOP)  # of linkages that are searched for it
     without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that do not apply to it
     no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty if it can
     in_degrees: ClassVar[tuple[str, ...]] = ("angle_within", "timing")  # fields that files have in degrees
@@ -58,6 +62,8 @@ class Task(ReadOnly, ABC):
     swing: float | None = None
     #: Stroke of a slide between its limit positions, length.
     stroke: float | None = None
+    #: Driver rotation over which the output stands still, rad.
+    dwell: float | None = None
     #: Time of the slow stroke over that of the quick one; NaN where free.
     time_ratio: float = np.nan
 
@@ -229,9 +235,16 @@ class Task(ReadOnly, ABC):
         """Whether the targets are the limit positions of the output."""
         return not np.isnan(self.time_ratio)
 
-    def impossible(self, mechanism: str) -> str:  # noqa: ARG002
+    @property
+    def usual_objective(self) -> dict[str, float]:
+        """Weights of the goals where a problem does not state an objective, as `Objective` takes them."""
+        return {}
+
+    def impossible(self, mechanism: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        return ""
+        if mechanism in self.kinds:
+            return ""
+        return f'mechanism is {mechanism}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
 
     @property
     def output_unit(self) -> float:

@@ -135,7 +135,7 @@ def drawn(figure: Figure, ending: str) -> bytes:
 def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     linkage, verdict = candidate.linkage, candidate.verdict
     unit = f" ({problem.length_unit})" if problem.length_unit else ""
-    made = {name: getattr(linkage, name) for name in linkage.mechanism.dimensions if name not in "uv"}
+    made = {name: getattr(linkage, name) for name in linkage.mechanism.sizes}
     lengths = "  ".join(f"{name} {length:.4g}" for name, length in made.items())
     task, cycle = np.degrees([verdict.transmission_min_task, verdict.transmission_min_cycle])
     over = [f"{task:.1f} deg over the task"] if not problem.task.closed else []

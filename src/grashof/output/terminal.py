@@ -154,6 +154,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
         }
         for k in shown
     ]
+    left_out += [name for name in rows[0] if all(row[name] == "nan" for row in rows)]
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
 
 
@@ -181,7 +182,7 @@ def _decided_by(problem: Problem) -> list[Quantity]:
         names = ("structural_error_max", "structural_error_rms")
         error = [problem.as_required(QUANTITIES[name]).key for name in names]
     goals = [goal.key for goal, _ in problem.goals if goal.key != "size"]
-    made = [name for name in (*LENGTHS, "offset") if set(having(name)) & set(problem.mechanism)]
+    made = [name for name in (*LENGTHS, "offset", "offset_2") if set(having(name)) & set(problem.mechanism)]
     keys = *error, "transmission_min_task", "transmission_min_cycle", *goals, "size", *made
     return [QUANTITIES[key] for key in dict.fromkeys(keys)]
 

@@ -12,7 +12,7 @@ from grashof.page.designs import designs_of, legend, loci_of, moves, scene_of
 from grashof.page.render import DRAWING, render
 from grashof.problems import Problem
 from grashof.problems.values.checks import counted
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
 from grashof.synth.results.explain import note_parts
@@ -56,7 +56,7 @@ def search_page(
     data = search_data(problem, designs, rows, found=bool(result.candidates))
     data["loci"] = loci_of(result)
     columns = [Column(**each) for each in data["columns"]]
-    kinds = list(dict.fromkeys(each.linkage.mechanism.word for each in designs))
+    drawn = list(dict.fromkeys(each.linkage.mechanism for each in designs))
     cylinders = [each.verdict.cylinder for each in designs]
     return render(
         "search.html",
@@ -79,8 +79,8 @@ def search_page(
         **{name: any(row[name] for row in listed) for name in ("alike", "best_at", "caution")},
         regions=len({row["region"] for row in listed} - {""}) > 1,
         classes=sorted({row["grashof_class"] for row in rows}),
-        mechanisms=kinds,
-        links=legend(map(ONE_LOOP.__getitem__, kinds or problem.mechanism), cylinders),
+        mechanisms=list(dict.fromkeys(row.word for row in drawn)),
+        links=legend(drawn or [ROWS[word][0] for word in problem.mechanism], cylinders),
         counts=_counts(result.tally),
         seconds={stage: f"{time:.2f}" for stage, time in result.seconds.items()},
         record=record,

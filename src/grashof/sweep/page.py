@@ -13,7 +13,7 @@ from pandas.api.types import is_numeric_dtype
 from grashof.page.designs import legend, scene_of
 from grashof.page.render import DRAWING, plain, render
 from grashof.problems.files.problem_file import problem_of
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.sweep.plot import decisions, measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
@@ -53,7 +53,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
         for row in shown.to_dict("records")
     ]
     drawn = filter(None, (done.results[place]["drawing"] for place in places))
-    meant, *_ = ONE_LOOP
+    meant, *_ = ROWS
     kinds = {each["linkage"].get("mechanism", meant) for each in drawn} or {meant}
     listed = {column.key for column in columns}  # an interrupted sweep may not have varied all yet
     axes = [key for key in number_axes(done) if key in listed]
@@ -86,7 +86,7 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
         compared=any(column.better for column in columns if column.key != "designs"),
         cells=len(axes) == 2,
         moves=any(done.results[place]["drawing"] for place in places),
-        links=legend(row for kind, row in ONE_LOOP.items() if kind in kinds),
+        links=legend(rows[0] for kind, rows in ROWS.items() if kind in kinds),
         columns=columns,
         given=[column.key for column in columns].index("designs") + 1,
         rows=[

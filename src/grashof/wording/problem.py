@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems import (
     CylinderSpec,
+    DwellTask,
     DynamicsSpec,
     FunctionTask,
     LinkageSpec,
@@ -24,6 +25,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate, same_error
@@ -37,8 +39,8 @@ from grashof.synth.search.finder import asked_first
 # Quantities that a verdict reports besides missed requirements, where they have a value.
 _KEYS = (
     "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
-    "transmission_min_cycle", "driver_rotation", "output_swing", "stroke", "time_ratio", "size",
-    "torque_peak",
+    "transmission_min_cycle", "band", "slide_band", "band_made", "slide_band_made", "swing",
+    "driver_rotation", "output_swing", "stroke", "time_ratio", "size", "torque_peak",
 )  # fmt: skip
 
 
@@ -217,11 +219,20 @@ def _motion(task: Task, unit: str) -> str:
 
 
 def _stroke(task: Task, unit: str) -> str:
-    if task.swing is None:
-        way, free = f"stroke {task.stroke:g}{unit}", "place"
-    else:
-        way, free = f"swing {np.degrees(task.swing):g} deg", "place and scale"
+    way, free = _way(task, unit)
     return f"{way}, time ratio {task.time_ratio:g}, {free} free"
+
+
+def _dwell(task: Task, unit: str) -> str:
+    way, free = _way(task, unit)
+    return f"dwell of {np.degrees(task.dwell or 0.0):g} deg, {way}, {free} free"
+
+
+def _way(task: Task, unit: str) -> tuple[str, str]:
+    """The stroke or the swing, and what it leaves free."""
+    if task.swing is None:
+        return f"stroke {task.stroke:g}{unit}", "place"
+    return f"swing {np.degrees(task.swing):g} deg", "place and scale"
 
 
 def _function(task: Task, unit: str) -> str:
@@ -247,6 +258,7 @@ _TASKS: Mapping[type, Callable[[Any, str], str]] = {
     Task: _targets,
     MotionTask: _motion,
     StrokeTask: _stroke,
+    DwellTask: _dwell,
     FunctionTask: _function,
 }
 
@@ -265,6 +277,12 @@ def _exactness(problem: Problem) -> str:
     within = f"met within {problem.requirements.tolerance:g}"
     if problem.task.at_limits:
         return f"{within} (rad, and as a share)"
+    if problem.task.dwell is not None:
+        return (
+            f"met within {np.degrees(SWING_WITHIN):.2g} deg"
+            if problem.task.stroke is None
+            else f"met within {SWING_WITHIN:.2g} of it"
+        )
     return f"every target {within} sizes"
 
 
@@ -276,11 +294,9 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     """A user's own linkage with the verdict of the judge that every listed design has passed.
 
     Its kind need not be one of the problem's. It is driven by its own cylinder or, where the problem requires
-    one and it has none, by the best. ProblemError for different length units or a linkage of two loops.
+    one and it has none, by the best. ProblemError for different length units, or a kind that the task
+    excludes.
     """
-    if len(spec.linkage.mechanism.dyads) > 1:
-        word = spec.linkage.mechanism.word
-        raise ProblemError(f"{spec.name} is a {word}; only linkages of one loop can be judged")
     if problem.length_unit and spec.length_unit and problem.length_unit != spec.length_unit:
         raise ProblemError(
             f"{spec.name}: lengths are in {spec.length_unit}, those of {problem.name} in "

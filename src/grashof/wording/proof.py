@@ -129,7 +129,8 @@ def work_line(proof: Proof) -> str:
 
 def enclosure_line(result: Result) -> str:
     """The number of designs verified by intervals, and the reasons for the others; empty without designs."""
-    named = list(zip((each.id for each in result.candidates), enclosures(result), strict=True))
+    found = zip(result.candidates, enclosures(result), strict=True)
+    named = [(one.id, each) for one, each in found if len(one.linkage.mechanism.loops) == 1]
     if any(each.contradicts for _, each in named):
         wrong = _by_reason({name: each.why for name, each in named if each.contradicts})
         return f"Intervals contradict the judge, an error of this program to report: {wrong}."

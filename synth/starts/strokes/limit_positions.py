@@ -124,9 +124,8 @@ class LimitPositions(DesignFinder):
 
     def follow(self, design: Candidate) -> list[Start]:
         """The member whose proportions are nearest to those of a design."""
-        row, linkage = design.linkage.mechanism, design.linkage
-        names = (*row.lengths, *(each.name for each in row.parameters if each.kind == "distance"))
-        shape = np.abs([float(getattr(linkage, name)) for name in names])
+        linkage = design.linkage
+        shape = np.abs([float(getattr(linkage, name)) for name in linkage.mechanism.sizes])
 
         def near(members: StrokeLinkages) -> FloatArray:
             lengths = np.abs(members.lengths)

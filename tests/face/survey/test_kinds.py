@@ -260,7 +260,7 @@ def test_links_that_turn_freely_are_refused() -> None:
 def test_a_six_bar_is_not_judged_by_tasks_yet() -> None:
     spec = load_linkage_spec("klann")
     with pytest.raises(
-        ProblemError, match="klann is a stephenson-3; only linkages of one loop can be judged"
+        ProblemError, match='mechanism is stephenson-3; of kind = "motion" it must be four-bar'
     ):
         judged_for(load("luggage"), spec)
 

@@ -43,17 +43,18 @@ def test_kinds_come_back(given: str, expected: tuple[str, ...]) -> None:
     assert ("mechanism" in text) == (given != "")
 
 
+ANY = "four-bar, slider-crank, inverted-slider-crank, stephenson-3, stephenson-1, watt-1, watt-2 or six-bar"
 NO_KINDS = """
 "slider-crnk" | mechanism is 'slider-crnk'; did you mean slider-crank?
 ["four-bar", "foubar"] | mechanism[1] is 'foubar'; did you mean four-bar?
-"wheel" | mechanism is 'wheel'; it must be four-bar, slider-crank or inverted-slider-crank
+"wheel" | mechanism is 'wheel'; it must be <ANY>
 ["four-bar", "four-bar"] | mechanism has four-bar 2 times
-[] | mechanism is []; it must be four-bar, slider-crank or inverted-slider-crank, or a list of these
-[4] | mechanism[0] is 4; it must be four-bar, slider-crank or inverted-slider-crank
+[] | mechanism is []; it must be <ANY>, or a list of these
+[4] | mechanism[0] is 4; it must be <ANY>
 """
 
 
-@pytest.mark.parametrize(("given", "line"), rows(NO_KINDS))
+@pytest.mark.parametrize(("given", "line"), rows(NO_KINDS, ANY=ANY))
 def test_unknown_kinds_are_refused_in_one_line(given: str, line: str) -> None:
     assert message(given) == line
 

@@ -79,7 +79,7 @@ OTHERS = r"""
 kind = "motion" | motion is missing
 kind = "motion"\n[motion] | motion.poses is missing
 kind = "motion"\nmotion = 5 | motion is 5; it must be a table
-kind = "dance"\n[motion]\n<POSES> | kind is 'dance'; it must be motion, path, stroke or function
+kind = "dance"\n[motion]\n<POSES> | kind is 'dance'; it must be motion, path, stroke, function or dwell
 kind = 3\n[motion]\n<POSES> | kind is 3; it must be a string
 <MOTION>[[requirements]]\norder = true | requirements is [{'order': True}]; it must be a table
 kind = "stroke"\nmechanism = "slider-crank"\n[stroke]\nstroke = 4\ntime_ratio = 1.2\n
