@@ -33,7 +33,9 @@ class Client:
         parts = urlsplit(address)
         self.origin = f"{parts.scheme}://{parts.netloc}"
         self.headers = {"Origin": self.origin, "Grashof-Token": parts.fragment}
-        self.http = httpx.Client(base_url=self.origin, timeout=60)
+        # However long an answer takes; no connection is kept, which the server may be closing.
+        alone = httpx.Limits(max_keepalive_connections=0)
+        self.http = httpx.Client(base_url=self.origin, timeout=None, limits=alone)  # noqa: S113
 
     def ask(self, what: str, document: dict[str, Any] = DOCUMENT, **more: Any) -> list[dict[str, Any]]:
         body = {"what": what, "document": document, "name": "luggage", "page": "one", **more}
@@ -95,19 +97,6 @@ def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(cl
         assert all(one.verdict.ok for one in designs)
         assert [design["key"] for design in lines[0]["designs"]] == keys
         assert linkages(lines) == [{"mechanism": "four-bar", **one.linkage.stated} for one in designs]
-
-
-@pytest.mark.slow
-def test_lost_designs_are_named_with_their_defects_and_return(client: Client) -> None:
-    client.ask("search", page="losing")
-    strict = json.loads(json.dumps(DOCUMENT))
-    strict["requirements"]["size"] = [0, 5]
-    (lost, _) = client.ask("track", strict, page="losing")
-    assert lost["designs"] == []
-    assert len(lost["lost"]) == 10
-    assert all("size" in each["why"] for each in lost["lost"])
-    (back, _) = client.ask("track", page="losing")
-    assert len(back["designs"]) == 10
 
 
 @pytest.mark.slow

@@ -46,7 +46,7 @@ def test_all_three_at_once(grashof: Grashof, tmp_path: Path) -> None:
     assert done.exit_code == 0, done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["jack.dxf", "jack.svg", "jack.xlsx"]
     assert done.stderr == "written: jack.dxf, jack.svg, jack.xlsx\n"
-    for said in ("driver   1      1       5", "O2-A 59.69", "pin A", "output arm, 4.572 m", "whole turn"):
+    for said in ("driver   1      1       5", "O2-A 59.69", "pin A", "output arm, 4.572 m", "full turn"):
         assert said in done.stdout
     notes = {e.dxf.text for e in ezdxf.readfile("jack.dxf").modelspace().query("TEXT")}
     assert "Pumpjack, crank-rocker, scale 1:20" in notes
