@@ -19,7 +19,7 @@ SCRIPTS = (
 @cache
 def live_page() -> str:
     """The page as HTML; it requests its content."""
-    return page_of("live/live.html")
+    return page_of("live/live.html", script="")
 
 
 def live_script() -> str:
@@ -34,7 +34,7 @@ def live_style() -> str:
 
 def widget_module() -> str:
     """The module of the notebook's widget, which contains the page."""
-    page = page_of("live/widget.html", style=live_style(), script=live_script())
+    page = page_of("live/live.html", style=live_style(), script=live_script())
     return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 

@@ -27,7 +27,6 @@ class Commands {
 
   keys() {
     const { live } = this;
-    listenToKeys(live.stage, live.player);
     this.root.addEventListener("keydown", (event) => {
       const typing = event.target.closest("input:not([type=checkbox], [type=range]), select");
       if (!(event.ctrlKey || event.metaKey) || typing) return;
@@ -38,7 +37,6 @@ class Commands {
       else return;
       event.preventDefault();
     });
-    listenOnPage(() => (live.comparison && live.comparison.root.contains(document.activeElement) ? live.comparison.player : live.player));
     document.addEventListener("pointerdown", (event) => {
       for (const menu of $$(".menu[open]", this.root)) if (!menu.contains(event.target)) menu.open = false;
     });
