@@ -8,7 +8,6 @@ import csv
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+from page_parts import Parts
 
 from grashof.figures.animation import save_animation
 from grashof.figures.files import draw_design, draw_motion, save
@@ -82,26 +82,11 @@ def assert_no_formulas(folder: Path) -> None:
             float(cell.split(",")[0])  # a number below zero
 
 
-class Tags(HTMLParser):
-    """Names of all elements of a page, and whether one of them reacts to anything by itself."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.names: list[str] = []
-        self.handlers: list[str] = []
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        self.names.append(tag)
-        self.handlers += [name for name, _ in attributes if name.startswith("on")]
-
-
 def assert_plain_page(page: str, scripts: int) -> None:
-    tags = Tags(page)
-    assert tags.names.count("script") == scripts
-    assert not {"img", "iframe", "object", "b"} & set(tags.names)
-    assert not tags.handlers
+    parts = Parts(page)
+    assert parts.names.count("script") == scripts
+    assert not {"img", "iframe", "object", "b"} & set(parts.names)
+    assert not [name for _, given in parts.tags for name in given if name.startswith("on")]
 
 
 @pytest.mark.quick("=1+1", "mm;=1+1", '";=1+1', "]]>--><![CDATA[")

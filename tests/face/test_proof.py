@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from page_parts import RECORD
 
 from grashof import synthesize
 from grashof.notebook import html
@@ -50,9 +51,8 @@ def test_none_is_proven_without_a_search_and_stated_everywhere(
     assert none.seconds["solving"] == 0
     assert none.ended == ""
     assert proof_line(none) == NONE
-    record: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
     for result, line in ((proven, LUGGAGE), (none, NONE)):
-        assert line in search_page(result, record)
+        assert line in search_page(result, RECORD)
         assert line in html(result)
 
 

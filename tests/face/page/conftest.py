@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 import pytest
+from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE
 
 from grashof import load, synthesize
 from grashof.page.analysis import analysis_page
@@ -24,34 +25,10 @@ if TYPE_CHECKING:
 
 Open = Callable[..., "Page"]
 PagePath = Callable[[str], Path]
-RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
-TITLE = "<script>document.title = 'caught'</script>"
-ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 # Its driver just turns; within one degree P moves a fifth of its path.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
-# A long note, with a word that is too long for any line.
-MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed: "
-MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed: up to 0"
 WAYS = "no design; each of these alone would do: order = false; transmission_min_deg 13 instead of 60"
 AS_USUAL: dict[str, Any] = {"media": "screen", "color_scheme": "light", "reduced_motion": "no-preference"}
-
-
-@pytest.fixture(scope="package")
-def title() -> str:
-    return TITLE
-
-
-@pytest.fixture(scope="package")
-def misses() -> str:
-    return MISSES
-
-
-@pytest.fixture(scope="package")
-def rocker() -> FourBar:
-    return ROCKER
-
-
-HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 
 
 def example_sections() -> tuple[Section, ...]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from page_parts import RECORD
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import driver_ranges, solve_kinematics, solve_position, transmission_angle
@@ -61,8 +62,7 @@ def page_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         path = folder / f"{list(LINKAGES).index(name)}{'-'.join(stated)}.html"
         if not path.exists():
             report = report_on(LinkageSpec(LINKAGES[name], name, length_unit="mm", **stated))
-            record = {"versions": {"grashof": "0"}, "settings": {}}
-            path.write_text(analysis_page(replace(report, sections=()), record), encoding="utf-8")
+            path.write_text(analysis_page(replace(report, sections=()), RECORD), encoding="utf-8")
         return path
 
     return path_of

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from page_parts import ROCKER
 from shown_pages import state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
@@ -73,20 +74,20 @@ def test_the_linkage_closes_wherever_it_is_dragged(opened: Open, few: Result) ->
     assert np.ptp(seen) > 6
 
 
-def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open, rocker: FourBar) -> None:
+def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open) -> None:
     page = opened("rocker")
-    low, high = driver_ranges(rocker)[0]
+    low, high = driver_ranges(ROCKER)[0]
     there = np.linspace(0, 3, 8)
     seen = []
     for _, shown in drag_driver(page, np.concatenate([there, there[::-1], -there, -there[::-1]])):
-        assert_closed(rocker, shown)
+        assert_closed(ROCKER, shown)
         seen.append(shown["theta2"])
     assert (min(seen), max(seen)) == pytest.approx((low, high))
     middle = (low + high) / 2
     assert seen[-1] == pytest.approx(middle, abs=0.03)  # it comes back where the mouse left it
     page.locator("#player [data-play]").click()
     wait_until(page, f"Math.abs(grashof.state().theta2 - {middle}) > 0.1")
-    assert_closed(rocker, state(page))
+    assert_closed(ROCKER, state(page))
 
 
 def test_the_path_of_p_is_smooth_where_p_runs_fast(opened: Open) -> None:

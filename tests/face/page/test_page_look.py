@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 import pytest
+from page_parts import MISSES, TITLE
 from shown_pages import state
 
 if TYPE_CHECKING:
@@ -34,11 +35,11 @@ def test_numbers_of_the_axes_stand_apart(opened: Open, name: str, width: int) ->
         assert max(gaps) > 0
 
 
-def test_a_title_with_a_script_is_only_text(opened: Open, title: str) -> None:
+def test_a_title_with_a_script_is_only_text(opened: Open) -> None:
     for name in ("search", "rocker"):
         page = opened(name)
-        assert page.locator("h1").inner_text() == title
-        assert page.title() == title
+        assert page.locator("h1").inner_text() == TITLE
+        assert page.title() == TITLE
 
 
 @pytest.mark.parametrize("name", ["search", "missed", "sections"])
@@ -69,10 +70,10 @@ def test_dark_and_printed(opened: Open) -> None:
     assert page.locator("table.designs").is_visible()
 
 
-def test_what_is_missed_is_not_called_a_design(opened: Open, misses: str) -> None:
+def test_what_is_missed_is_not_called_a_design(opened: Open) -> None:
     page = opened("missed")
     assert page.locator("#chosen").inner_text() == "Closest miss 1"
-    assert page.locator("#misses").inner_text() == misses
+    assert page.locator("#misses").inner_text() == MISSES
     page = opened("nothing")
     assert state(page)["design"] is None
     assert page.locator("#stage .body").count() == 4

@@ -12,6 +12,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pandas as pd
+from page_parts import HOSTILE
 from PIL import Image
 
 from grashof.survey import LinkageReport
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 Open = Callable[..., "Page"]
-HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 SVG = "{http://www.w3.org/2000/svg}"
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from page_parts import RECORD
 from shown_pages import state
+from sweep_base import BASE
 
 from grashof.sweep import Sweep, load_study, sweep
 from grashof.sweep.page import sweep_page
@@ -17,15 +19,6 @@ from grashof.sweep.page import sweep_page
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-BASE = """\
-kind = "path"
-[path]
-points = [[0, 0], [1, 1], [2, 0]]
-[search]
-starts = 1
-enough = 1
-effort = 0.2
-"""
 STUDY = """\
 title = "<b>Bold</b>"
 problem = "base.toml"
@@ -144,7 +137,7 @@ def test_one_that_was_interrupted_before_it_varied_a_key_is_shown(
 ) -> None:
     few = replace(done[0], results={0: done[0].results[0]})
     page = done[1].with_name("few.html")
-    page.write_text(sweep_page(few, few.to_frame(), {"versions": {"grashof": "0"}}), encoding="utf-8")
+    page.write_text(sweep_page(few, few.to_frame(), RECORD), encoding="utf-8")
     complaints: list[str] = []
     window.once("pageerror", lambda error: complaints.append(str(error)))
     window.goto(page.as_uri())
