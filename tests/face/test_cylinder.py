@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
 from shutil import copytree
-from typing import Any
 
 import numpy as np
 import pytest
+from command_line import Grashof
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
@@ -20,8 +19,6 @@ from grashof.figures.animation import animate
 from grashof.problems import ProblemError, load_linkage_spec
 
 pytestmark = pytest.mark.slow
-
-Grashof = Callable[..., Any]
 
 
 @pytest.fixture(scope="module")

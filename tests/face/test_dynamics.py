@@ -5,12 +5,11 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import Grashof
 
 from grashof.analysis.judge.measures import MEASURES
 from grashof.output.run_files import write_run
@@ -23,8 +22,6 @@ MANUFACTURING = (
     *("worst_move", "share_within_linear", "share_within_made"),
 )
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
-
-Grashof = Callable[..., Any]
 
 
 def test_check_states_the_tables(grashof: Grashof, tmp_path: Path) -> None:

@@ -6,11 +6,10 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import ezdxf
@@ -18,6 +17,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+from command_line import Grashof
 from page_parts import Parts
 
 from grashof.figures.animation import save_animation
@@ -32,8 +32,6 @@ from grashof.synth import Result
 from grashof.workshop import plan_parts, write_dxf, write_svg
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.workbook import workbook
-
-Grashof = Callable[..., Any]
 
 SCRIPT = "</script></title><script>alert(1)</script><img src=x onerror=alert(1)>"
 TEXTS = [

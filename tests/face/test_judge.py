@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import Grashof
 
 from grashof import load
 from grashof.analysis.judge import verify
 from grashof.problems import FourBar
-
-Grashof = Callable[..., Any]
 
 POSES = """
 kind = "motion"

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import Grashof
 from page_parts import RECORD
 
 from grashof import synthesize
@@ -21,8 +22,6 @@ from grashof.synth import Claim, Proof, Result
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import proof_of
 from grashof.wording.proof import bound_line, is_decided, proof_line
-
-Grashof = Callable[..., Any]
 
 LUGGAGE = "Proven: no four-bar meets these requirements with more than 27.35 deg; number 1 has 27.33 deg."
 NONE = "Proven: no four-bar meets these requirements with a transmission angle of 28.00 deg or more."

@@ -7,11 +7,11 @@ import re
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from command_line import Grashof, failing
 
 from grashof.analysis import verify
 from grashof.output.run_files import write_csv, write_rows, write_run
@@ -19,7 +19,6 @@ from grashof.problems import FourBar, Requirements, load, problem_text
 from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
-Grashof = Callable[..., Any]
 QUICK = ("--top", "6", "--starts", "16", "--drawings", "2")
 
 
@@ -164,9 +163,7 @@ def test_a_full_disk_is_reported_and_keeps_the_old_run(
     write_run(tmp_path / "luggage-designs", few, {}, 1)
     before = {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()}
 
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
+    full = failing(OSError(28, "No space left on device"))
     monkeypatch.setattr("grashof.output.run_files.write_json", full)
     done = grashof("solve", "luggage", *QUICK, "--starts", "2")
     assert done.exit_code == 3

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
+
+Open = Callable[..., "Page"]
 
 
 def state(page: Page) -> dict[str, Any]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import asyncio
 import signal
 import subprocess
-import sys
 from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from command_line import COMMAND
 from live_pages import searched
 
 if TYPE_CHECKING:
@@ -20,14 +20,7 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="package")
 def server() -> Iterator[tuple[str, int]]:
     """A page that the command line serves: its address and the process; Ctrl-C has to end it."""
-    command = [
-        sys.executable,
-        "-c",
-        "from grashof.cli import main; main()",
-        "live",
-        "luggage",
-        "--no-browser",
-    ]
+    command = [*COMMAND, "live", "luggage", "--no-browser"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
     address = process.stdout.readline().strip()

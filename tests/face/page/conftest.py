@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE
+from shown_pages import Open
 
 from grashof import load, synthesize
 from grashof.page.analysis import analysis_page
@@ -23,7 +24,6 @@ from grashof.synth.designs.table import rows_of
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-Open = Callable[..., "Page"]
 PagePath = Callable[[str], Path]
 # Its driver just turns; within one degree P moves a fifth of its path.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from shown_pages import state, wait_until
+from shown_pages import Open, state, wait_until
 
 from grashof.survey import LinkageReport
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
-
-Open = Callable[..., "Page"]
 
 
 def plot(page: Page, title: str) -> Locator:

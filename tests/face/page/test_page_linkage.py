@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 from page_parts import ROCKER
-from shown_pages import state, wait_until
+from shown_pages import Open, state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
@@ -18,7 +18,6 @@ from grashof.synth import Result
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-Open = Callable[..., "Page"]
 # Points of the scatter plot that a click in their middle meets.
 UNCOVERED = """
 [...document.querySelectorAll(".point")].filter((node) => {

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import pytest
 from page_parts import MISSES, TITLE
-from shown_pages import state
+from shown_pages import Open, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-Open = Callable[..., "Page"]
 
 
 def open_all(page: Page) -> None:

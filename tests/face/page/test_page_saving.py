@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
@@ -14,6 +13,7 @@ import numpy as np
 import pandas as pd
 from page_parts import HOSTILE
 from PIL import Image
+from shown_pages import Open
 
 from grashof.survey import LinkageReport
 from grashof.synth import Result
@@ -21,7 +21,6 @@ from grashof.synth import Result
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-Open = Callable[..., "Page"]
 SVG = "{http://www.w3.org/2000/svg}"
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import COMMAND, Grashof, failing
 from matplotlib.animation import FuncAnimation
 
-from grashof.cli import main
 from grashof.output import run_files
 from grashof.output.analysis_files import write_report
 from grashof.output.process import say
@@ -21,15 +21,13 @@ from grashof.survey import report_on
 from grashof.synth.search import journal
 from grashof.synth.starts import coupler_search
 
-Grashof = Callable[..., Any]
 FULL = OSError(28, "No space left on device")
 QUICK = ("--starts", "2", "--drawings", "0")
 
 
 def in_shell(streams: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """The command in a process of its own, with streams as a shell states them."""
-    program = f"from {main.__module__} import main; main()"
-    command = ["sh", "-c", f'exec "$0" "$@" {streams}', sys.executable, "-c", program, *arguments]
+    command = ["sh", "-c", f'exec "$0" "$@" {streams}', *COMMAND, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120)
 
 
@@ -45,13 +43,8 @@ def assert_one_line(done: Any, code: int, *words: str) -> None:
 @pytest.fixture
 def full(monkeypatch: pytest.MonkeyPatch) -> None:
     """A disk on which no bytes have room, though names have."""
-
-    def write(*_: object, **__: object) -> None:
-        raise FULL
-
-    monkeypatch.setattr(Path, "write_bytes", write)
-    monkeypatch.setattr(Path, "write_text", write)
-    monkeypatch.setattr(FuncAnimation, "save", write)
+    for owner, name in ((Path, "write_bytes"), (Path, "write_text"), (FuncAnimation, "save")):
+        monkeypatch.setattr(owner, name, failing(FULL))
 
 
 @pytest.fixture
@@ -148,10 +141,7 @@ def test_closed_streams_cost_no_result(tmp_path: Path, streams: str) -> None:
 
 
 def test_a_line_that_stdout_cannot_take_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    def fail(*_: object, **__: object) -> None:
-        raise FULL
-
-    monkeypatch.setattr("typer.echo", fail)
+    monkeypatch.setattr("typer.echo", failing(FULL))
     with (tmp_path / "out").open("w") as stream:
         monkeypatch.setattr(sys, "stdout", stream)
         monkeypatch.setattr(sys, "stderr", stream)
@@ -170,11 +160,8 @@ def recorded(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_full_disk_costs_neither_the_table_nor_the_search(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
-        raise FULL
-
     with monkeypatch.context() as patch:
-        patch.setattr(run_files, "write_json", fail)
+        patch.setattr(run_files, "write_json", failing(FULL))
         done = grashof("solve", "luggage", *QUICK)
     assert done.exit_code == 3
     assert "No space left on device" in done.stderr
@@ -210,11 +197,8 @@ def test_a_record_that_cannot_be_written_ends_the_record_alone(
 def test_a_kind_that_fails_costs_no_design_of_another(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
-        raise IndexError("7 is out of bounds")
-
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
-    monkeypatch.setattr(coupler_search, "search", fail)
+    monkeypatch.setattr(coupler_search, "search", failing(IndexError("7 is out of bounds")))
     done = grashof("solve", "line.toml", *QUICK)
     assert done.exit_code == 3
     assert "grashof: unexpected error: IndexError: 7 is out of bounds" in done.stderr

@@ -13,6 +13,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from command_line import COMMAND
 from typer.testing import CliRunner
 
 from grashof.cli import app
@@ -94,8 +95,7 @@ def test_a_signal_leaves_the_finished_tasks(
 
 
 def started(study: Path, out: Path, *options: str) -> subprocess.Popen[str]:
-    program = "from grashof.cli import main; main()"
-    command = [sys.executable, "-c", program, "sweep", str(study), "--out", str(out), *options]
+    command = [*COMMAND, "sweep", str(study), "--out", str(out), *options]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import ezdxf
 import numpy as np
 import pytest
+from command_line import Grashof
 from typer.main import get_command
 
 from grashof.cli import app
 from grashof.output.run_files import write_run
 from grashof.problems import FourBar, ProblemError
 from grashof.synth import Result
-from grashof.workshop import Plan, PlateSizes, plan_parts
+from grashof.workshop import Plan, plan_parts
 from grashof.workshop.export import FORMATS, WORKBOOK
 
-Grashof = Callable[..., Any]
 PLAIN = "o4 = [100, 0]\nr2 = 30\nr3 = 90\nr4 = 80\n"
 DRAG = FourBar((0, 0), (60, 0), 100, 110, 90)
 
@@ -214,13 +212,6 @@ def test_part_of_the_motion_may_need_fewer_layers() -> None:
         plan_parts(rocker, within=(0, 1))
     one = plan_parts(rocker, theta2=float(np.radians(-50)))
     assert "free for theta2 = -68.0 to -29.0 deg, between the dead positions" in one.notes
-
-
-def test_a_missing_hole_for_p_is_noted() -> None:
-    plan = plan_parts(FourBar((0, 0), (100, 0), 30, 90, 80, (88, 3)), PlateSizes(hole=5))
-    assert plan.parts[2].plate.joints == ("A", "B")
-    said = "the coupler has no hole for P: it lies 3.606 mm from B, and holes are at least 12.5 mm apart"
-    assert said in plan.notes
 
 
 def test_a_batch_or_a_bad_unit_is_refused() -> None:

@@ -327,6 +327,10 @@ def test_a_driver_in_two_plates_is_pointed_out() -> None:
 
 
 def test_a_missing_hole_for_p_is_noted() -> None:
+    plan = plan_parts(FourBar((0, 0), (100, 0), 30, 90, 80, (88, 3)), PlateSizes(hole=5))
+    assert plan.parts[2].plate.joints == ("A", "B")
+    said = "the coupler has no hole for P: it lies 3.606 mm from B, and holes are at least 12.5 mm apart"
+    assert said in plan.notes
     plan = plan_parts(InvertedSliderCrank((0, 0), (200, 0), 50, 0, (145, 5)), SIZES)
     assert any("the coupler has no hole for P" in note for note in plan.notes)
     plan = planned("press of a watt-2")
