@@ -1,11 +1,22 @@
 """Shared by tests of the command line: the command in this process, and in one of its own."""
 
+import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 Grashof = Callable[..., Any]  # the fixture of this name
 COMMAND = [sys.executable, "-c", "from grashof.cli import main; main()"]
+
+
+def script_done(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """A script that ran to its end in a folder, with processes of its own."""
+    (folder / "script.py").write_text(script, encoding="utf-8")
+    command = [sys.executable, "script.py"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=400)
+    assert done.returncode == 0, done.stderr
+    return done
 
 
 def failing(error: BaseException) -> Callable[..., None]:

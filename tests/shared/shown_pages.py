@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Locator, Page
 
 Open = Callable[..., "Page"]
 
@@ -16,6 +16,13 @@ Open = Callable[..., "Page"]
 def state(page: Page) -> dict[str, Any]:
     found: dict[str, Any] = page.evaluate("grashof.state()")
     return found
+
+
+def box_of(shown: Locator) -> Any:
+    """Its place and size on the page, px: x, y, width, height."""
+    box = shown.bounding_box()
+    assert box is not None
+    return box
 
 
 def wait_until(page: Page, condition: str) -> None:

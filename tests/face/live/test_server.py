@@ -6,6 +6,7 @@ import json
 import socket
 from collections.abc import Iterator
 from contextlib import closing
+from copy import deepcopy
 from threading import Thread
 from time import monotonic
 from typing import Any
@@ -66,7 +67,7 @@ def local() -> Iterator[Client]:
 
 
 def moved(by: float) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(json.dumps(DOCUMENT))
+    document = deepcopy(DOCUMENT)
     document["motion"]["poses"][1][1] += by
     return document
 
@@ -120,8 +121,7 @@ def test_leaving_ends_the_work(client: Client) -> None:
 
 @pytest.mark.slow
 def test_without_a_design_the_closest_misses_are_listed_with_a_relaxation(client: Client) -> None:
-    strict = json.loads(json.dumps(DOCUMENT))
-    strict["requirements"]["transmission_min_deg"] = 60
+    strict = DOCUMENT | {"requirements": DOCUMENT["requirements"] | {"transmission_min_deg": 60}}
     *_, last, _ = client.ask("search", strict, page="vain")
     assert last["found"] is False
     assert last["designs"]

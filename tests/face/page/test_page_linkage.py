@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from page_parts import ROCKER
-from shown_pages import Open, state, wait_until
+from shown_pages import Open, box_of, state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
@@ -28,8 +28,7 @@ UNCOVERED = """
 
 
 def centre(place: Locator) -> tuple[float, float]:
-    box = place.bounding_box()
-    assert box is not None
+    box = box_of(place)
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 

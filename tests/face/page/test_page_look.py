@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from page_parts import MISSES, TITLE
-from shown_pages import Open, state
+from shown_pages import Open, box_of, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -111,10 +111,8 @@ def test_the_analysis_of_a_design_shows_its_targets(opened: Open) -> None:
 @pytest.mark.parametrize("name", ["missed", "nothing"])
 def test_a_page_without_designs_uses_its_width(opened: Open, name: str) -> None:
     page = opened(name, size=(1440, 900))
-    drawing = page.locator("#stage").bounding_box()
-    beside = page.locator("#designs, .split > div").first.bounding_box()
-    assert drawing is not None
-    assert beside is not None
+    drawing = box_of(page.locator("#stage"))
+    beside = box_of(page.locator("#designs, .split > div").first)
     left, right = sorted((drawing, beside), key=lambda box: box["x"])
     assert left["x"] + left["width"] <= right["x"]
     assert right["x"] + right["width"] > 1400
@@ -128,8 +126,7 @@ def test_what_would_do_is_listed_at_the_top(opened: Open) -> None:
     assert page.locator("#note p").inner_text() == "No design; each of these alone would do:"
     ways = page.locator("#note li")
     assert ways.all_inner_texts() == ["order = false", "transmission_min_deg 13 instead of 60"]
-    box = ways.last.bounding_box()
-    assert box is not None
+    box = box_of(ways.last)
     assert box["y"] + box["height"] < 200
 
 

@@ -18,9 +18,15 @@ class Commands {
       live.stage.draw();
     });
     on("[name=catalogue]", "change", ({ target }) => target.value && this.open({ catalogue: target.value }));
-    on("[name=problem]", "change", (event) => this.openFile(event.target));
-    on("[name=photo]", "change", (event) => this.openPhoto(event.target));
-    on("[name=drawing]", "change", (event) => this.openDrawing(event.target));
+    const opened = (open) => ({ target }) => {
+      const [file] = target.files;
+      target.value = "";
+      this.closeMenus();
+      if (file) open(file);
+    };
+    on("[name=problem]", "change", opened((file) => this.openFile(file)));
+    on("[name=photo]", "change", opened((file) => this.openPhoto(file)));
+    on("[name=drawing]", "change", opened((file) => this.openDrawing(file)));
     on("[data-distance]", "submit", (event) => this.scale(event));
     this.keys();
   }
@@ -52,17 +58,11 @@ class Commands {
     this.live.open(wanted);
   }
 
-  async openFile(input) {
-    const [file] = input.files;
-    input.value = "";
-    if (file) this.open({ text: await file.text(), name: file.name.replace(/\.toml$/i, "") });
+  async openFile(file) {
+    this.open({ text: await file.text(), name: file.name.replace(/\.toml$/i, "") });
   }
 
-  openPhoto(input) {
-    const [file] = input.files;
-    input.value = "";
-    this.closeMenus();
-    if (!file) return;
+  openPhoto(file) {
     const picture = new Image();
     picture.onload = () => {
       this.live.backdrop.showPhoto(picture.src, picture.naturalWidth, picture.naturalHeight);
@@ -72,11 +72,7 @@ class Commands {
     picture.src = URL.createObjectURL(file);
   }
 
-  async openDrawing(input) {
-    const [file] = input.files;
-    input.value = "";
-    this.closeMenus();
-    if (!file) return;
+  async openDrawing(file) {
     await this.ask("outline", { text: await file.text() }, ({ polylines }) => {
       this.live.backdrop.showLines(polylines);
       this.scalable();
