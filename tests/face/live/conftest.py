@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from command_line import COMMAND
 from live_pages import searched
+from shown_pages import without_complaints
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -56,11 +57,8 @@ def window(browser: Browser) -> Iterator[Page]:
 @pytest.fixture
 def page(window: Page, served: str) -> Iterator[Page]:
     """A fresh live page whose first search is done; nothing may have been complained of."""
-    complaints: list[str] = []
-    window.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
-    window.on("pageerror", lambda error: complaints.append(str(error)))
-    window.goto("about:blank")
-    window.goto(served)
-    searched(window)
-    yield window
-    assert complaints == []
+    with without_complaints(window):
+        window.goto("about:blank")
+        window.goto(served)
+        searched(window)
+        yield window

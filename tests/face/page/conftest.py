@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE
-from shown_pages import Open
+from shown_pages import Open, without_complaints
 
 from grashof import load, synthesize
 from grashof.page.analysis import analysis_page
@@ -22,7 +22,7 @@ from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Request
 
 PagePath = Callable[[str], Path]
 # Its driver just turns; within one degree P moves a fifth of its path.
@@ -156,17 +156,14 @@ def telephone(browser: Browser) -> Page:
 @pytest.fixture
 def opened(window: Page, telephone: Page, page_path: PagePath) -> Iterator[Open]:
     """Opens a page; at the end the console is empty and nothing was requested over a network."""
-    complaints: list[str] = []
     asked: list[str] = []
     addresses: list[str] = []
-    listeners: dict[Any, Callable[[Any], None]] = {
-        "console": lambda message: complaints.append(f"{message.type}: {message.text}"),
-        "pageerror": lambda error: complaints.append(str(error)),
-        "request": lambda request: asked.append(request.url),
-    }
+
+    def note(request: Request) -> None:
+        asked.append(request.url)
+
     for shown in (window, telephone):
-        for event, listener in listeners.items():
-            shown.on(event, listener)
+        shown.on("request", note)
 
     def open_page(name: str, size: tuple[int, int] = (1280, 720), touch: bool = False, **media: Any) -> Page:
         page = telephone if touch else window
@@ -178,9 +175,8 @@ def opened(window: Page, telephone: Page, page_path: PagePath) -> Iterator[Open]
         page.goto(addresses[-1])
         return page
 
-    yield open_page
+    with without_complaints(window, telephone):
+        yield open_page
     for shown in (window, telephone):
-        for event, listener in listeners.items():
-            shown.remove_listener(event, listener)
-    assert complaints == []
+        shown.remove_listener("request", note)
     assert asked == addresses
