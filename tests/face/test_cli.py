@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from command_line import Grashof, failing
+from command_line import Grashof, assert_one_line, failing
 
 from grashof.problems import linkage_catalogue, linkage_text, problem_text
 
@@ -49,9 +49,7 @@ def test_bad_input_is_one_line_and_writes_nothing(grashof: Grashof, tmp_path: Pa
     assert old in text
     (tmp_path / "mine.toml").write_text(text.replace(old, new), encoding="utf-8")
     done = grashof("solve", "mine.toml")
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert_one_line(done, 2, said)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
     checked = grashof("check", "mine.toml")
     assert (checked.exit_code, checked.stdout, checked.stderr) == (2, "", done.stderr)
@@ -84,10 +82,7 @@ def test_bad_input_is_one_line_and_writes_nothing(grashof: Grashof, tmp_path: Pa
 )
 def test_bad_usage_is_one_line(grashof: Grashof, tmp_path: Path, arguments: str, said: str) -> None:
     done = grashof(*arguments.split())
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.startswith("grashof: ")
-    assert done.stderr.count("\n") == 1
+    assert_one_line(done, 2, said)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -180,6 +175,4 @@ def test_a_port_that_is_taken_is_refused(grashof: Grashof) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         done = grashof("live", "--port", port, "--no-browser")
-    assert done.exit_code == 3
-    assert done.stderr.startswith(f"grashof: --port {port}: ")
-    assert done.stderr.endswith("; 0 takes a free one\n")
+    assert_one_line(done, 3, f"grashof: --port {port}: ", "; 0 takes a free one")

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from command_line import Grashof
+from command_line import Grashof, assert_one_line
 from page_parts import RECORD
 
 from grashof import synthesize
@@ -110,10 +110,7 @@ def test_prove_decides_alone(grashof: Grashof, arguments: tuple[str, ...], said:
     ],
 )
 def test_prove_refuses_bad_input_in_a_line(grashof: Grashof, arguments: tuple[str, ...], said: str) -> None:
-    done = grashof("prove", *arguments)
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert_one_line(grashof("prove", *arguments), 2, said)
 
 
 def a_proof(**parts: Any) -> Proof:

@@ -19,6 +19,15 @@ def script_done(script: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return done
 
 
+def assert_one_line(done: Any, code: int, *words: str) -> None:
+    """The exit code, and one line on stderr with these words."""
+    assert done.exit_code == code
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("grashof: ")
+    for word in words:
+        assert word in line
+
+
 def failing(error: BaseException) -> Callable[..., None]:
     """A function that raises an error whatever it is given."""
 

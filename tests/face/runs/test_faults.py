@@ -7,10 +7,9 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
-from command_line import COMMAND, Grashof, failing
+from command_line import COMMAND, Grashof, assert_one_line, failing
 from matplotlib.animation import FuncAnimation
 
 from grashof.output import run_files
@@ -29,15 +28,6 @@ def in_shell(streams: str, *arguments: str, cwd: Path) -> subprocess.CompletedPr
     """The command in a process of its own, with streams as a shell states them."""
     command = ["sh", "-c", f'exec "$0" "$@" {streams}', *COMMAND, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120)
-
-
-def assert_one_line(done: Any, code: int, *words: str) -> None:
-    """The exit code, and one line on stderr with these words."""
-    assert done.exit_code == code
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("grashof: ")
-    for word in words:
-        assert word in line
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from command_line import Grashof
+from command_line import Grashof, assert_one_line
 from typer.main import get_command
 
 from grashof.cli import app
@@ -131,18 +131,16 @@ def test_a_design_is_drawn_at_its_first_target(grashof: Grashof, few: Result, tm
 def test_bad_input_is_one_line(grashof: Grashof, tmp_path: Path, arguments: str, said: str) -> None:
     (tmp_path / "mine.toml").write_text(f'length_unit = "mm"\n{PLAIN}')
     done = grashof("export", "mine.toml", *arguments.split())
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.startswith("grashof: ")
-    assert done.stderr.count("\n") == 1
+    assert_one_line(done, 2, said)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
 
 
 def test_other_length_units_need_millimetres(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(f'length_unit = "hand"\n{PLAIN}')
     done = grashof("export", "mine.toml", "--svg", "a.svg")
-    assert done.exit_code == 2
-    assert "length_unit of mine is 'hand', not one of mm, cm, m, in, ft; give --mm-per-unit" in done.stderr
+    assert_one_line(
+        done, 2, "length_unit of mine is 'hand', not one of mm, cm, m, in, ft; give --mm-per-unit"
+    )
     done = grashof("export", "mine.toml", "--svg", "a.svg", "--mm-per-unit", "101.6")
     assert done.exit_code == 0
     assert "O2-A 3048" in done.stdout
