@@ -12,39 +12,31 @@ from pathlib import Path
 
 import pytest
 from command_line import Grashof, assert_one_line, failing
+from refusals import rows
 
 from grashof.problems import linkage_catalogue, linkage_text, problem_text
 
-BAD = {
-    "one pose": (
-        "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]",
-        "poses = [[5, 4, 0]]",
-        "two or more",
-    ),
-    "not a number": ("[3.5, 4, -5]", "[nan, 4, -5]", "finite"),
-    "two numbers": ("[3.5, 4, -5]", "[3.5, 4]", "motion.poses[1]"),
-    "repeated poses": ("[1, 0, 0]]", "[5, 4, 0]]", "equal"),
-    "equal poses": ("[3.5, 4, -5]", "[5, 4, 360]", "equal"),
-    "lo above hi": ("link_length = [0.3, 8]", "link_length = [8, 0.3]", "link_length"),
-    "misspelt": ("coupler_arms", "coupler_arm", "did you mean coupler_arms?"),
-    "no such objective": (
-        "[requirements]",
-        "[objective]\nmaximise = 'power'\n[requirements]",
-        "it must be transmission, compactness, torque, another quantity",
-    ),
-    "area that crosses itself": (
-        "[requirements]",
-        "[requirements]\nkeep_out = [[[0, 0], [2, 2], [2, 0], [0, 2]]]",
-        "requirements.keep_out[0] crosses or touches itself at (1, 1)",
-    ),
-    "not TOML": ("[motion]", "[motion", "TOML"),
-    "half a position": ("[1, 0, 0]]", "[1, 0, 0], { x = 2 }]", "has one of x and y"),
-}
+BAD = rows(r"""
+poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]] | poses = [[5, 4, 0]] | two or more
+[3.5, 4, -5] | [nan, 4, -5] | finite
+[3.5, 4, -5] | [3.5, 4] | motion.poses[1]
+[1, 0, 0]] | [5, 4, 0]] | equal
+[3.5, 4, -5] | [5, 4, 360] | equal
+link_length = [0.3, 8] | link_length = [8, 0.3] | link_length
+coupler_arms | coupler_arm | did you mean coupler_arms?
+[requirements] | [objective]\nmaximise = 'power'\n[requirements] |
+    it must be transmission, compactness, torque, another quantity
+[requirements] | [requirements]\nkeep_out = [[[0, 0], [2, 2], [2, 0], [0, 2]]] |
+    requirements.keep_out[0] crosses or touches itself at (1, 1)
+[motion] | [motion | TOML
+[1, 0, 0]] | [1, 0, 0], { x = 2 }] | has one of x and y
+""")
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_bad_input_is_one_line_and_writes_nothing(grashof: Grashof, tmp_path: Path, case: str) -> None:
-    old, new, said = BAD[case]
+@pytest.mark.parametrize(("old", "new", "said"), BAD)
+def test_bad_input_is_one_line_and_writes_nothing(
+    grashof: Grashof, tmp_path: Path, old: str, new: str, said: str
+) -> None:
     text = problem_text("luggage")
     assert old in text
     (tmp_path / "mine.toml").write_text(text.replace(old, new), encoding="utf-8")

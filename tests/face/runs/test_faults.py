@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from command_line import COMMAND, Grashof, assert_one_line, failing
 from matplotlib.animation import FuncAnimation
+from refusals import rows
 
 from grashof.output import run_files
 from grashof.output.analysis_files import write_report
@@ -75,22 +76,22 @@ def test_a_full_disk_keeps_the_older_file(
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ("solve folder", "folder: is a folder; it must be a problem file"),
-        ("check folder.toml", "folder.toml: is a folder; it must be a problem file"),
-        ("analyse folder", "folder: is a folder; it must be a linkage file"),
-        ("analyse folder.json#1", "folder.json: is a folder; it must be a list of designs"),
-        ("animate pumpjack --out folder.gif", "folder.gif: is a folder; it must be a file"),
-        ("export pumpjack --svg folder.svg", "folder.svg: is a folder; it must be a file"),
-        ("solve luggage --out file", "--out file: File exists; it must be a folder"),
-        ("analyse pumpjack --out file", "--out file: File exists; it must be a folder"),
-        ("analyse pumpjack --out file/below", "it must be a folder that can be written"),
-        ("animate pumpjack --out file/below.gif", "it must be a file in a folder that can be written"),
-        ("export pumpjack --svg file/below.svg", "there is no folder file"),
-    ],
-)
+MISPLACED = rows("""
+solve folder | folder: is a folder; it must be a problem file
+check folder.toml | folder.toml: is a folder; it must be a problem file
+analyse folder | folder: is a folder; it must be a linkage file
+analyse folder.json#1 | folder.json: is a folder; it must be a list of designs
+animate pumpjack --out folder.gif | folder.gif: is a folder; it must be a file
+export pumpjack --svg folder.svg | folder.svg: is a folder; it must be a file
+solve luggage --out file | --out file: File exists; it must be a folder
+analyse pumpjack --out file | --out file: File exists; it must be a folder
+analyse pumpjack --out file/below | it must be a folder that can be written
+animate pumpjack --out file/below.gif | it must be a file in a folder that can be written
+export pumpjack --svg file/below.svg | there is no folder file
+""")
+
+
+@pytest.mark.parametrize(("arguments", "said"), MISPLACED)
 def test_a_folder_for_a_file_and_a_file_for_a_folder(
     grashof: Grashof, tmp_path: Path, arguments: str, said: str
 ) -> None:
@@ -206,23 +207,14 @@ poses = [[0, 0, 0], [3, 1, 40], [5, 4, 70]]
 """
 
 
-@pytest.mark.parametrize(
-    ("kinds", "poses", "exact", "said"),
-    [
-        (
-            '["slider-crank", "four-bar"]',
-            "[0, 0, 0], [3, 1, 40], [0, 0, 0], [5, 4, 70]",
-            "true",
-            "mechanism four-bar: motion.poses[0] and motion.poses[2] are equal",
-        ),
-        (
-            '"inverted-slider-crank"',
-            "[0, 0, 0], [3, 1, 40]",
-            "false",
-            "three or more where requirements.exact",
-        ),
-    ],
-)
+UNSEARCHABLE = rows("""
+["slider-crank", "four-bar"] | [0, 0, 0], [3, 1, 40], [0, 0, 0], [5, 4, 70] | true |
+    mechanism four-bar: motion.poses[0] and motion.poses[2] are equal
+"inverted-slider-crank" | [0, 0, 0], [3, 1, 40] | false | three or more where requirements.exact
+""")
+
+
+@pytest.mark.parametrize(("kinds", "poses", "exact", "said"), UNSEARCHABLE)
 @pytest.mark.parametrize("command", ["check", "solve"])
 def test_a_task_that_a_kind_cannot_be_searched_for_is_refused_first(
     grashof: Grashof, tmp_path: Path, command: str, kinds: str, poses: str, exact: str, said: str
