@@ -2,12 +2,13 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
+from command_line import Grashof
 from typer.testing import CliRunner
 
 import grashof.output.drawing as grashof_drawing
@@ -18,8 +19,6 @@ from grashof.synth import Result
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
-
-Grashof = Callable[..., Any]
 
 
 @pytest.fixture(autouse=True)

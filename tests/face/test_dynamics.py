@@ -5,12 +5,11 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import Grashof, assert_one_line
 
 from grashof.analysis.judge.measures import MEASURES
 from grashof.output.run_files import write_run
@@ -23,8 +22,6 @@ MANUFACTURING = (
     *("worst_move", "share_within_linear", "share_within_made"),
 )
 DYNAMICS = ("torque_peak", "torque_rms", "joint_force_peak")
-
-Grashof = Callable[..., Any]
 
 
 def test_check_states_the_tables(grashof: Grashof, tmp_path: Path) -> None:
@@ -77,12 +74,8 @@ def test_infinity_is_null_in_json(few: Result, tmp_path: Path, monkeypatch: pyte
 def test_an_unknown_length_unit_is_one_line(grashof: Grashof, tmp_path: Path) -> None:
     mine = tmp_path / "mine.toml"
     mine.write_text(problem_text("luggage").replace('length_unit = "m"', 'length_unit = "ell"'))
-    done = grashof("solve", mine)
-    assert done.exit_code == 2
-    assert done.stderr.strip().endswith(
-        "length_unit is 'ell'; it must be one of mm, cm, m, in, ft with dynamics"
-    )
-    assert done.stderr.count("\n") == 1
+    said = "length_unit is 'ell'; it must be one of mm, cm, m, in, ft with dynamics"
+    assert_one_line(grashof("solve", mine), 2, said)
 
 
 @pytest.mark.slow

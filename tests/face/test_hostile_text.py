@@ -6,12 +6,10 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree as ET
 
 import ezdxf
@@ -19,6 +17,8 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+from command_line import Grashof
+from page_parts import Parts
 
 from grashof.figures.animation import save_animation
 from grashof.figures.files import draw_design, draw_motion, save
@@ -32,8 +32,6 @@ from grashof.synth import Result
 from grashof.workshop import plan_parts, write_dxf, write_svg
 from grashof.workshop.plates import PlateSizes
 from grashof.workshop.workbook import workbook
-
-Grashof = Callable[..., Any]
 
 SCRIPT = "</script></title><script>alert(1)</script><img src=x onerror=alert(1)>"
 TEXTS = [
@@ -82,26 +80,11 @@ def assert_no_formulas(folder: Path) -> None:
             float(cell.split(",")[0])  # a number below zero
 
 
-class Tags(HTMLParser):
-    """Names of all elements of a page, and whether one of them reacts to anything by itself."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.names: list[str] = []
-        self.handlers: list[str] = []
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        self.names.append(tag)
-        self.handlers += [name for name, _ in attributes if name.startswith("on")]
-
-
 def assert_plain_page(page: str, scripts: int) -> None:
-    tags = Tags(page)
-    assert tags.names.count("script") == scripts
-    assert not {"img", "iframe", "object", "b"} & set(tags.names)
-    assert not tags.handlers
+    parts = Parts(page)
+    assert parts.names.count("script") == scripts
+    assert not {"img", "iframe", "object", "b"} & set(parts.names)
+    assert not [name for _, given in parts.tags for name in given if name.startswith("on")]
 
 
 @pytest.mark.quick("=1+1", "mm;=1+1", '";=1+1', "]]>--><![CDATA[")

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import Grashof, assert_one_line
 
 from grashof import load
 from grashof.analysis.judge import verify
 from grashof.problems import FourBar
-
-Grashof = Callable[..., Any]
 
 POSES = """
 kind = "motion"
@@ -78,6 +75,5 @@ def test_other_kinds_of_linkage_and_of_tasks_are_judged(grashof: Grashof, hood: 
 
 def test_units_must_agree(grashof: Grashof, hood: Path) -> None:
     (hood / "inches.toml").write_text(HINGE.replace('"mm"', '"in"'))
-    done = grashof("judge", "inches.toml", "hood.toml")
-    assert (done.exit_code, done.stderr.count("\n")) == (2, 1)
-    assert "lengths are in in, those of hood in mm; they must be in the same unit" in done.stderr
+    said = "lengths are in in, those of hood in mm; they must be in the same unit"
+    assert_one_line(grashof("judge", "inches.toml", "hood.toml"), 2, said)

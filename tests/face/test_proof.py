@@ -1,4 +1,4 @@
-"""Proofs in the terminal, on the page, in notebooks and in run.json; `grashof prove`."""
+"""Proofs and enclosures in the terminal, on the page, in notebooks and in run.json; `grashof prove`."""
 
 from __future__ import annotations
 
@@ -10,18 +10,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import Grashof, assert_one_line
+from page_parts import RECORD
 
 from grashof import synthesize
+from grashof.analysis.judge.verdict import Enclosure
 from grashof.notebook import html
 from grashof.output.run_files import write_run
+from grashof.output.terminal import print_table
 from grashof.page.search import search_page
 from grashof.problems import Problem, load
 from grashof.synth import Claim, Proof, Result
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import proof_of
-from grashof.wording.proof import bound_line, is_decided, proof_line
-
-Grashof = Callable[..., Any]
+from grashof.wording.proof import bound_line, enclosure_line, enclosure_record, is_decided, proof_line
 
 LUGGAGE = "Proven: no four-bar meets these requirements with more than 27.35 deg; number 1 has 27.33 deg."
 NONE = "Proven: no four-bar meets these requirements with a transmission angle of 28.00 deg or more."
@@ -50,9 +52,8 @@ def test_none_is_proven_without_a_search_and_stated_everywhere(
     assert none.seconds["solving"] == 0
     assert none.ended == ""
     assert proof_line(none) == NONE
-    record: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
     for result, line in ((proven, LUGGAGE), (none, NONE)):
-        assert line in search_page(result, record)
+        assert line in search_page(result, RECORD)
         assert line in html(result)
 
 
@@ -109,10 +110,7 @@ def test_prove_decides_alone(grashof: Grashof, arguments: tuple[str, ...], said:
     ],
 )
 def test_prove_refuses_bad_input_in_a_line(grashof: Grashof, arguments: tuple[str, ...], said: str) -> None:
-    done = grashof("prove", *arguments)
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert_one_line(grashof("prove", *arguments), 2, said)
 
 
 def a_proof(**parts: Any) -> Proof:
@@ -177,3 +175,37 @@ def test_a_best_that_equals_its_bound_is_reported_as_one_of_families() -> None:
     )
     line = f"Proven: no {shaper} meets these requirements with more than 90.00 deg; a design has 90.00 deg."
     assert bound_line(proof) == line
+
+
+def test_designs_verified_by_intervals_are_stated(proven: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    line = enclosure_line(proven)
+    assert line == (
+        f"Closure and transmission angle of {len(proven)} designs verified by intervals of the driver angle, "
+        "over their whole motion."
+    )
+    assert line in search_page(proven, RECORD)
+    print_table(proven)
+    assert "intervals" not in capsys.readouterr().out
+    record = enclosure_record(proven)
+    assert record is not None
+    assert (record["designs"], record["undecided"], record["contradicted"]) == (len(proven), {}, {})
+    assert record["intervals"] == sum(each.values.enclosure.intervals for each in proven.candidates)
+    empty = replace(proven, candidates=())
+    assert (enclosure_line(empty), enclosure_record(empty)) == ("", None)
+
+
+@pytest.mark.parametrize("contradicts", [False, True])
+def test_an_undecided_design_is_named_with_its_place(
+    proven: Result, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, contradicts: bool
+) -> None:
+    undecided = Enclosure(False, (0.1, 0.2), 7, "the box of A", contradicts)
+    monkeypatch.setattr(proven.best.values, "enclosure", undecided)
+    line, first = enclosure_line(proven), proven.best.id
+    assert f"{first} (the box of A)" in line
+    assert ("contradict the judge" in line) == contradicts
+    assert (f"{len(proven) - 1} of {len(proven)} designs" in line) != contradicts
+    print_table(proven)
+    assert line in capsys.readouterr().out
+    record = enclosure_record(proven)
+    assert record is not None
+    assert record["contradicted" if contradicts else "undecided"] == {first: "the box of A"}

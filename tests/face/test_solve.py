@@ -7,11 +7,11 @@ import re
 from collections.abc import Callable
 from datetime import datetime, timedelta
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from command_line import Grashof, assert_one_line, failing
 
 from grashof.analysis import verify
 from grashof.output.run_files import write_csv, write_rows, write_run
@@ -19,7 +19,6 @@ from grashof.problems import FourBar, Requirements, load, problem_text
 from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
-Grashof = Callable[..., Any]
 QUICK = ("--top", "6", "--starts", "16", "--drawings", "2")
 
 
@@ -117,10 +116,7 @@ def test_an_impossible_problem_names_the_obstacle(grashof: Grashof, tmp_path: Pa
 def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file")
     for out in (tmp_path / "taken", tmp_path / "taken" / "below"):
-        done = grashof("solve", "luggage", "--out", out)
-        assert done.exit_code == 2
-        assert str(out) in done.stderr
-        assert done.stderr.count("\n") == 1
+        assert_one_line(grashof("solve", "luggage", "--out", out), 2, str(out))
     assert (tmp_path / "taken").read_text() == "a file"
 
 
@@ -142,10 +138,7 @@ def test_a_tilde_is_a_name(
 
 def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Path) -> None:
     (tmp_path / "run.json").write_text('{"files": ["thesis.txt"]}')
-    done = grashof("solve", "luggage", "--out", ".")
-    assert done.exit_code == 2
-    assert done.stderr.count("\n") == 1
-    assert "run.json" in done.stderr
+    assert_one_line(grashof("solve", "luggage", "--out", "."), 2, "run.json")
     assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
 
 
@@ -164,9 +157,7 @@ def test_a_full_disk_is_reported_and_keeps_the_old_run(
     write_run(tmp_path / "luggage-designs", few, {}, 1)
     before = {path: path.read_bytes() for path in (tmp_path / "luggage-designs").iterdir()}
 
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
+    full = failing(OSError(28, "No space left on device"))
     monkeypatch.setattr("grashof.output.run_files.write_json", full)
     done = grashof("solve", "luggage", *QUICK, "--starts", "2")
     assert done.exit_code == 3

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from command_line import Grashof
 from matplotlib.colors import to_hex
 
 from grashof import load, synthesize
@@ -29,10 +30,10 @@ from grashof.problems import (
 )
 from grashof.sections.output import function_section
 from grashof.study.asked import Asked
+from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 from grashof.synth import Result
 
-Grashof = Callable[..., Any]
 EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
 STROKE = 'kind = "stroke"\n[stroke]\nswing_deg = {}\ntime_ratio = {}\n'
 
@@ -49,6 +50,21 @@ def stroke(tmp_path: Path) -> Callable[[float, float], str]:
     return stated
 
 
+def solved(grashof: Grashof, name: str) -> tuple[str, Path, pd.DataFrame]:
+    """The output, the folder and the table of a search of the catalogue."""
+    done = grashof("solve", name, "--drawings", "1")
+    assert done.exit_code == 0, done.output
+    folder = Path(f"{name}-designs")
+    return done.output, folder, pd.read_csv(folder / "candidates.csv")
+
+
+def function_of(folder: Path) -> Section:
+    """The section of the best design of a function, by its analysis."""
+    section = function_section(LinkageStudy.of(load_linkage_spec(f"{folder}/candidates.json#1"), Asked()))
+    assert section is not None
+    return section
+
+
 @pytest.mark.slow
 def test_check_states_a_stroke(grashof: Grashof) -> None:
     done = grashof("check", "quick-return")
@@ -58,13 +74,10 @@ def test_check_states_a_stroke(grashof: Grashof) -> None:
 
 
 @pytest.mark.slow
-def test_a_stroke_is_listed_drawn_and_analysed(grashof: Grashof, tmp_path: Path) -> None:
-    done = grashof("solve", "quick-return", "--drawings", "1")
-    assert done.exit_code == 0, done.output
-    assert "position error" not in done.output
-    assert "37.7 deg at best" in done.output
-    folder = tmp_path / "quick-return-designs"
-    table = pd.read_csv(folder / "candidates.csv")
+def test_a_stroke_is_listed_drawn_and_analysed(grashof: Grashof) -> None:
+    output, folder, table = solved(grashof, "quick-return")
+    assert "position error" not in output
+    assert "37.7 deg at best" in output
     assert table["r2"][0] == pytest.approx(46.67, abs=0.005)
     assert table["output_swing_deg"].to_numpy() == pytest.approx(80)
     assert table["time_ratio"].to_numpy() == pytest.approx(10 / 9)
@@ -107,12 +120,9 @@ def test_an_empty_list_of_strokes_is_explained(
 
 
 @pytest.mark.slow
-def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> None:
-    done = grashof("solve", "function-five-pairs", "--drawings", "1")
-    assert done.exit_code == 0, done.output
-    assert "structural error from" in done.output
-    folder = tmp_path / "function-five-pairs-designs"
-    table = pd.read_csv(folder / "candidates.csv")
+def test_a_function_is_solved_and_analysed(grashof: Grashof) -> None:
+    output, folder, table = solved(grashof, "function-five-pairs")
+    assert "structural error from" in output
     assert table[["error", "error_max", "error_rms", "error_sse"]].isna().all(axis=None)
     assert (table["structural_error_max_deg"] >= table["structural_error_rms_deg"]).all()
     assert table["structural_error_at_deg"].between(0, 90).all()
@@ -122,9 +132,7 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> 
     page = (folder / "report.html").read_text()
     for word in ("output rotation", "Structural error", "generated"):
         assert word in page
-    spec = load_linkage_spec(f"{folder / 'candidates.json'}#1")
-    section = function_section(LinkageStudy.of(spec, Asked()))
-    assert section is not None
+    section = function_of(folder)
     assert {plot.key for plot in section.plots} == {"function-output", "structural-error"}
     assert section.tables["function"]["error_deg"].abs().max() < 1e-6
     worst = next(fact.value for fact in section.facts if fact.key == "structural_error_max_deg")
@@ -134,20 +142,15 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof, tmp_path: Path) -> 
 
 
 @pytest.mark.study
-def test_a_slide_is_listed_in_its_unit_of_length(grashof: Grashof, tmp_path: Path) -> None:
-    done = grashof("solve", "function-dosing-slide", "--drawings", "1")
-    assert done.exit_code == 0, done.output
-    assert " mm. Lengths in mm" in done.output
-    folder = tmp_path / "function-dosing-slide-designs"
-    table = pd.read_csv(folder / "candidates.csv")
+def test_a_slide_is_listed_in_its_unit_of_length(grashof: Grashof) -> None:
+    output, folder, table = solved(grashof, "function-dosing-slide")
+    assert " mm. Lengths in mm" in output
     assert table[["structural_error_max_deg", "structural_error_rms_deg"]].isna().all(axis=None)
     assert (table["structural_error_max"] >= table["structural_error_rms"]).all()
     assert table["structural_error_at_deg"].between(0, 120).all()
     page = (folder / "report.html").read_text()
     assert '"title":"travel of the slide","unit":"mm"' in page.replace(": ", ":").replace(", ", ",")
-    spec = load_linkage_spec(f"{folder / 'candidates.json'}#1")
-    section = function_section(LinkageStudy.of(spec, Asked()))
-    assert section is not None
+    section = function_of(folder)
     assert {plot.unit for plot in section.plots} == {"mm"}
     pairs = section.tables["function"]
     assert (pairs["generated"] - pairs["wanted"] - pairs["error"]).abs().max() < 1e-9

@@ -170,12 +170,7 @@ def test_the_best_of_each_family_represents_all(alike: Result, capsys: pytest.Ca
     )
 
 
-def test_only_exact_designs_are_counted_until_there_are_enough(
-    few: Result, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with search_progress("mine", wanted=False) as show:
-        show(Progress(solved=16, starts=78, enough=50, designs=few.candidates[:1] * 9))
-    assert capsys.readouterr().err == "mine: 9 designs verified, 16 of 78 starts solved\n"
+def test_only_exact_designs_are_counted_until_there_are_enough() -> None:
     problem = load("luggage")
     path = PathTask([[k, k * k] for k in range(12)])
     tried = [
@@ -196,20 +191,21 @@ def test_the_summary_states_the_effort() -> None:
     assert summary(replace(problem, search=Search(effort=2.5)))[-1].endswith(", effort 2.5")
 
 
-def test_progress_of_a_search_without_a_known_end(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
-    with search_progress("mine", wanted=False) as show:
-        show(Progress(solved=3, starts=None, enough=50, designs=few.candidates[:2]))
-    assert capsys.readouterr().err == "mine: 2 designs verified\n"
-
-
-def test_progress_lines(few: Result, capsys: pytest.CaptureFixture[str]) -> None:
-    with search_progress("mine") as show:
-        show(Progress(solved=16, starts=78, enough=50, designs=few.candidates[:1] * 9))
-        show(Progress(solved=64, starts=78, enough=50, designs=few.candidates[:1] * 56))
-    assert capsys.readouterr().err.splitlines() == [
-        "mine: 9 designs verified (50 wanted), 16 of 78 starts solved",
-        "mine: 56 designs verified (50 wanted), 64 of 78 starts solved",
-    ]
+@pytest.mark.parametrize(
+    ("wanted", "starts", "line"),
+    [
+        (True, 78, "mine: 9 designs verified (50 wanted), 16 of 78 starts solved"),
+        (False, 78, "mine: 9 designs verified, 16 of 78 starts solved"),
+        (False, None, "mine: 9 designs verified"),
+    ],
+)
+def test_progress_is_a_line_for_each_step(
+    few: Result, capsys: pytest.CaptureFixture[str], wanted: bool, starts: int | None, line: str
+) -> None:
+    with search_progress("mine", wanted=wanted) as show:
+        for count in (9, 56):
+            show(Progress(solved=16, starts=starts, enough=50, designs=few.candidates[:1] * count))
+    assert capsys.readouterr().err.splitlines() == [line, line.replace("9 designs", "56 designs")]
 
 
 def test_summary_names_every_requirement_given() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from functools import cache
 
 from grashof.page.render import DRAWING, page_of, script_of, text_of
 
@@ -14,12 +13,6 @@ SCRIPTS = (
     *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
     "live/live.js",
 )
-
-
-@cache
-def live_page() -> str:
-    """The page as HTML; it requests its content."""
-    return page_of("live/live.html")
 
 
 def live_script() -> str:
@@ -34,13 +27,13 @@ def live_style() -> str:
 
 def widget_module() -> str:
     """The module of the notebook's widget, which contains the page."""
-    page = page_of("live/widget.html", style=live_style(), script=live_script())
+    page = page_of("live/live.html", style=live_style(), script=live_script())
     return f"const PAGE = {json.dumps(page)};\n{text_of('live/widget.js')}"
 
 
 # Content and type of each address.
 FRONT: dict[str, Callable[[], tuple[str, str]]] = {
-    "/": lambda: (live_page(), "text/html"),
+    "/": lambda: (page_of("live/live.html", script=""), "text/html"),
     "/live.css": lambda: (live_style(), "text/css"),
     "/live.js": lambda: (live_script(), "text/javascript"),
     "/start.js": lambda: (text_of("live/start.js"), "text/javascript"),

@@ -80,7 +80,7 @@ class Solver:
 
     def received(self) -> object | None:
         """The next message, or None; `EOFError` where the process is lost."""
-        with suppress(ConnectionResetError, BrokenPipeError):
+        with suppress(OSError):  # also of a pipe that another job closed when it replaced this solver
             return self.pipe.recv() if self.pipe.poll() else None
         raise EOFError
 

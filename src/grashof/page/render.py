@@ -23,16 +23,7 @@ def render(template: str, scripts: Sequence[str], data: Mapping[str, Any], **sho
 
     The scripts, by name and in order, read the data as JSON without NaN.
     """
-    return (
-        _environment()
-        .get_template(template)
-        .render(
-            style=text_of("page.css"),
-            script=script_of(scripts),
-            data=data,
-            **shown,
-        )
-    )
+    return page_of(template, style=text_of("page.css"), script=script_of(scripts), data=data, **shown)
 
 
 def script_of(scripts: Iterable[str]) -> str:
@@ -41,7 +32,7 @@ def script_of(scripts: Iterable[str]) -> str:
 
 
 def page_of(template: str, **shown: Any) -> str:
-    """A page whose style sheet and scripts are separate files."""
+    """A page as HTML."""
     return _environment().get_template(template).render(**shown)
 
 

@@ -105,7 +105,6 @@ def search_data(
         "axes": [asdict(each) for each in axes],
         "values": [asdict(each) for each in figures_of(rows, problem.length_unit)] if designs else [],
         "designs": designs_of(problem, designs, rows),
-        "torqueUnit": "N m",
     }
 
 

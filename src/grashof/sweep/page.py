@@ -14,7 +14,7 @@ from grashof.page.designs import legend, scene_of
 from grashof.page.render import DRAWING, plain, render
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.linkages.mechanisms import ROWS
-from grashof.sweep.plot import decisions, measures, number_axes
+from grashof.sweep.plot import common_unit, decisions, measures, number_axes
 from grashof.sweep.result import Sweep
 from grashof.sweep.table import varied_columns
 from grashof.synth.designs.table import LISTED
@@ -22,7 +22,6 @@ from grashof.synth.designs.table import LISTED
 _SCRIPTS = (*DRAWING, "table.js", "scatter.js", "cells.js", "saving.js", "sweep.js")
 _ROWS = 1000  # that a browser shows at once without delay
 _DIGITS = 5
-_TEXTS = ("status", "grashof_class")
 # Columns beside those varied and the deciding one: lengths, then properties of the design.
 _SHOWN = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "error", "torque_peak", "size", "r1", "r2",
@@ -111,22 +110,16 @@ def sweep_page(done: Sweep, frame: pd.DataFrame, record: Mapping[str, Any]) -> s
 def _columns(done: Sweep, shown: pd.DataFrame) -> list[Heading]:
     """Columns that vary, the results, and those of the main quantities that some design has."""
     quantities = {quantity.column: quantity for quantity in LISTED}
-    units = {each["length_unit"] for each in decisions(done)}
-    unit = units.pop() if len(units) == 1 else ""
     decides = {each["column"] for each in decisions(done)}
     keys = dict.fromkeys([*decides, *_SHOWN] if len(decides) == 1 else _SHOWN)
     known = [key for key in keys if key in shown and shown[key].notna().any()]
     varied = [key for key in varied_columns(done.combinations) if len(set(shown[key])) > 1]
-    named = [
-        Heading(
-            key,
-            quantities[key].label.replace("mu ", "μ ") if key in quantities else key.replace("_", " "),
-            quantities[key].unit.of(unit) if key in quantities else "",
-            quantities[key].better if key in quantities else 0,
-            key in _TEXTS,
-        )
-        for key in known
-    ]
+    named, unit = list[Heading](), common_unit(done) or ""
+    for key in known:
+        if (each := quantities.get(key)) is None:
+            named.append(Heading(key, key.replace("_", " "), text=key == "grashof_class"))
+        else:
+            named.append(Heading(key, each.label.replace("mu ", "μ "), each.unit.of(unit), each.better))
     return [
         Heading("combination", "#"),
         *(

@@ -42,8 +42,7 @@ def plot_sweep(done: Sweep, frame: pd.DataFrame) -> Figure:
             for axes, measure in zip(figure.subplots(2, 1), (decides, size), strict=True):
                 _grid(axes, best, keys, measure)
         else:
-            units = {each["length_unit"] for each in decisions(done)}
-            figure = _front(best, decides, size, joined=len(units) == 1)
+            figure = _front(best, decides, size, joined=common_unit(done) is not None)
         figure.suptitle(shortened(done.study.title or done.study.name), fontsize=10, parse_math=False)
     return figure
 
@@ -65,9 +64,7 @@ def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mappin
     An error within rounding decides nothing.
     """
     known = decisions(done)
-    units = {each["length_unit"] for each in known}
-    unit = units.pop() if len(units) == 1 else ""
-    size = {"column": "size", "label": with_unit("size", unit), "better": -1}
+    size = {"column": "size", "label": with_unit("size", common_unit(done) or ""), "better": -1}
     met = (best["error"].fillna(0.0) <= _ROUNDING * best["size"].fillna(1.0)).all()
     columns = {each["column"] for each in known}
     if len(columns) == 1 and not (met and columns == {"error"}):
@@ -80,6 +77,12 @@ def measures(done: Sweep, best: pd.DataFrame) -> tuple[Mapping[str, Any], Mappin
 def decisions(done: Sweep) -> list[Mapping[str, Any]]:
     """The deciding quantity of each combination with designs, see `grashof.sweep.task.decides_of`."""
     return [result["decides"] for result in done.results.values() if result["decides"] is not None]
+
+
+def common_unit(done: Sweep) -> str | None:
+    """The length unit of all combinations with designs; None without any, or where it differs."""
+    units = {each["length_unit"] for each in decisions(done)}
+    return units.pop() if len(units) == 1 else None
 
 
 def _over_one(best: pd.DataFrame, key: str, decides: Mapping[str, Any], size: Mapping[str, Any]) -> Figure:

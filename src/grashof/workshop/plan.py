@@ -190,7 +190,7 @@ def _use(
 ) -> str:
     """The motion over which nothing meets."""
     if within is None and full_rotation(linkage):
-        return "free over the whole turn of the driver"
+        return "free over the full turn of the driver"
     spans = " and ".join(f"{low:.1f} to {high:.1f}" for low, high in np.degrees(ranges))
     return f"free for theta2 = {spans} deg" + ("" if within else ", between the dead positions")
 

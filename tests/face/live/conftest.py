@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 import signal
 import subprocess
-import sys
 from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from command_line import COMMAND
 from live_pages import searched
+from shown_pages import without_complaints
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -20,14 +21,7 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="package")
 def server() -> Iterator[tuple[str, int]]:
     """A page that the command line serves: its address and the process; Ctrl-C has to end it."""
-    command = [
-        sys.executable,
-        "-c",
-        "from grashof.cli import main; main()",
-        "live",
-        "luggage",
-        "--no-browser",
-    ]
+    command = [*COMMAND, "live", "luggage", "--no-browser"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None
     address = process.stdout.readline().strip()
@@ -63,11 +57,8 @@ def window(browser: Browser) -> Iterator[Page]:
 @pytest.fixture
 def page(window: Page, served: str) -> Iterator[Page]:
     """A fresh live page whose first search is done; nothing may have been complained of."""
-    complaints: list[str] = []
-    window.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
-    window.on("pageerror", lambda error: complaints.append(str(error)))
-    window.goto("about:blank")
-    window.goto(served)
-    searched(window)
-    yield window
-    assert complaints == []
+    with without_complaints(window):
+        window.goto("about:blank")
+        window.goto(served)
+        searched(window)
+        yield window

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from live_pages import State, keys, linkages, problem_of, searched, shown, stated
+from live_pages import keys, linkages, problem_of, searched, shown, stated
 from shown_pages import state
 
 from grashof import load, synthesize, track
@@ -18,37 +18,6 @@ from grashof.problems.values.linkages.mechanisms import linkage_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page, Route
-
-
-@pytest.mark.study
-def test_forty_moves_show_the_designs_of_the_library(page: Page) -> None:
-    """Each followed list is `track` of the last one, and in the end the list is that of a search."""
-    page.evaluate(
-        "addEventListener('keydown', () => { window.before = structuredClone(grashof.state()); }, true)"
-    )
-    page.locator("[data-handle='target-1']").focus()
-    designs = list(synthesize(load("luggage")).top(50).candidates[:10])
-    ways = ["ArrowUp", "ArrowLeft", "ArrowDown", "ArrowRight"]
-    followed = 0
-    for number in range(40):
-        page.keyboard.press(ways[number // 3 % 4])
-        found = shown(page, "s.listed.version === s.version && s.listed.phase !== 'searching'")
-        before: State = page.evaluate("() => window.before")
-        if before["listed"]["phase"] == "found":
-            designs = list(synthesize(problem_of(before)).top(50).candidates[:10])
-        moved = track(designs, problem_of(found))
-        designs = [new if new.verdict.ok else old for new, old in zip(moved, designs, strict=True)]
-        if found["listed"]["phase"] == "track" and linkages(found)[:10] == stated(designs):
-            assert len(found["lost"]) == sum(not new.verdict.ok for new in moved)
-            assert keys(found)[:10] == keys(before)[:10]
-            followed += 1
-        else:  # a search had found designs meanwhile, which the page had not shown yet
-            designs = list(synthesize(problem_of(searched(page))).top(50).candidates[:10])
-            assert linkages(state(page))[:10] == stated(designs)
-    assert followed >= 10
-    last = searched(page)
-    assert linkages(last) == stated(synthesize(problem_of(last)).top(50).candidates)
-    assert last["document"]["motion"]["poses"] == page.evaluate("grashof.state().document.motion.poses")
 
 
 def hold_searches(route: Route, waiting: list[Route]) -> None:
@@ -60,7 +29,9 @@ def hold_searches(route: Route, waiting: list[Route]) -> None:
 
 
 @pytest.mark.study
-def test_designs_are_compared_and_lost_ones_fade_with_their_defects(page: Page) -> None:
+def test_designs_follow_and_are_compared_and_lost_ones_fade_with_their_defects(page: Page) -> None:
+    designs = synthesize(load("luggage")).top(50).candidates[:10]
+    first = state(page)
     for row in (0, 2):
         page.locator(".listing tbody input").nth(row).check()
     assert page.locator("#compare article").count() == 2
@@ -71,6 +42,9 @@ def test_designs_are_compared_and_lost_ones_fade_with_their_defects(page: Page) 
     page.keyboard.press("ArrowUp")
     found = shown(page, "s.listed.version === s.version && s.busy === 'search'")
     assert found["listed"]["phase"] == "track"
+    assert linkages(found)[:10] == stated(track(designs, problem_of(found)))
+    assert linkages(found)[10:] == linkages(first)[10:]
+    assert keys(found) == keys(first)
     assert found["compared"] == compared
     waiting[0].continue_()
     page.unroute("**/ask")

@@ -6,6 +6,7 @@ import json
 import socket
 from collections.abc import Iterator
 from contextlib import closing
+from copy import deepcopy
 from threading import Thread
 from time import monotonic
 from typing import Any
@@ -33,7 +34,9 @@ class Client:
         parts = urlsplit(address)
         self.origin = f"{parts.scheme}://{parts.netloc}"
         self.headers = {"Origin": self.origin, "Grashof-Token": parts.fragment}
-        self.http = httpx.Client(base_url=self.origin, timeout=60)
+        # However long an answer takes; no connection is kept, which the server may be closing.
+        alone = httpx.Limits(max_keepalive_connections=0)
+        self.http = httpx.Client(base_url=self.origin, timeout=None, limits=alone)  # noqa: S113
 
     def ask(self, what: str, document: dict[str, Any] = DOCUMENT, **more: Any) -> list[dict[str, Any]]:
         body = {"what": what, "document": document, "name": "luggage", "page": "one", **more}
@@ -64,7 +67,7 @@ def local() -> Iterator[Client]:
 
 
 def moved(by: float) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(json.dumps(DOCUMENT))
+    document = deepcopy(DOCUMENT)
     document["motion"]["poses"][1][1] += by
     return document
 
@@ -98,19 +101,6 @@ def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(cl
 
 
 @pytest.mark.slow
-def test_lost_designs_are_named_with_their_defects_and_return(client: Client) -> None:
-    client.ask("search", page="losing")
-    strict = json.loads(json.dumps(DOCUMENT))
-    strict["requirements"]["size"] = [0, 5]
-    (lost, _) = client.ask("track", strict, page="losing")
-    assert lost["designs"] == []
-    assert len(lost["lost"]) == 10
-    assert all("size" in each["why"] for each in lost["lost"])
-    (back, _) = client.ask("track", page="losing")
-    assert len(back["designs"]) == 10
-
-
-@pytest.mark.slow
 def test_pages_have_their_own_designs(client: Client) -> None:
     client.ask("search", page="mine")
     assert client.ask("track", page="another")[0]["designs"] == []
@@ -131,8 +121,7 @@ def test_leaving_ends_the_work(client: Client) -> None:
 
 @pytest.mark.slow
 def test_without_a_design_the_closest_misses_are_listed_with_a_relaxation(client: Client) -> None:
-    strict = json.loads(json.dumps(DOCUMENT))
-    strict["requirements"]["transmission_min_deg"] = 60
+    strict = DOCUMENT | {"requirements": DOCUMENT["requirements"] | {"transmission_min_deg": 60}}
     *_, last, _ = client.ask("search", strict, page="vain")
     assert last["found"] is False
     assert last["designs"]

@@ -8,6 +8,7 @@ import os
 import signal
 from collections.abc import Callable, Coroutine, Iterator
 from io import StringIO
+from multiprocessing import Pipe, current_process
 from time import monotonic
 from typing import Any
 
@@ -17,7 +18,7 @@ import pytest
 from grashof import load, synthesize
 from grashof.live.requests import Job, Line
 from grashof.live.requests import job_of as job_from
-from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solvers, State
+from grashof.live.solvers import GRACE, MOST_PAGES, TRIES, Sessions, Solver, Solvers, State
 from grashof.live.work import ABSENT, TRACKED, Shown, lines
 from grashof.problems import problem_text
 from grashof.problems.files.on_disk import document_of
@@ -188,6 +189,28 @@ def test_a_design_that_comes_back_keeps_its_key(result: Result) -> None:
     assert list(after.designs) == [3, 13, 15]
     assert not after.absent
     assert list(after.matched([designs[0]]).designs) == [16]
+
+
+@pytest.mark.slow
+def test_lost_designs_are_named_with_their_defects_and_return(
+    result: Result, document: dict[str, Any]
+) -> None:
+    shown = Shown().matched(result.candidates, result).written()
+    strict = {**document, "requirements": {**document["requirements"], "size": [0, 5]}}
+    (lost,), shown = lists_of(Job("track", strict, "luggage", shown=shown))
+    assert lost["designs"] == []
+    assert len(lost["lost"]) == TRACKED
+    assert all("size" in each["why"] for each in lost["lost"])
+    (back,), _ = lists_of(Job("track", document, "luggage", shown=shown))
+    assert len(back["designs"]) == TRACKED
+
+
+def test_a_solver_that_another_job_replaced_is_lost() -> None:
+    ours, _theirs = Pipe()
+    solver = Solver(current_process(), ours)
+    ours.close()
+    with pytest.raises(EOFError):
+        solver.received()
 
 
 @pytest.mark.slow

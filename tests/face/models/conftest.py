@@ -1,7 +1,5 @@
 """Linkages of every kind, turning and swinging, on both assemblies, in several units."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from six_bar_examples import SIX_BARS
@@ -42,9 +40,3 @@ def models() -> list[Model]:
 def model(request: pytest.FixtureRequest) -> Model:
     found: Model = request.param
     return found
-
-
-@pytest.fixture
-def light(model: Model) -> Model:
-    """Its driver at 1 rad/s, without what the file states."""
-    return replace(model, spec=replace(model.spec, dynamics=None))

@@ -4,10 +4,10 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
+from refusals import refusal
 
 from grashof.analysis import solve_position
 from grashof.models import Model, linkage2
-from grashof.problems import ProblemError
 from grashof.problems.values.linkages.mechanism import DyadKind
 
 
@@ -34,9 +34,8 @@ def opened_or_skipped(model: Model) -> ET.Element:
         said = f"--linkage2 cannot hold a {kind.word} with P on its slider-2"
     else:
         return opened(model)
-    with pytest.raises(ProblemError, match=said) as refused:
-        linkage2(model)
-    assert "\n" not in str(refused.value)
+    (line,) = refusal(linkage2, model).splitlines()
+    assert said in line
     pytest.skip("refused")
 
 

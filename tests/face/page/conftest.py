@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 import pytest
+from page_parts import HOSTILE, MISSES, RECORD, ROCKER, TITLE
+from shown_pages import Open, without_complaints
 
 from grashof import load, synthesize
 from grashof.page.analysis import analysis_page
@@ -20,38 +22,13 @@ from grashof.synth import Result
 from grashof.synth.designs.table import rows_of
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Request
 
-Open = Callable[..., "Page"]
 PagePath = Callable[[str], Path]
-RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0}}
-TITLE = "<script>document.title = 'caught'</script>"
-ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 # Its driver just turns; within one degree P moves a fifth of its path.
 NEARLY_DEAD = FourBar((0, 0), (1.38, 0), 1.43, 1.7, 1.74, (1, 1))
-# A long note, with a word that is too long for any line.
-MISSES = "transmission_min_deg: the worst transmission angle over the turn in deg is 13.4955, allowed: "
-MISSES += f"from 60; constraints: {'a_long_name_' * 20} is 3, allowed: up to 0"
 WAYS = "no design; each of these alone would do: order = false; transmission_min_deg 13 instead of 60"
 AS_USUAL: dict[str, Any] = {"media": "screen", "color_scheme": "light", "reduced_motion": "no-preference"}
-
-
-@pytest.fixture(scope="package")
-def title() -> str:
-    return TITLE
-
-
-@pytest.fixture(scope="package")
-def misses() -> str:
-    return MISSES
-
-
-@pytest.fixture(scope="package")
-def rocker() -> FourBar:
-    return ROCKER
-
-
-HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 
 
 def example_sections() -> tuple[Section, ...]:
@@ -179,17 +156,14 @@ def telephone(browser: Browser) -> Page:
 @pytest.fixture
 def opened(window: Page, telephone: Page, page_path: PagePath) -> Iterator[Open]:
     """Opens a page; at the end the console is empty and nothing was requested over a network."""
-    complaints: list[str] = []
     asked: list[str] = []
     addresses: list[str] = []
-    listeners: dict[Any, Callable[[Any], None]] = {
-        "console": lambda message: complaints.append(f"{message.type}: {message.text}"),
-        "pageerror": lambda error: complaints.append(str(error)),
-        "request": lambda request: asked.append(request.url),
-    }
+
+    def note(request: Request) -> None:
+        asked.append(request.url)
+
     for shown in (window, telephone):
-        for event, listener in listeners.items():
-            shown.on(event, listener)
+        shown.on("request", note)
 
     def open_page(name: str, size: tuple[int, int] = (1280, 720), touch: bool = False, **media: Any) -> Page:
         page = telephone if touch else window
@@ -201,9 +175,8 @@ def opened(window: Page, telephone: Page, page_path: PagePath) -> Iterator[Open]
         page.goto(addresses[-1])
         return page
 
-    yield open_page
+    with without_complaints(window, telephone):
+        yield open_page
     for shown in (window, telephone):
-        for event, listener in listeners.items():
-            shown.remove_listener(event, listener)
-    assert complaints == []
+        shown.remove_listener("request", note)
     assert asked == addresses

@@ -7,12 +7,11 @@ import re
 from collections import Counter
 from dataclasses import replace
 from html import unescape
-from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from page_parts import RECORD, ROCKER, Parts
 
 import grashof.figures.parts
 from grashof.analysis import Loads, driver_ranges, solve_kinematics, solve_position, virtual_work_torque
@@ -29,34 +28,6 @@ from grashof.synth.designs.table import rows_of
 from grashof.synth.search.ledger import LISTED, Tally
 
 HOSTILE = "</script><script>alert(1)</script><!-- & \u2028 ' \" {{ 7*7 }}"
-RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {"seed": 0, "time_limit": None}}
-ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
-
-
-class Parts(HTMLParser):
-    """Tags with their attributes, and the text outside scripts and style."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.text = ""
-        self.data: Any = None
-        self.inside = ""
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attributes)))
-        self.inside = "json" if ("id", "data") in attributes else tag
-
-    def handle_endtag(self, tag: str) -> None:
-        self.inside = ""
-
-    def handle_data(self, data: str) -> None:
-        if self.inside == "json":
-            self.data = json.loads(data)
-        elif self.inside not in ("script", "style"):
-            self.text += data
 
 
 def page_of(result: Result, text: str = "") -> str:
@@ -73,7 +44,7 @@ def hostile(few: Result) -> str:
 
 def test_what_the_user_wrote_is_text(hostile: str) -> None:
     parts = Parts(hostile)
-    assert [tag for tag, _ in parts.tags].count("script") == 2
+    assert parts.names.count("script") == 2
     assert hostile.count("<script>alert") == 0
     assert parts.text.count(HOSTILE) >= 5
     assert parts.data["scene"]["unit"] == HOSTILE
@@ -229,7 +200,7 @@ def test_what_figures_are_taken_over_is_said(few: Result) -> None:
     example = {column["label"]: column["about"] for column in parts.data["columns"]}
     assert example["size"].startswith("diagonal of the box around O2, O4")
     assert example["peak torque, task"] == example["peak force, task"] == "from the first target to the last"
-    assert set(example.values()) - {""} <= {attributes.get("title") for _, attributes in parts.tags}
+    assert set(example.values()) - {""} <= {*parts.values("title")}
     abouts = {value["key"]: value["about"] for value in parts.data["values"]}
     assert abouts["coupler_fit_r2"] == "from the first target to the last"
     for linkage, over in ((load_linkage_spec("pumpjack"), "turn"), (LinkageSpec(ROCKER, "rocker"), "travel")):

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from shown_pages import state, wait_until
+from shown_pages import Open, box_of, state, wait_until
 
 from grashof.survey import LinkageReport
 
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
-
-Open = Callable[..., "Page"]
 
 
 def plot(page: Page, title: str) -> Locator:
@@ -129,13 +126,11 @@ def test_tracks_have_equal_scales_and_a_click_turns_the_driver_to_its_place(open
     size = "node => [node.getBBox().width, node.getBBox().height]"
     width, height = track.locator("> svg > path.curve").evaluate(size)
     assert width / height == pytest.approx(3 / 2, abs=0.01)
-    path = track.locator("> svg > path.curve").bounding_box()
-    assert path is not None
+    path = box_of(track.locator("> svg > path.curve"))
     page.mouse.click(path["x"] + path["width"] / 2, path["y"])  # the highest point
     assert np.degrees(state(page)["theta2"]) == pytest.approx(90, abs=3)
     (dot,) = dots(track)
-    frame = track.locator("> svg").bounding_box()
-    assert frame is not None
+    frame = box_of(track.locator("> svg"))
     assert (frame["x"] + dot[0], frame["y"] + dot[1]) == pytest.approx(
         (path["x"] + path["width"] / 2, path["y"]), abs=3
     )
@@ -147,8 +142,7 @@ def test_over_time_the_mouse_reads_the_values_at_its_place(opened: Open) -> None
     run = plot(page, "run-out")
     assert readings(run) == ["", ""]
     assert "time (s)" in texts(run.locator("> svg text"))
-    curve = run.locator("> svg > path.curve").first.bounding_box()
-    assert curve is not None
+    curve = box_of(run.locator("> svg > path.curve").first)
     before = state(page)["theta2"]
     page.mouse.move(curve["x"] + curve["width"] / 4, curve["y"] + curve["height"] / 2)
     fast, slow = (float(text) for text in readings(run))
@@ -187,10 +181,8 @@ def test_rates_of_a_driver_that_swings_are_cut_off(opened: Open) -> None:
     figure = plot(opened("swinging", size=(1440, 900)), "angular velocity")
     numbers = texts(figure.locator(".grid text[text-anchor=end]"))
     assert max(abs(float(each)) for each in numbers) < 100
-    frame = figure.locator("> svg").bounding_box()
-    assert frame is not None
+    frame = box_of(figure.locator("> svg"))
     for path in figure.locator("> svg > path.curve").all():
-        box = path.bounding_box()
-        assert box is not None
+        box = box_of(path)
         assert box["y"] >= frame["y"]
         assert box["y"] + box["height"] <= frame["y"] + frame["height"]

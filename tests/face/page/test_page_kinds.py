@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from page_parts import RECORD
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import driver_ranges, solve_kinematics, solve_position, transmission_angle
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.mechanism.position import places
 from grashof.analysis.mechanism.transmission import quality
-from grashof.page import designs
 from grashof.page.analysis import analysis_page
 from grashof.page.designs import linkage_data
+from grashof.page.render import script_of
 from grashof.problems import Cylinder, FourBar, InvertedSliderCrank, Linkage, LinkageSpec, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import LOOP_POINTS
@@ -27,7 +28,6 @@ from grashof.survey import report_on
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-TEMPLATES = Path(designs.__file__).parent / "templates"
 ONE_LOOP: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0.5), (4, 0), 1, 4, 3, (2, 1.5), -1),
     "engine": SliderCrank((1, 2), 1, 3, -0.5, 0.6, (1, 0.7)),
@@ -41,14 +41,17 @@ ONE_LOOP: dict[str, Linkage] = {
 LINKAGES: dict[str, Linkage] = ONE_LOOP | SIX_BARS
 
 
+def evaluated(window: Page, formula: str, linkage: Linkage, theta2: FloatArray, more: Any = None) -> Any:
+    """What a formula of the scripts of the pages gives for a `linkage` at every `angle`."""
+    scripts = script_of(("kinds.js", "linkage.js"))
+    every = f"([linkage, angles, more]) => {{ {scripts} return angles.map((angle) => {formula}); }}"
+    window.goto("about:blank")
+    return window.evaluate(every, [linkage_data(linkage), theta2.tolist(), more])
+
+
 def positions(window: Page, linkage: Linkage, theta2: FloatArray) -> list[dict[str, Any]]:
     """Where the scripts of the pages have a linkage."""
-    scripts = "".join((TEMPLATES / name).read_text(encoding="utf-8") for name in ("kinds.js", "linkage.js"))
-    every = (
-        f"([linkage, angles]) => {{ {scripts} return angles.map((angle) => positionOf(linkage, angle)); }}"
-    )
-    window.goto("about:blank")
-    found: list[dict[str, Any]] = window.evaluate(every, [linkage_data(linkage), theta2.tolist()])
+    found: list[dict[str, Any]] = evaluated(window, "positionOf(linkage, angle)", linkage, theta2)
     return found
 
 
@@ -61,8 +64,7 @@ def page_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         path = folder / f"{list(LINKAGES).index(name)}{'-'.join(stated)}.html"
         if not path.exists():
             report = report_on(LinkageSpec(LINKAGES[name], name, length_unit="mm", **stated))
-            record = {"versions": {"grashof": "0"}, "settings": {}}
-            path.write_text(analysis_page(replace(report, sections=()), record), encoding="utf-8")
+            path.write_text(analysis_page(replace(report, sections=()), RECORD), encoding="utf-8")
         return path
 
     return path_of
@@ -154,13 +156,8 @@ def test_cylinders_are_where_the_analysis_has_them(window: Page, name: str, on: 
     linkage, jack = LINKAGES[name], Cylinder(on, (-2.0, 1.5), (0.8, -0.3))
     low, high = driver_ranges(linkage)[0]
     theta2 = np.linspace(low, high, 20)[1:-1]
-    scripts = "".join((TEMPLATES / each).read_text(encoding="utf-8") for each in ("kinds.js", "linkage.js"))
-    window.goto("about:blank")
-    found = window.evaluate(
-        f"([linkage, jack, angles]) => {{ {scripts} "
-        "return angles.map((angle) => cylinderAt(linkage, jack, positionOf(linkage, angle))); }",
-        [linkage_data(linkage), {**jack.stated, "closed": 1.0}, theta2.tolist()],
-    )
+    formula = "cylinderAt(linkage, more, positionOf(linkage, angle))"
+    found = evaluated(window, formula, linkage, theta2, {**jack.stated, "closed": 1.0})
     state = solve_position(linkage, theta2)
     there = cylinder_state(jack, linkage, state).pivot
     np.testing.assert_allclose([each["pivot"] for each in found], there, atol=1e-9)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from shown_pages import state, wait_until
+from page_parts import ROCKER
+from shown_pages import Open, box_of, state, wait_until
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
@@ -17,7 +18,6 @@ from grashof.synth import Result
 if TYPE_CHECKING:
     from playwright.sync_api import Locator, Page
 
-Open = Callable[..., "Page"]
 # Points of the scatter plot that a click in their middle meets.
 UNCOVERED = """
 [...document.querySelectorAll(".point")].filter((node) => {
@@ -28,8 +28,7 @@ UNCOVERED = """
 
 
 def centre(place: Locator) -> tuple[float, float]:
-    box = place.bounding_box()
-    assert box is not None
+    box = box_of(place)
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
@@ -73,20 +72,20 @@ def test_the_linkage_closes_wherever_it_is_dragged(opened: Open, few: Result) ->
     assert np.ptp(seen) > 6
 
 
-def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open, rocker: FourBar) -> None:
+def test_a_driver_that_cannot_turn_stays_between_its_limits(opened: Open) -> None:
     page = opened("rocker")
-    low, high = driver_ranges(rocker)[0]
+    low, high = driver_ranges(ROCKER)[0]
     there = np.linspace(0, 3, 8)
     seen = []
     for _, shown in drag_driver(page, np.concatenate([there, there[::-1], -there, -there[::-1]])):
-        assert_closed(rocker, shown)
+        assert_closed(ROCKER, shown)
         seen.append(shown["theta2"])
     assert (min(seen), max(seen)) == pytest.approx((low, high))
     middle = (low + high) / 2
     assert seen[-1] == pytest.approx(middle, abs=0.03)  # it comes back where the mouse left it
     page.locator("#player [data-play]").click()
     wait_until(page, f"Math.abs(grashof.state().theta2 - {middle}) > 0.1")
-    assert_closed(rocker, state(page))
+    assert_closed(ROCKER, state(page))
 
 
 def test_the_path_of_p_is_smooth_where_p_runs_fast(opened: Open) -> None:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import pandas as pd
 import pytest
-from shown_pages import state
+from shown_pages import Open, state
 
 from grashof.synth import Result
 from grashof.synth.designs.table import NAMES
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
-
-Open = Callable[..., "Page"]
+    pass
 
 
 def test_columns_are_sorted(opened: Open, few: Result) -> None:

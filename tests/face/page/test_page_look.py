@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import pytest
-from shown_pages import state
+from page_parts import MISSES, TITLE
+from shown_pages import Open, box_of, state
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-Open = Callable[..., "Page"]
 
 
 def open_all(page: Page) -> None:
@@ -34,11 +32,11 @@ def test_numbers_of_the_axes_stand_apart(opened: Open, name: str, width: int) ->
         assert max(gaps) > 0
 
 
-def test_a_title_with_a_script_is_only_text(opened: Open, title: str) -> None:
+def test_a_title_with_a_script_is_only_text(opened: Open) -> None:
     for name in ("search", "rocker"):
         page = opened(name)
-        assert page.locator("h1").inner_text() == title
-        assert page.title() == title
+        assert page.locator("h1").inner_text() == TITLE
+        assert page.title() == TITLE
 
 
 @pytest.mark.parametrize("name", ["search", "missed", "sections"])
@@ -69,10 +67,10 @@ def test_dark_and_printed(opened: Open) -> None:
     assert page.locator("table.designs").is_visible()
 
 
-def test_what_is_missed_is_not_called_a_design(opened: Open, misses: str) -> None:
+def test_what_is_missed_is_not_called_a_design(opened: Open) -> None:
     page = opened("missed")
     assert page.locator("#chosen").inner_text() == "Closest miss 1"
-    assert page.locator("#misses").inner_text() == misses
+    assert page.locator("#misses").inner_text() == MISSES
     page = opened("nothing")
     assert state(page)["design"] is None
     assert page.locator("#stage .body").count() == 4
@@ -113,10 +111,8 @@ def test_the_analysis_of_a_design_shows_its_targets(opened: Open) -> None:
 @pytest.mark.parametrize("name", ["missed", "nothing"])
 def test_a_page_without_designs_uses_its_width(opened: Open, name: str) -> None:
     page = opened(name, size=(1440, 900))
-    drawing = page.locator("#stage").bounding_box()
-    beside = page.locator("#designs, .split > div").first.bounding_box()
-    assert drawing is not None
-    assert beside is not None
+    drawing = box_of(page.locator("#stage"))
+    beside = box_of(page.locator("#designs, .split > div").first)
     left, right = sorted((drawing, beside), key=lambda box: box["x"])
     assert left["x"] + left["width"] <= right["x"]
     assert right["x"] + right["width"] > 1400
@@ -130,8 +126,7 @@ def test_what_would_do_is_listed_at_the_top(opened: Open) -> None:
     assert page.locator("#note p").inner_text() == "No design; each of these alone would do:"
     ways = page.locator("#note li")
     assert ways.all_inner_texts() == ["order = false", "transmission_min_deg 13 instead of 60"]
-    box = ways.last.bounding_box()
-    assert box is not None
+    box = box_of(ways.last)
     assert box["y"] + box["height"] < 200
 
 

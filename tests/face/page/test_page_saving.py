@@ -5,14 +5,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pandas as pd
+from page_parts import HOSTILE
 from PIL import Image
+from shown_pages import Open
 
 from grashof.survey import LinkageReport
 from grashof.synth import Result
@@ -20,8 +21,6 @@ from grashof.synth import Result
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-Open = Callable[..., "Page"]
-HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -69,6 +68,15 @@ def scales_of(path: Path) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.polyfit(*np.array(pairs).T, 1) for pairs in (across, up))  # type: ignore[return-value]
 
 
+def assert_stands_alone(root: ET.Element) -> tuple[float, float]:
+    """A picture on white that needs no style sheet; its width and height."""
+    width, height = float(root.attrib["width"]), float(root.attrib["height"])
+    assert root[0].attrib == {"width": f"{width:g}", "height": f"{height:g}", "fill": "#ffffff"}
+    for node in root.iter():
+        assert not {"class", "style", "href", "id", "role", "tabindex", "data-index"} & set(node.attrib)
+    return width, height
+
+
 def test_saved_pictures_have_the_curves_of_the_report_and_stand_alone_on_white(
     opened: Open, example: LinkageReport, tmp_path: Path
 ) -> None:
@@ -88,14 +96,12 @@ def test_saved_pictures_have_the_curves_of_the_report_and_stand_alone_on_white(
     path = saved(page, "joint forces", "SVG", tmp_path)
     root = ET.parse(path).getroot()
     assert root.tag == f"{SVG}svg"
-    width, height = float(root.attrib["width"]), float(root.attrib["height"])
+    width, height = assert_stands_alone(root)
     assert root.attrib["viewBox"] == f"0 0 {width:g} {height:g}"
-    assert root[0].attrib == {"width": f"{width:g}", "height": f"{height:g}", "fill": "#ffffff"}
     words = [node.text for node in root.iter(f"{SVG}text")]
     for expected in ("joint forces", "joint forces (N)", "driver angle theta2 (deg)", "A", "O4"):
         assert expected in words
     for node in root.iter():
-        assert not {"class", "style", "href"} & set(node.attrib)
         assert node.tag in {f"{SVG}{name}" for name in ("svg", "g", "path", "text", "rect")}
         if node.tag == f"{SVG}text":
             assert {"fill", "font-size"} <= set(node.attrib)
@@ -193,10 +199,7 @@ def test_pictures_of_a_search_stand_alone_on_white(opened: Open, few: Result, tm
     page = opened("search", size=(1440, 900), color_scheme="dark")
     for title in ("transmission angle", "torque", "comparison", "drawing"):
         root = ET.parse(saved(page, title, "SVG", tmp_path)).getroot()
-        width, height = float(root.attrib["width"]), float(root.attrib["height"])
-        assert root[0].attrib == {"width": f"{width:g}", "height": f"{height:g}", "fill": "#ffffff"}
-        for node in root.iter():
-            assert not {"class", "style", "href", "id", "role", "tabindex", "data-index"} & set(node.attrib)
+        width, height = assert_stands_alone(root)
         strokes = {node.attrib.get("stroke") for node in root.iter()}
         assert "rgb(0, 114, 178)" in strokes  # of the light page
         if title == "comparison":

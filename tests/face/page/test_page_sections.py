@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from page_parts import HOSTILE, RECORD, Parts
 
 import grashof.page
 from grashof.figures.section_plots import PENS
@@ -20,57 +18,13 @@ from grashof.page.plot_data import Columns
 from grashof.problems import load_linkage_spec
 from grashof.survey import LinkageReport, Plot, Section, report_on
 
-RECORD: dict[str, Any] = {"versions": {"grashof": "0"}, "settings": {}}
-HOSTILE = '</script><b onclick="x">=1+1 & "quoted"; -2</b>'
-
-
-class Groups(HTMLParser):
-    """The groups of a page: their texts in order, links, and the data of the scripts."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.groups: list[list[str]] = []
-        self.links: list[str] = []
-        self.tags: list[str] = []
-        self.data: Any = None
-        self.inside, self.grouped = "", False
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        self.links += [value or "" for name, value in attributes if name == "href"]
-        self.inside = "json" if ("id", "data") in attributes else tag
-        if tag == "details" and ("class", "group") in attributes:
-            self.groups.append([])
-            self.grouped = True
-
-    def handle_endtag(self, tag: str) -> None:
-        self.grouped = self.grouped and tag != "details"
-
-    def handle_data(self, data: str) -> None:
-        if self.inside == "json":
-            self.data = json.loads(data)
-            self.inside = ""
-        elif self.grouped and data.strip():
-            self.groups[-1].append(data.strip())
-
-    def plot(self, key: str) -> dict[str, Any]:
-        found: dict[str, Any] = next(
-            plot for group in self.data["groups"] for plot in group if plot["key"] == key
-        )
-        return found
-
-    def column(self, number: int) -> np.ndarray:
-        return np.array(self.data["columns"][number], dtype=float)
-
 
 @pytest.fixture(scope="module")
-def page(example: LinkageReport) -> Groups:
-    return Groups(analysis_page(example, RECORD))
+def page(example: LinkageReport) -> Parts:
+    return Parts(analysis_page(example, RECORD))
 
 
-def test_groups_stand_in_order_and_an_empty_section_in_none(page: Groups) -> None:
+def test_groups_stand_in_order_and_an_empty_section_in_none(page: Parts) -> None:
     titles = [texts[0] for texts in page.groups]
     assert titles[:4] == ["Angles and velocities", "Torque and power", "Forces", "Points A, B and P"]
     assert titles[-3:] == [HOSTILE, "Words alone", "Other axes"]
@@ -79,11 +33,11 @@ def test_groups_stand_in_order_and_an_empty_section_in_none(page: Groups) -> Non
     assert page.groups[-2] == ["Words alone", "There is no other."]
 
 
-def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Groups) -> None:
+def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Parts) -> None:
     texts = page.groups[-3]
     assert texts[:2] == [HOSTILE, "3 plots, 2 tables, 4 values"]
-    assert "b" not in page.tags
-    assert page.tags.count("script") == 2
+    assert "b" not in page.names
+    assert page.names.count("script") == 2
     for label, *rest in (
         [HOSTILE, "=1+1", HOSTILE],
         ["not known", "-", "N"],
@@ -98,18 +52,19 @@ def test_facts_and_tables_are_text_with_what_is_not_finite_in_words(page: Groups
 
 @pytest.mark.slow
 def test_every_plot_of_an_analysis_has_a_key_of_its_own() -> None:
-    page = Groups(analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD))
+    page = Parts(analysis_page(report_on(load_linkage_spec("pumpjack")), RECORD))
     keys = [plot["key"] for group in page.data["groups"] for plot in group]
     assert len(set(keys)) == len(keys) > 30
     assert all(re.fullmatch("[a-z0-9-]+", key) for key in keys)
 
 
-def test_small_tables_are_shown_and_large_ones_named_with_their_size(page: Groups) -> None:
-    assert page.links == ["table-masses.csv", "table-mass-centres.csv", "table-few.csv", "table-many.csv"]
+def test_small_tables_are_shown_and_large_ones_named_with_their_size(page: Parts) -> None:
+    names = ("masses", "mass-centres", "few", "many")
+    assert page.values("href") == [f"table-{name}.csv" for name in names]
     assert ": 361 rows, 2 columns" in page.groups[-3]
 
 
-def test_values_that_are_not_finite_are_gaps(page: Groups) -> None:
+def test_values_that_are_not_finite_are_gaps(page: Parts) -> None:
     known, none = page.plot("gaps")["series"]
     assert np.flatnonzero(np.isnan(page.column(known["values"]))).tolist() == list(range(91, 120))
     assert np.isnan(page.column(none["values"])).all()
@@ -136,7 +91,7 @@ def test_columns_are_short_where_they_are_nothing_but_rounding() -> None:
     assert columns.found == [[2.5] * 361, [1.0, 0.0] * 180 + [1.0]]
 
 
-def test_columns_are_kept_once(page: Groups) -> None:
+def test_columns_are_kept_once(page: Parts) -> None:
     columns = [tuple(column) for column in page.data["columns"]]
     assert len(columns) == len(set(columns))
     over_angle = {
@@ -158,7 +113,7 @@ def test_a_long_history_keeps_its_shape(example: LinkageReport, seed: int) -> No
     spiked = np.where(np.arange(20001) == random.integers(20001), 5.0, np.sin(time))
     plot = Plot("long", "long", "m", {"smooth": smooth, "spiked": spiked}, time, "time (s)")
     section = Section("long", "Long", plots=(plot,))
-    page = Groups(analysis_page(replace(example, sections=(section,)), RECORD))
+    page = Parts(analysis_page(replace(example, sections=(section,)), RECORD))
     shown = page.plot("long")
     assert any("only some of their samples" in text for text in page.groups[-1])
     places = page.column(shown["places"])
@@ -204,5 +159,5 @@ def test_tables_of_numpy_values_are_written(example: LinkageReport) -> None:
     table = pd.DataFrame(
         {"flag": np.array([True, False]), "count": np.array([3, 12345678]), "x": [np.nan, 1e-9]}
     )
-    page = Groups(analysis_page(replace(example, sections=(Section("t", "T", tables={"t": table}),)), RECORD))
+    page = Parts(analysis_page(replace(example, sections=(Section("t", "T", tables={"t": table}),)), RECORD))
     assert page.groups[-1][-6:] == ["yes", "3", "-", "no", "12345678", "1e-09"]

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from shown_pages import state
+from page_parts import RECORD
+from shown_pages import state, without_complaints
+from sweep_base import BASE
 
 from grashof.sweep import Sweep, load_study, sweep
 from grashof.sweep.page import sweep_page
@@ -17,15 +19,6 @@ from grashof.sweep.page import sweep_page
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-BASE = """\
-kind = "path"
-[path]
-points = [[0, 0], [1, 1], [2, 0]]
-[search]
-starts = 1
-enough = 1
-effort = 0.2
-"""
 STUDY = """\
 title = "<b>Bold</b>"
 problem = "base.toml"
@@ -46,19 +39,10 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Sweep, Path]:
 @pytest.fixture
 def shown(window: Page, done: tuple[Sweep, Path]) -> Iterator[Page]:
     """The page, opened; at the end nothing may have been complained of."""
-    complaints: list[str] = []
-    listeners: dict[Any, Any] = {
-        "console": lambda message: complaints.append(message.text),
-        "pageerror": lambda error: complaints.append(str(error)),
-    }
-    for event, listener in listeners.items():
-        window.on(event, listener)
-    window.set_viewport_size({"width": 1280, "height": 720})
-    window.goto(done[1].as_uri())
-    yield window
-    for event, listener in listeners.items():
-        window.remove_listener(event, listener)
-    assert complaints == []
+    with without_complaints(window):
+        window.set_viewport_size({"width": 1280, "height": 720})
+        window.goto(done[1].as_uri())
+        yield window
 
 
 @pytest.mark.slow
@@ -144,10 +128,8 @@ def test_one_that_was_interrupted_before_it_varied_a_key_is_shown(
 ) -> None:
     few = replace(done[0], results={0: done[0].results[0]})
     page = done[1].with_name("few.html")
-    page.write_text(sweep_page(few, few.to_frame(), {"versions": {"grashof": "0"}}), encoding="utf-8")
-    complaints: list[str] = []
-    window.once("pageerror", lambda error: complaints.append(str(error)))
-    window.goto(page.as_uri())
-    assert state(window)["chosen"] == 0
-    assert window.locator("#tradeoff .point").count() == 1
-    assert complaints == []
+    page.write_text(sweep_page(few, few.to_frame(), RECORD), encoding="utf-8")
+    with without_complaints(window):
+        window.goto(page.as_uri())
+        assert state(window)["chosen"] == 0
+        assert window.locator("#tradeoff .point").count() == 1

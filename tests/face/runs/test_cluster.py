@@ -1,10 +1,9 @@
 """A Dask scheduler that is named: a task that ends its workers fails, and a lost scheduler is reported."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command_line import script_done
 
 SCRIPT = '''
 import os
@@ -69,11 +68,7 @@ if __name__ == "__main__":
 @pytest.mark.study
 def test_a_task_that_ends_workers_fails_and_a_lost_scheduler_is_reported(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
-    (tmp_path / "fatal.py").write_text(SCRIPT, encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "fatal.py"], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    done = script_done(SCRIPT, tmp_path)
     failed, same, lost = done.stdout.splitlines()
     assert failed.startswith("failed: a task ends the workers that do it")
     assert same == "True"

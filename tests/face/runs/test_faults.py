@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import COMMAND, Grashof, assert_one_line, failing
 from matplotlib.animation import FuncAnimation
+from refusals import rows
 
-from grashof.cli import main
 from grashof.output import run_files
 from grashof.output.analysis_files import write_report
 from grashof.output.process import say
@@ -21,37 +21,21 @@ from grashof.survey import report_on
 from grashof.synth.search import journal
 from grashof.synth.starts import coupler_search
 
-Grashof = Callable[..., Any]
 FULL = OSError(28, "No space left on device")
 QUICK = ("--starts", "2", "--drawings", "0")
 
 
 def in_shell(streams: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     """The command in a process of its own, with streams as a shell states them."""
-    program = f"from {main.__module__} import main; main()"
-    command = ["sh", "-c", f'exec "$0" "$@" {streams}', sys.executable, "-c", program, *arguments]
+    command = ["sh", "-c", f'exec "$0" "$@" {streams}', *COMMAND, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=120)
-
-
-def assert_one_line(done: Any, code: int, *words: str) -> None:
-    """The exit code, and one line on stderr with these words."""
-    assert done.exit_code == code
-    (line,) = done.stderr.splitlines()
-    assert line.startswith("grashof: ")
-    for word in words:
-        assert word in line
 
 
 @pytest.fixture
 def full(monkeypatch: pytest.MonkeyPatch) -> None:
     """A disk on which no bytes have room, though names have."""
-
-    def write(*_: object, **__: object) -> None:
-        raise FULL
-
-    monkeypatch.setattr(Path, "write_bytes", write)
-    monkeypatch.setattr(Path, "write_text", write)
-    monkeypatch.setattr(FuncAnimation, "save", write)
+    for owner, name in ((Path, "write_bytes"), (Path, "write_text"), (FuncAnimation, "save")):
+        monkeypatch.setattr(owner, name, failing(FULL))
 
 
 @pytest.fixture
@@ -92,22 +76,22 @@ def test_a_full_disk_keeps_the_older_file(
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ("solve folder", "folder: is a folder; it must be a problem file"),
-        ("check folder.toml", "folder.toml: is a folder; it must be a problem file"),
-        ("analyse folder", "folder: is a folder; it must be a linkage file"),
-        ("analyse folder.json#1", "folder.json: is a folder; it must be a list of designs"),
-        ("animate pumpjack --out folder.gif", "folder.gif: is a folder; it must be a file"),
-        ("export pumpjack --svg folder.svg", "folder.svg: is a folder; it must be a file"),
-        ("solve luggage --out file", "--out file: File exists; it must be a folder"),
-        ("analyse pumpjack --out file", "--out file: File exists; it must be a folder"),
-        ("analyse pumpjack --out file/below", "it must be a folder that can be written"),
-        ("animate pumpjack --out file/below.gif", "it must be a file in a folder that can be written"),
-        ("export pumpjack --svg file/below.svg", "there is no folder file"),
-    ],
-)
+MISPLACED = rows("""
+solve folder | folder: is a folder; it must be a problem file
+check folder.toml | folder.toml: is a folder; it must be a problem file
+analyse folder | folder: is a folder; it must be a linkage file
+analyse folder.json#1 | folder.json: is a folder; it must be a list of designs
+animate pumpjack --out folder.gif | folder.gif: is a folder; it must be a file
+export pumpjack --svg folder.svg | folder.svg: is a folder; it must be a file
+solve luggage --out file | --out file: File exists; it must be a folder
+analyse pumpjack --out file | --out file: File exists; it must be a folder
+analyse pumpjack --out file/below | it must be a folder that can be written
+animate pumpjack --out file/below.gif | it must be a file in a folder that can be written
+export pumpjack --svg file/below.svg | there is no folder file
+""")
+
+
+@pytest.mark.parametrize(("arguments", "said"), MISPLACED)
 def test_a_folder_for_a_file_and_a_file_for_a_folder(
     grashof: Grashof, tmp_path: Path, arguments: str, said: str
 ) -> None:
@@ -148,10 +132,7 @@ def test_closed_streams_cost_no_result(tmp_path: Path, streams: str) -> None:
 
 
 def test_a_line_that_stdout_cannot_take_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    def fail(*_: object, **__: object) -> None:
-        raise FULL
-
-    monkeypatch.setattr("typer.echo", fail)
+    monkeypatch.setattr("typer.echo", failing(FULL))
     with (tmp_path / "out").open("w") as stream:
         monkeypatch.setattr(sys, "stdout", stream)
         monkeypatch.setattr(sys, "stderr", stream)
@@ -170,11 +151,8 @@ def recorded(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_full_disk_costs_neither_the_table_nor_the_search(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
-        raise FULL
-
     with monkeypatch.context() as patch:
-        patch.setattr(run_files, "write_json", fail)
+        patch.setattr(run_files, "write_json", failing(FULL))
         done = grashof("solve", "luggage", *QUICK)
     assert done.exit_code == 3
     assert "No space left on device" in done.stderr
@@ -210,11 +188,8 @@ def test_a_record_that_cannot_be_written_ends_the_record_alone(
 def test_a_kind_that_fails_costs_no_design_of_another(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
-        raise IndexError("7 is out of bounds")
-
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
-    monkeypatch.setattr(coupler_search, "search", fail)
+    monkeypatch.setattr(coupler_search, "search", failing(IndexError("7 is out of bounds")))
     done = grashof("solve", "line.toml", *QUICK)
     assert done.exit_code == 3
     assert "grashof: unexpected error: IndexError: 7 is out of bounds" in done.stderr
@@ -232,23 +207,14 @@ poses = [[0, 0, 0], [3, 1, 40], [5, 4, 70]]
 """
 
 
-@pytest.mark.parametrize(
-    ("kinds", "poses", "exact", "said"),
-    [
-        (
-            '["slider-crank", "four-bar"]',
-            "[0, 0, 0], [3, 1, 40], [0, 0, 0], [5, 4, 70]",
-            "true",
-            "mechanism four-bar: motion.poses[0] and motion.poses[2] are equal",
-        ),
-        (
-            '"inverted-slider-crank"',
-            "[0, 0, 0], [3, 1, 40]",
-            "false",
-            "three or more where requirements.exact",
-        ),
-    ],
-)
+UNSEARCHABLE = rows("""
+["slider-crank", "four-bar"] | [0, 0, 0], [3, 1, 40], [0, 0, 0], [5, 4, 70] | true |
+    mechanism four-bar: motion.poses[0] and motion.poses[2] are equal
+"inverted-slider-crank" | [0, 0, 0], [3, 1, 40] | false | three or more where requirements.exact
+""")
+
+
+@pytest.mark.parametrize(("kinds", "poses", "exact", "said"), UNSEARCHABLE)
 @pytest.mark.parametrize("command", ["check", "solve"])
 def test_a_task_that_a_kind_cannot_be_searched_for_is_refused_first(
     grashof: Grashof, tmp_path: Path, command: str, kinds: str, poses: str, exact: str, said: str

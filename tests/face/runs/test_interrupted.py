@@ -8,21 +8,17 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 import pytest
+from command_line import COMMAND, Grashof, failing
 from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw
 from grashof.output.process import ExitCode, interruptible
-from grashof.problems import Problem, problem_text
+from grashof.problems import Problem
 from grashof.synth import Candidate
-
-Grashof = Callable[..., Any]
-COMMAND = [sys.executable, "-c", "from grashof.cli import main; main()"]
 
 
 @pytest.mark.study
@@ -77,10 +73,7 @@ def test_ctrl_c_while_processes_begin_leaves_no_traceback(tmp_path: Path, later:
 def test_a_drawing_that_fails_costs_neither_lists_nor_tidiness(
     grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(grashof_draw, "drawn", fail)
+    monkeypatch.setattr(grashof_draw, "drawn", failing(KeyboardInterrupt()))
     monkeypatch.setattr("grashof.synth.search.journal.EVERY", 0.0)  # as if the search took long
     assert grashof("solve", "luggage", "--starts", "4").exit_code == 130
     folder = tmp_path / "luggage-designs"
@@ -115,29 +108,6 @@ def test_a_reader_that_leaves_ends_nothing(tmp_path: Path, merged: bool) -> None
     assert "Error" not in said
     assert "Exception" not in said
     assert len(pd.read_csv(tmp_path / "luggage-designs" / "candidates.csv")) > 0
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
-def test_interrupt_writes_the_verified_designs(tmp_path: Path) -> None:
-    text = problem_text("luggage") + "\n[search]\nstarts = 5000\nenough = 300\n"
-    (tmp_path / "long.toml").write_text(text, encoding="utf-8")
-    given = ["solve", "long.toml", "--drawings", "0"]
-    running = subprocess.Popen([*COMMAND, *given], cwd=tmp_path, stderr=subprocess.PIPE, text=True)
-    assert running.stderr is not None
-    seen = ""
-    while "starts solved" not in seen:
-        seen = running.stderr.readline()
-    time.sleep(0.2)
-    running.send_signal(signal.SIGINT)
-    _, said = running.communicate(timeout=60)
-    assert running.returncode == 130
-    table = pd.read_csv(tmp_path / "long-designs" / "candidates.csv")
-    assert len(table) > 0
-    record = json.loads((tmp_path / "long-designs" / "run.json").read_text())
-    assert record["complete"] is False
-    assert record["run"]["ending"] == "interrupted"
-    assert "drawings are left out" not in said  # none were requested
 
 
 @pytest.mark.slow

@@ -6,13 +6,11 @@ import json
 import logging
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
+from command_line import Grashof
 
-Grashof = Callable[..., Any]
 FEW = ("solve", "luggage", "--starts", "4", "--drawings", "0")
 LINE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (DEBUG|INFO|WARNING) grashof\.[\w.]+: \S.*")
 

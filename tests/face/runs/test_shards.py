@@ -9,16 +9,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 import pytest
+from command_line import COMMAND, Grashof
 
 from grashof.output.folder import in_use
 
-Grashof = Callable[..., Any]
 ROOT = Path(__file__).parents[3]
 
 
@@ -134,9 +132,8 @@ def test_a_full_disk_costs_no_shard(grashof: Grashof, tmp_path: Path) -> None:
 @pytest.mark.study
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_the_same_command_continues_a_terminated_shard(tmp_path: Path) -> None:
-    program = "from grashof.cli import main; main()"
     given = ["solve", "luggage", "--effort", "10", "--shard", "1/1", "--out", "out"]
-    command = [sys.executable, "-c", program, *given]
+    command = [*COMMAND, *given]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     process.stderr.readline()  # a chunk is done

@@ -5,21 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sweep_base import BASE
 
 from grashof.sweep.task import solve_task
 
 Write = Callable[..., Path]
 
-BASE = """\
-kind = "path"
-length_unit = "mm"
-[path]
-points = [[0, 0], [1, 1], [2, 0]]
-[search]
-starts = 1
-enough = 1
-effort = 0.2
-"""
 # For tests without a search.
 STUDY = """\
 problem = "base.toml"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from command_line import script_done
 
 from grashof.sweep import sweep
 
@@ -64,13 +64,9 @@ if __name__ == "__main__":
 def test_a_cluster_gives_the_same_table(write: Callable[..., Path], tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     study = write(STUDY)
-    (tmp_path / "cluster.py").write_text(SCRIPT, encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "cluster.py"], cwd=tmp_path, capture_output=True, text=True, timeout=400, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    lost, interrupted, resumed = json.loads(done.stdout.splitlines()[-1])
-    assert [each["code"] for each in (lost, interrupted, resumed)] == [0, 130, 0], done.stdout
+    runs = json.loads(script_done(SCRIPT, tmp_path).stdout.splitlines()[-1])
+    assert [each["code"] for each in runs] == [0, 130, 0], runs
+    _, interrupted, resumed = runs
     assert "interrupted: --resume continues it" in interrupted["said"]
     assert resumed["said"].count(" of 30: ") < 30
     sweep(study, out=tmp_path / "here")

@@ -13,6 +13,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from command_line import COMMAND, assert_one_line
 from typer.testing import CliRunner
 
 from grashof.cli import app
@@ -86,16 +87,13 @@ def test_a_signal_leaves_the_finished_tasks(
     assert signal.getsignal(number) is before
     assert len(pd.read_csv(tmp_path / "out" / "sweep.csv")) == 3
     refused = grashof("sweep", write(), "--out", tmp_path / "out")
-    assert refused.exit_code == 2
-    assert refused.stderr.count("\n") == 1
-    assert "3 of 12 tasks done; --resume continues it" in refused.stderr
+    assert_one_line(refused, 2, "3 of 12 tasks done; --resume continues it")
     assert grashof("sweep", write(), "--out", tmp_path / "out", "--resume").exit_code == 0
     assert len(done) == 4 + 9
 
 
 def started(study: Path, out: Path, *options: str) -> subprocess.Popen[str]:
-    program = "from grashof.cli import main; main()"
-    command = [sys.executable, "-c", program, "sweep", str(study), "--out", str(out), *options]
+    command = [*COMMAND, "sweep", str(study), "--out", str(out), *options]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 

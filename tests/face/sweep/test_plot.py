@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,15 @@ def test_over_words_the_best_designs_against_each_other(done: Callable[..., Swee
     assert axes.lines[0].get_xydata().tolist() == [[3, 30], [1, 10], [2, 9]]
     assert axes.lines[1].get_xydata().tolist() == [[1, 10], [3, 30]]
     assert [text.get_text() for text in axes.texts] == ["1", "2", "3"]
+
+
+def test_sizes_in_different_units_are_not_joined(done: Callable[..., Sweep]) -> None:
+    sweep = done("[vary]\nrequirements.order = [true, false]\n", [(30, 3), (10, 1)])
+    inches = {**sweep.results[1], "decides": {**sweep.results[1]["decides"], "length_unit": "in"}}
+    mixed = replace(sweep, results={**sweep.results, 1: inches})
+    axes = plot_sweep(mixed, mixed.to_frame()).axes[0]
+    assert len(axes.lines) == 1
+    assert axes.get_xlabel() == "size"
 
 
 def test_nothing_found_is_plotted_too(done: Callable[..., Sweep]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
+from command_line import Grashof
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.output.run_files import write_run
@@ -21,8 +21,6 @@ from grashof.problems.files.linkage_file import load_design
 from grashof.synth import Result
 from grashof.workshop import write_xlsx
 from grashof.workshop.workbook import listed_candidates, workbook
-
-Grashof = Callable[..., Any]
 
 
 @pytest.fixture

@@ -49,16 +49,12 @@ class Group {
   }
 }
 
-class AnalysisPage {
+class AnalysisPage extends MovingPage {
   designs;
 
   constructor({ name, scene, designs, groups, columns, driver }) {
+    super(scene, { layers: ["trace", "ghosts"] });
     Object.assign(this, { name, designs, range: 0, degrees: 0, heading: $("h1").textContent });
-    this.stage = new Stage($("#stage"), scene, {
-      onDrive: (angle) => this.turnTo(angle),
-      onDraw: (state) => this.moved(state),
-    });
-    this.player = new Player($("#player"), { onMove: (angle) => this.stage.move(angle) });
     this.groups = [];
     const nodes = $$("#groups details");
     const panels = groups.map((plots) => plots.map((plot) => panelOf(plot, columns, driver)));
@@ -68,16 +64,8 @@ class AnalysisPage {
         for (const node of nodes) node.open = open;
       });
     }
-    for (const name of ["trace", "ghosts"].filter((each) => $(`#${each}`))) {
-      $(`#${name}`).addEventListener("change", (event) => {
-        this.stage[name] = event.target.checked;
-        this.stage.draw();
-      });
-    }
     const ranges = $("#range");
     if (ranges) ranges.addEventListener("change", () => this.choose(Number(ranges.value)));
-    listenToKeys(this.stage, this.player);
-    listenOnPage(() => this.player);
     this.choose(0);
   }
 
@@ -85,11 +73,10 @@ class AnalysisPage {
   choose(index) {
     this.player.pause();
     this.range = index;
-    const { low, high, turns, direction } = this.designs[index];
+    const { low, high, turns } = this.designs[index];
     for (const group of this.groups) group.show();
     this.stage.show(this.designs[index], this.designs);
-    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
-    tellTravel(this.stage, low, high);
+    this.travel(this.designs[index]);
     this.player.set(turns ? Math.PI / 3 : (low + high) / 2);
   }
 
@@ -101,15 +88,10 @@ class AnalysisPage {
     return extent(places.filter(inside));
   }
 
-  turnTo(theta2) {
-    this.player.pause();
-    this.player.set(theta2);
-  }
-
   moved(state) {
     this.degrees = state.theta2 * DEG;
     for (const group of this.groups) group.mark(this.degrees);
-    tellPosition(this.stage, state);
+    super.moved(state);
   }
 
   state() {

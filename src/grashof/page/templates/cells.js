@@ -1,21 +1,19 @@
-// Combinations of two numbers as a grid of cells, coloured by a third; a click picks one.
+// Combinations of two numbers as a grid of cells, coloured by a third.
 const CELLS = { least: 14, wide: 46, dark: 0.55 }; // px from which a cell has its number, and its colour that needs a light one
 
-class Cells {
-  svg; columns; designs; across; up; note; onPick;
+class Cells extends Choices {
+  across; up; note;
 
   // axes: the keys across and up; measure: the key of the first choice for the colour of the cells.
   constructor(root, { columns, designs, axes, measure, onPick }) {
-    Object.assign(this, { svg: $("svg", root), note: $("figcaption", root), columns, designs, onPick, chosen: 0 });
-    this.visible = new Set(designs.keys());
+    super(root, { columns, designs, onPick });
+    this.note = $("figcaption", root);
     [this.across, this.up] = axes.map((key) => columns.find((column) => column.key === key));
     this.select = $("select", root);
     const measures = columns.filter(({ key }) => !axes.includes(key));
     this.select.append(...measures.map(({ key, label, unit }) => new Option(withUnit(label, unit), key)));
     this.select.value = measures.some(({ key }) => key === measure) ? measure : measures[0].key;
     this.select.addEventListener("change", () => this.draw());
-    this.svg.addEventListener("keydown", (event) => this.key(event));
-    onResize(this.svg, () => this.draw());
   }
 
   get measure() {
@@ -35,11 +33,7 @@ class Cells {
     return [...new Set(this.designs.map(({ figures }) => figures[column.key]))].sort((a, b) => a - b);
   }
 
-  draw() {
-    repaint(this);
-  }
-
-  // Into a box of a drawing; stronger colours are better, where one side of the measure is.
+  // Stronger colours are better, where one side of the measure is.
   paint(svg, box) {
     const [xs, ys] = [this.places(this.across), this.places(this.up)];
     const rows = ys.map((value) => ({ text: figure(value) }));
@@ -109,45 +103,17 @@ class Cells {
     add(svg, "text", up, named(this.up, bottom - top));
   }
 
-  mark(index) {
-    this.chosen = index;
-    for (const [k, node] of this.nodes || []) {
-      node.classList.toggle("chosen", k === index);
-      node.classList.toggle("filtered", !this.visible.has(k));
-      node.setAttribute("aria-pressed", String(k === index));
-      node.tabIndex = k === index ? 0 : -1;
-    }
-    const node = this.nodes && this.nodes.get(index);
-    if (node && !this.svg.contains(document.activeElement)) node.parentNode.append(node); // its frame above its neighbours
+  get steps() {
+    return { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   }
 
-  filter(visible) {
-    this.visible = new Set(visible);
-    this.mark(this.chosen);
-  }
-
-  // Arrows go from cell to cell, Enter and space pick.
-  key(event) {
-    const at = event.target.closest("[data-index]");
-    const steps = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    if (!at || !(steps || event.key === "Enter" || event.key === " ")) return;
-    event.preventDefault();
-    event.stopPropagation();
-    const index = Number(at.dataset.index);
-    if (!steps) {
-      this.onPick(index);
-      return;
-    }
-    const next = [this.across, this.up].map((column, axis) => {
+  next(index, step) {
+    const wanted = [this.across, this.up].map((column, axis) => {
       const places = this.places(column);
-      return places[places.indexOf(this.value(index, column)) + steps[axis]];
+      return places[places.indexOf(this.value(index, column)) + step[axis]];
     });
-    const found = this.designs.findIndex((_, k) =>
-      [this.across, this.up].every((column, axis) => this.value(k, column) === next[axis]),
+    return this.designs.findIndex((_, k) =>
+      [this.across, this.up].every((column, axis) => this.value(k, column) === wanted[axis]),
     );
-    if (found < 0) return;
-    for (const node of this.nodes.values()) node.tabIndex = -1;
-    this.nodes.get(found).tabIndex = 0;
-    this.nodes.get(found).focus();
   }
 }

@@ -143,5 +143,25 @@ class Curves extends Picture {
   }
 }
 
+// The transmission angle of a design over its travel, and its drive torque where it is known; the states between,
+// their places and the options of curves over them.
+function showTravel(design, closed, transmission, torque) {
+  const { angles } = travelPath(design);
+  const places = angles.map((angle) => angle * DEG);
+  const states = angles.map((angle) => positionOf(design.linkage, angle));
+  const marks = design.theta2.map((angle) => within(design, angle) * DEG);
+  const bold = closed || !design.task ? null : partsOfTask(design);
+  const options = { bold, marks, bounded: !design.turns };
+  const driver = "driver angle theta2 (deg)";
+  const mu = { title: "Transmission angle", unit: "deg", limits: [0, 90], driver, places, angles: places };
+  transmission.show({ ...mu, series: [{ label: "μ", values: states.map((state) => state.mu * DEG) }] }, { bold, marks });
+  if (torque && design.torque) {
+    const sampled = travelAngles(design).map((angle) => angle * DEG);
+    const drive = { title: "Drive torque", unit: "N m", driver, places: sampled, angles: sampled };
+    torque.show({ ...drive, series: [{ label: "T", values: design.torque }] }, options);
+  }
+  return { places, states, options };
+}
+
 const isRising = (places) =>
   places.every((place, k) => k === 0 || (place !== null && place >= places[k - 1]));

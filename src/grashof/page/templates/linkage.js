@@ -142,7 +142,7 @@ function partsOf(design, state, at, half) {
   ]);
 }
 
-// The same over the whole travel of a design; kept, as every drawing of it needs it.
+// The same over the full travel of a design; kept, as every drawing of it needs it.
 const travelled = new WeakMap();
 function travelPath(design) {
   if (!travelled.has(design)) travelled.set(design, pathOf(design.linkage, travelAngles(design)));

@@ -89,14 +89,54 @@ class Player {
   }
 }
 
-// Arrow keys on a drawing turn its driver.
-function listenToKeys(stage, player) {
-  stage.svg.addEventListener("keydown", (event) => {
-    if (player.key(event)) event.preventDefault();
-  });
+// A page with a drawing that a player, hands and keys move; without a player it stands still.
+class MovingPage {
+  stage; player;
+
+  // layers: ids of the boxes that show more in the drawing, as it calls them.
+  constructor(scene, { root = document, layers = [] } = {}) {
+    if (!$("#player", root)) {
+      this.stage = new Stage($("#stage", root), scene);
+      return;
+    }
+    this.stage = new Stage($("#stage", root), scene, {
+      onDrive: (theta2) => this.turnTo(theta2),
+      onDraw: (state) => this.moved(state),
+    });
+    this.player = new Player($("#player", root), { onMove: (theta2) => this.stage.move(theta2) });
+    for (const name of layers.filter((each) => $(`#${each}`))) {
+      $(`#${name}`).addEventListener("change", (event) => {
+        this.stage[name] = event.target.checked;
+        this.stage.draw();
+      });
+    }
+    this.stage.svg.addEventListener("keydown", (event) => {
+      if (this.player.key(event)) event.preventDefault();
+    });
+    listenOnPage(() => this.current());
+  }
+
+  // The player that keys move where no drawing has the focus.
+  current() {
+    return this.player;
+  }
+
+  turnTo(theta2) {
+    this.player.pause();
+    this.player.set(theta2);
+  }
+
+  travel({ low, high, turns, direction }) {
+    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
+    tellTravel(this.stage, low, high);
+  }
+
+  moved(state) {
+    tellPosition(this.stage, state);
+  }
 }
 
-// On the whole page the space bar plays and pauses, and the arrows to the left and right turn the
+// Anywhere on the page the space bar plays and pauses, and the arrows to the left and right turn the
 // driver, unless the element with the focus needs them.
 function listenOnPage(player) {
   document.addEventListener("keydown", (event) => {

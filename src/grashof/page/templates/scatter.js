@@ -1,12 +1,77 @@
-// Designs by two quantities, a third as the area of the points; a click picks one.
-class Scatter {
-  svg; columns; designs; called; onPick;
+// A plot of designs, each a node by its index: one is chosen, by a click or by keys, and some are filtered out.
+class Choices {
+  svg; columns; designs; nodes; visible; chosen; onPick;
+
+  constructor(root, { columns, designs, onPick }) {
+    Object.assign(this, { svg: $("svg", root), columns, designs, onPick, chosen: 0, visible: new Set(designs.keys()) });
+    this.svg.addEventListener("keydown", (event) => this.key(event));
+    onResize(this.svg, () => this.draw());
+  }
+
+  // The steps of the arrow keys, and the design at a step from another one: different for each kind of plot.
+  get steps() {
+    return {};
+  }
+
+  next(_index, _step) {}
+
+  // Into a box of a drawing.
+  paint(_svg, _box) {}
+
+  draw() {
+    repaint(this);
+  }
+
+  // The chosen design has a ring or frame, and is where the tab key enters.
+  mark(index) {
+    this.chosen = index;
+    if (!this.nodes) return;
+    const entered = this.nodes.has(index) ? index : Math.min(...this.nodes.keys());
+    for (const [k, node] of this.nodes) {
+      node.classList.toggle("chosen", k === index);
+      node.classList.toggle("filtered", !this.visible.has(k));
+      node.setAttribute("aria-pressed", String(k === index));
+      node.tabIndex = k === entered ? 0 : -1;
+    }
+    const node = this.nodes.get(index);
+    // On top of the others, but not while the focus is here: moving a node drops it.
+    if (node && !this.svg.contains(document.activeElement)) node.parentNode.append(node);
+  }
+
+  filter(visible) {
+    this.visible = new Set(visible);
+    this.mark(this.chosen);
+  }
+
+  // Arrows go from one to the next, Enter and space pick.
+  key(event) {
+    const at = event.target.closest("[data-index]");
+    const step = this.steps[event.key];
+    if (!at || !(step || event.key === "Enter" || event.key === " ")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const index = Number(at.dataset.index);
+    if (!step) {
+      this.onPick(index);
+      return;
+    }
+    const next = this.nodes.get(this.next(index, step));
+    if (!next) return;
+    for (const node of this.nodes.values()) node.tabIndex = -1;
+    next.tabIndex = 0;
+    next.focus();
+  }
+}
+
+// Designs by two quantities, a third as the area of the points.
+class Scatter extends Choices {
+  called;
 
   // wanted: keys of the first choice for each axis; called: the word for a design.
   constructor(root, { columns, designs, wanted = {}, called = "design", onPick }) {
-    Object.assign(this, { svg: $("svg", root), columns, designs, called, onPick, chosen: 0 });
+    super(root, { columns, designs, onPick });
+    this.called = called;
     this.selects = Object.fromEntries($$("select", root).map((select) => [select.dataset.axis, select]));
-    this.visible = new Set(designs.keys());
     const usual = {
       x: ["size"],
       y: [...this.differing(), "transmission_min_task_deg", "transmission_min_cycle_deg"],
@@ -19,8 +84,6 @@ class Scatter {
       select.value = [...(wanted[axis] || []), ...usual[axis], keys[0]].find((key) => keys.includes(key));
       select.addEventListener("change", () => this.draw());
     }
-    this.svg.addEventListener("keydown", (event) => this.key(event));
-    onResize(this.svg, () => this.draw());
   }
 
   // Errors that designs are chosen by, where they differ by more than rounding.
@@ -47,11 +110,6 @@ class Scatter {
     return column ? this.designs[index].figures[column.key] : null;
   }
 
-  draw() {
-    repaint(this);
-  }
-
-  // Into a box of a drawing.
   paint(svg, box) {
     const top = box.top + 8;
     const bottom = box.bottom - 34;
@@ -74,7 +132,7 @@ class Scatter {
     const layer = add(svg, "g", { class: "points" });
     // Big ones first, so that none is hidden.
     const order = [...this.shown].sort((a, b) => this.radius(b) - this.radius(a));
-    this.points = new Map(order.map((k) => [k, this.point(layer, k)]));
+    this.nodes = new Map(order.map((k) => [k, this.point(layer, k)]));
     this.mark(this.chosen);
   }
 
@@ -148,7 +206,7 @@ class Scatter {
       .filter(Boolean)
       .map(({ key, label, unit, noise }) => `${label} ${rounded(figures[key], null, noise)} ${unit}`.trim());
     const name = `${this.called} ${figures.rank}: ${values.join(", ")}${figures.pareto ? ", Pareto-optimal" : ""}`;
-    const style = `point${figures.pareto ? " pareto" : ""}${this.visible.has(k) ? "" : " filtered"}`;
+    const style = `point${figures.pareto ? " pareto" : ""}`;
     const node = add(layer, "circle", {
       cx,
       cy,
@@ -164,39 +222,13 @@ class Scatter {
     return node;
   }
 
-  // The chosen design has a ring, and is where the tab key enters.
-  mark(index) {
-    this.chosen = index;
-    if (!this.points) return;
-    for (const [k, node] of this.points) {
-      node.classList.toggle("chosen", k === index);
-      node.setAttribute("aria-pressed", String(k === index));
-      node.tabIndex = k === index || (!this.points.has(index) && k === this.shown[0]) ? 0 : -1;
-    }
-    const node = this.points.get(index);
-    // On top of the others, but not while the focus is here: moving a node drops it.
-    if (node && !this.svg.contains(document.activeElement)) node.parentNode.append(node);
+  get steps() {
+    return { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
   }
 
-  filter(visible) {
-    this.visible = new Set(visible);
-    for (const [k, node] of this.points || []) node.classList.toggle("filtered", !this.visible.has(k));
-  }
-
-  // Arrows go from point to point along the x axis, Enter and space pick.
-  key(event) {
-    const index = Number(event.target.dataset.index);
-    if (Number.isNaN(index)) return;
+  // Along the x axis, around.
+  next(index, step) {
     const order = [...this.shown].sort((a, b) => this.place(a)[0] - this.place(b)[0]);
-    const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
-    if (step) {
-      const next = order[(order.indexOf(index) + step + order.length) % order.length];
-      for (const node of this.points.values()) node.tabIndex = -1;
-      this.points.get(next).tabIndex = 0;
-      this.points.get(next).focus();
-    } else if (event.key === "Enter" || event.key === " ") this.onPick(index);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
+    return order[(order.indexOf(index) + step + order.length) % order.length];
   }
 }

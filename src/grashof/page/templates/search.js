@@ -1,16 +1,12 @@
 // The page of a search: the chosen design is drawn, marked and described everywhere.
-class SearchPage {
-  designs; scene; torqueUnit; found; values; name; columns; loci;
+class SearchPage extends MovingPage {
+  designs; scene; found; values; name; columns; loci;
 
-  constructor({ name, found, scene, columns, axes, values, designs, torqueUnit, loci }) {
-    Object.assign(this, { name, found, scene, columns, values, designs, torqueUnit, loci, chosen: 0 });
+  constructor({ name, found, scene, columns, axes, values, designs, loci }) {
+    super(scene, { layers: ["trace", "ghosts", "close"] });
+    Object.assign(this, { name, found, scene, columns, values, designs, loci, chosen: 0 });
     const choose = (index) => this.choose(index);
     const turnTo = (degrees) => this.turnTo(degrees / DEG);
-    this.stage = new Stage($("#stage"), scene, {
-      onDrive: (theta2) => this.turnTo(theta2),
-      onDraw: (state) => this.moved(state),
-    });
-    this.player = new Player($("#player"), { onMove: (theta2) => this.stage.move(theta2) });
     this.transmission = new Curves($("#transmission"), { onPick: turnTo });
     this.output = designs[0].function !== undefined && new Curves($("#output"));
     this.error = this.output && new Curves($("#error"));
@@ -56,8 +52,7 @@ class SearchPage {
   }
 
   turnTo(theta2) {
-    this.player.pause();
-    this.player.set(this.design.turns ? countedIn(this.player, theta2) : theta2);
+    super.turnTo(this.design.turns ? countedIn(this.player, theta2) : theta2);
   }
 
   // The driver moves over its full range, or only through the task.
@@ -71,28 +66,8 @@ class SearchPage {
   }
 
   curves(design) {
-    const { angles } = travelPath(design);
-    const places = angles.map((angle) => angle * DEG);
-    const marks = design.theta2.map((angle) => within(design, angle) * DEG);
-    const whole = this.scene.closed || !design.task;
-    const bold = whole ? null : partsOfTask(design);
-    const mu = angles.map((angle) => positionOf(design.linkage, angle).mu * DEG);
-    const driver = "driver angle theta2 (deg)";
-    const panel = { title: "Transmission angle", unit: "deg", limits: [0, 90], driver };
-    const series = [{ label: "μ", values: mu }];
-    this.transmission.show({ ...panel, places, angles: places, series }, { bold, marks });
+    showTravel(design, this.scene.closed, this.transmission, this.torque);
     if (this.output) this.outputs(design);
-    if (!this.torque) return;
-    const sampled = travelAngles(design).map((angle) => angle * DEG);
-    const torque = {
-      title: "Drive torque",
-      unit: this.torqueUnit,
-      places: sampled,
-      angles: sampled,
-      driver,
-    };
-    const options = { bold, marks, bounded: !design.turns };
-    this.torque.show({ ...torque, series: [{ label: "T", values: design.torque }] }, options);
   }
 
   // Wanted and generated output of a function, and the error between them.
@@ -113,7 +88,7 @@ class SearchPage {
     const degrees = state.theta2 * DEG;
     this.transmission.mark(degrees, [state.mu * DEG]);
     if (this.torque) this.torque.mark(degrees);
-    tellPosition(this.stage, state);
+    super.moved(state);
   }
 
   // Name and values of the design that is shown.
@@ -149,12 +124,6 @@ class SearchPage {
   }
 
   controls() {
-    for (const name of ["trace", "ghosts", "close"]) {
-      $(`#${name}`).addEventListener("change", (event) => {
-        this.stage[name] = event.target.checked;
-        this.stage.draw();
-      });
-    }
     if (this.loci) {
       $("#loci").addEventListener("change", (event) => {
         this.stage.beside = event.target.checked ? () => drawLoci(this.stage, this.loci) : () => {};
@@ -171,9 +140,10 @@ class SearchPage {
       this.turnTo(within(this.design, this.design.theta2[Number(targets.value)]));
       targets.value = "";
     });
-    const { comparison, player } = this;
-    listenToKeys(this.stage, player);
-    listenOnPage(() => (comparison.root.contains(document.activeElement) ? comparison.player : player));
+  }
+
+  current() {
+    return this.comparison.root.contains(document.activeElement) ? this.comparison.player : this.player;
   }
 
   // The contents of the page as files; the table as listed now, with every digit.

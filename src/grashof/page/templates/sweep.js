@@ -1,8 +1,9 @@
 // The page of a sweep: a table of combinations, and the best design of the one that is chosen.
-class SweepPage {
+class SweepPage extends MovingPage {
   name; designs; scenes; values; columns; axes; measure;
 
   constructor({ name, best, scenes, designs, values, columns, axes, measure }) {
+    super(scenes[0] || {}, { layers: ["trace", "ghosts"] });
     Object.assign(this, { name, scenes, designs, values, columns, axes, measure, chosen: null });
     this.body = $("#combinations tbody");
     this.rows = $$("tr", this.body);
@@ -17,25 +18,6 @@ class SweepPage {
     });
     this.form.addEventListener("input", () => this.filter());
     this.form.addEventListener("submit", (event) => event.preventDefault());
-    this.moves = Boolean($("#player"));
-    const scene = scenes[0] || {};
-    if (this.moves) {
-      this.stage = new Stage($("#stage"), scene, {
-        onDrive: (angle) => this.turnTo(angle),
-        onDraw: (state) => tellPosition(this.stage, state),
-      });
-      this.player = new Player($("#player"), { onMove: (angle) => this.stage.move(angle) });
-      for (const name of ["trace", "ghosts"]) {
-        $(`#${name}`).addEventListener("change", (event) => {
-          this.stage[name] = event.target.checked;
-          this.stage.draw();
-        });
-      }
-      listenToKeys(this.stage, this.player);
-      listenOnPage(() => this.player);
-    } else {
-      this.stage = new Stage($("#stage"), scene);
-    }
     this.tradeoff = this.plotted($("#tradeoff"));
     this.pictures();
     this.filter();
@@ -82,31 +64,12 @@ class SweepPage {
     this.stage.scene = this.scenes[scene];
     this.stage.show(drawing);
     if (!drawing) return;
-    const { low, high, turns, direction, theta2 } = drawing;
-    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
-    tellTravel(this.stage, low, high);
-    this.player.set(theta2[0]);
+    this.travel(drawing);
+    this.player.set(drawing.theta2[0]);
   }
 
-  turnTo(theta2) {
-    this.player.pause();
-    this.player.set(theta2);
-  }
-
-  // By a column, the other way round when it is sorted already; unknown values go last.
   sort(place) {
-    const header = this.headers[place];
-    const now = header.getAttribute("aria-sort");
-    const turned = now === "ascending" ? "descending" : "ascending";
-    const order = now === "none" ? header.dataset.first : turned;
-    for (const each of this.headers) each.setAttribute("aria-sort", each === header ? order : "none");
-    const sign = order === "ascending" ? 1 : -1;
-    const value = (row) => this.values[Number(row.dataset.index)][place];
-    const compared = (a, b) => {
-      if (a === null || b === null) return Number(a === null) - Number(b === null);
-      return sign * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
-    };
-    this.rows.sort((a, b) => compared(value(a), value(b)) || Number(a.dataset.index) - Number(b.dataset.index));
+    sortRows(this.rows, this.headers, this.headers[place], (index) => this.values[index][place]);
     this.body.append(...this.rows);
   }
 

@@ -34,20 +34,8 @@ class DesignTable {
     this.filter();
   }
 
-  // By a header, the other way round when it is sorted already; unknown values go last.
   sort(header) {
-    const rising = header.getAttribute("aria-sort") === "ascending";
-    const first = header.getAttribute("aria-sort") === "none" ? header.dataset.first : null;
-    const order = first || (rising ? "descending" : "ascending");
-    for (const each of this.headers) each.setAttribute("aria-sort", each === header ? order : "none");
-    const sign = order === "ascending" ? 1 : -1;
-    const key = header.dataset.key;
-    const value = (row) => this.design(row).figures[key];
-    const compared = (a, b) => {
-      if (a === null || b === null) return Number(a === null) - Number(b === null);
-      return sign * (typeof a === "string" ? a.localeCompare(b) : a - b);
-    };
-    this.rows.sort((a, b) => compared(value(a), value(b)) || Number(a.dataset.index) - Number(b.dataset.index));
+    sortRows(this.rows, this.headers, header, (index) => this.designs[index].figures[header.dataset.key]);
     this.arrange();
   }
 
@@ -138,6 +126,21 @@ class DesignTable {
       $(".thumb", row).replaceWith(thumbnail(this.design(row)));
     }
   }
+}
+
+// Rows by the value of each index, the other way round when their header is sorted already; unknown values go last.
+function sortRows(rows, headers, header, value) {
+  const now = header.getAttribute("aria-sort");
+  const turned = now === "ascending" ? "descending" : "ascending";
+  const order = now === "none" ? header.dataset.first : turned;
+  for (const each of headers) each.setAttribute("aria-sort", each === header ? order : "none");
+  const sign = order === "ascending" ? 1 : -1;
+  const compared = (a, b) => {
+    if (a === null || b === null) return Number(a === null) - Number(b === null);
+    return sign * (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
+  };
+  const index = (row) => Number(row.dataset.index);
+  rows.sort((a, b) => compared(value(index(a)), value(index(b))) || index(a) - index(b));
 }
 
 function thumbnail(design, width = 66, height = 44) {

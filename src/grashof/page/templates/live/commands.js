@@ -18,16 +18,21 @@ class Commands {
       live.stage.draw();
     });
     on("[name=catalogue]", "change", ({ target }) => target.value && this.open({ catalogue: target.value }));
-    on("[name=problem]", "change", (event) => this.openFile(event.target));
-    on("[name=photo]", "change", (event) => this.openPhoto(event.target));
-    on("[name=drawing]", "change", (event) => this.openDrawing(event.target));
+    const opened = (open) => ({ target }) => {
+      const [file] = target.files;
+      target.value = "";
+      this.closeMenus();
+      if (file) open(file);
+    };
+    on("[name=problem]", "change", opened((file) => this.openFile(file)));
+    on("[name=photo]", "change", opened((file) => this.openPhoto(file)));
+    on("[name=drawing]", "change", opened((file) => this.openDrawing(file)));
     on("[data-distance]", "submit", (event) => this.scale(event));
     this.keys();
   }
 
   keys() {
     const { live } = this;
-    listenToKeys(live.stage, live.player);
     this.root.addEventListener("keydown", (event) => {
       const typing = event.target.closest("input:not([type=checkbox], [type=range]), select");
       if (!(event.ctrlKey || event.metaKey) || typing) return;
@@ -38,7 +43,6 @@ class Commands {
       else return;
       event.preventDefault();
     });
-    listenOnPage(() => (live.comparison && live.comparison.root.contains(document.activeElement) ? live.comparison.player : live.player));
     document.addEventListener("pointerdown", (event) => {
       for (const menu of $$(".menu[open]", this.root)) if (!menu.contains(event.target)) menu.open = false;
     });
@@ -54,17 +58,11 @@ class Commands {
     this.live.open(wanted);
   }
 
-  async openFile(input) {
-    const [file] = input.files;
-    input.value = "";
-    if (file) this.open({ text: await file.text(), name: file.name.replace(/\.toml$/i, "") });
+  async openFile(file) {
+    this.open({ text: await file.text(), name: file.name.replace(/\.toml$/i, "") });
   }
 
-  openPhoto(input) {
-    const [file] = input.files;
-    input.value = "";
-    this.closeMenus();
-    if (!file) return;
+  openPhoto(file) {
     const picture = new Image();
     picture.onload = () => {
       this.live.backdrop.showPhoto(picture.src, picture.naturalWidth, picture.naturalHeight);
@@ -74,11 +72,7 @@ class Commands {
     picture.src = URL.createObjectURL(file);
   }
 
-  async openDrawing(input) {
-    const [file] = input.files;
-    input.value = "";
-    this.closeMenus();
-    if (!file) return;
+  async openDrawing(file) {
     await this.ask("outline", { text: await file.text() }, ({ polylines }) => {
       this.live.backdrop.showLines(polylines);
       this.scalable();

@@ -3,19 +3,15 @@ const REST = 120; // ms without a change after which a search begins
 const OTHERS = 10; // designs whose paths are drawn beside the chosen one
 const AGAIN = 2000; // ms after which a server that does not answer is asked again
 
-class Live {
+class Live extends MovingPage {
   transport; root; version; lost; preferred; transmission; velocity; torque; columns;
 
   constructor(root, transport) {
+    super({}, { root });
     Object.assign(this, { root, transport, designs: [], chosen: null, preferred: null, version: 0, listed: null, busy: null, lost: [] });
     Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });
     this.task = new Task({ onChange: (what) => this.changed(what) });
-    this.stage = new Stage($("#stage", root), {}, {
-      onDrive: (theta2) => this.turnTo(theta2),
-      onDraw: (state) => this.moved(state),
-    });
     this.stage.beside = () => this.paths();
-    this.player = new Player($("#player", root), { onMove: (theta2) => this.stage.move(theta2) });
     this.handles = new Handles(this.stage, this.task, { onMode: (mode) => this.showMode(mode) });
     this.backdrop = new Backdrop(this.stage);
     this.stage.behind = this.backdrop;
@@ -214,35 +210,15 @@ class Live {
     this.listing.mark(key);
   }
 
-  travel({ low, high, turns, direction }) {
-    this.player.travel({ low, high, wraps: turns, sense: direction, step: 1 / DEG });
-    tellTravel(this.stage, low, high);
-  }
-
-  turnTo(theta2) {
-    this.player.pause();
-    this.player.set(theta2);
-  }
-
   curves(design) {
-    const { angles } = travelPath(design);
     $("#transmission", this.root).hidden = false;
     $("#velocity", this.root).hidden = !this.task.list; // P has no meaning for functions and strokes
-    const places = angles.map((angle) => angle * DEG);
-    const marks = design.theta2.map((angle) => within(design, angle) * DEG);
-    const whole = this.stage.scene.closed || !design.task;
-    const bold = whole ? null : partsOfTask(design);
-    const over = { places, angles: places };
-    const states = angles.map((angle) => positionOf(design.linkage, angle));
-    const mu = states.map((state) => state.mu * DEG);
-    this.transmission.show({ title: "Transmission angle", unit: "deg", limits: [0, 90], ...over, series: [{ label: "μ", values: mu }] }, { bold, marks });
+    $("#torque", this.root).hidden = !design.torque;
+    const { places, states, options } = showTravel(design, this.stage.scene.closed, this.transmission, this.torque);
     const speeds = states.map((state) => pointSpeed(design.linkage, state));
     const unit = this.stage.scene.unit ? `${this.stage.scene.unit}/rad` : "per rad";
-    this.velocity.show({ title: "Velocity of P per driver speed", unit, ...over, series: [{ label: "v", values: speeds }] }, { bold, marks, bounded: !design.turns, scaled: true });
-    $("#torque", this.root).hidden = !design.torque;
-    if (!design.torque) return;
-    const sampled = travelAngles(design).map((angle) => angle * DEG);
-    this.torque.show({ title: "Drive torque", unit: "N m", places: sampled, angles: sampled, series: [{ label: "T", values: design.torque }] }, { bold, marks, bounded: !design.turns });
+    const panel = { title: "Velocity of P per driver speed", unit, places, angles: places };
+    this.velocity.show({ ...panel, series: [{ label: "v", values: speeds }] }, { ...options, scaled: true });
   }
 
   moved(state) {
@@ -250,7 +226,12 @@ class Live {
     this.transmission.mark(degrees, [state.mu * DEG]);
     this.velocity.mark(degrees, [pointSpeed(this.design.linkage, state)]);
     if (this.design.torque) this.torque.mark(degrees);
-    tellPosition(this.stage, state);
+    super.moved(state);
+  }
+
+  current() {
+    const { comparison } = this;
+    return comparison && comparison.root.contains(document.activeElement) ? comparison.player : this.player;
   }
 
   // The paths of the other designs, in the colours of their rows.
