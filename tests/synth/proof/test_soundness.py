@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from luggage_limits import STAIRS, luggage, with_links
-from piece_descent import JUST_BELOW, Descent, descent
+from piece_descent import JUST_BELOW, Descent, descent, of_table
+from proof_problems import STAIRS, luggage, planted, random_poses, with_links
 
 from grashof import load
-from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import Box, MotionTask, Problem, Requirements
+from grashof.problems import Box, Problem
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
 from grashof.synth.proof.curve.required import Required
 from grashof.synth.proof.curve.table import Table
@@ -17,13 +16,6 @@ from grashof.synth.proof.poses.pairs import rows_left
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs, screen
 from grashof.synth.theory.burmester import Dyads, polish, trace_four_pose_curves
-
-
-def random_poses(seed: int, **requirements: object) -> Problem:
-    rng = np.random.default_rng(seed)
-    poses = np.column_stack([rng.uniform(0, 1, (4, 2)), rng.uniform(-180, 180, 4)])
-    return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
-
 
 WITHIN = {"o2": Box((-4, 4), (-5, 5)), "b": Box((-3, 9), (-8, 8)), "a_on_body": Box((-6, 6), (-6, 6))}
 TURNED = {"driver_sense": "ccw", "driver_rotation_deg": (20, 120), "ground_angle_deg": (-60, 90)}
@@ -70,13 +62,16 @@ def followed(problem: Problem, designs: Designs, levels: int = 8) -> Descent:
     """Follow designs down halves of pieces, each with its own transmission angle as the threshold."""
     required = Required.of(ScaledProblem.of(problem))
     table = Table.covering(required)
-    roles = table.pieces.driver, table.pieces.driven
-    dyads = [(roles[0], designs.a, designs.o2), (roles[1], designs.b, designs.o4)]
+    slack = (1e-9, 1e-13, 1e-12)
+    sides = [
+        of_table(table, table.pieces.driver, designs.a, designs.o2, slack),
+        of_table(table, table.pieces.driven, designs.b, designs.o4, slack),
+    ]
 
     def left(pieces: list[IntArray], least: FloatArray) -> tuple[IntArray, FloatArray]:
         return rows_left(required, table.pieces, *pieces, least)
 
-    return descent(table, dyads, designs.transmission, left, levels, (1e-9, 1e-13, 1e-12))
+    return descent(sides, designs.transmission, left, levels)
 
 
 CASES = {
@@ -89,19 +84,14 @@ CASES = {
     "boxes": luggage(**WITHIN),
     "areas kept out": with_links(8, rotatability="any", keep_out=(STAIRS,)),
     "sense, rotation, ground angle": luggage(**TURNED),
-    **{f"random {seed}": random_poses(seed, rotatability="any") for seed in (104, 105)},
+    **{f"random {seed}": random_poses(seed, 4, rotatability="any") for seed in (104, 105)},
     **{
-        f"any order, random {seed}": random_poses(seed, rotatability="any", order=False)
+        f"any order, random {seed}": random_poses(seed, 4, rotatability="any", order=False)
         for seed in (100, 102)
     },
-    "planted": Problem(task=planted_motion(np.random.default_rng(2), poses=4)[0]),
-    "planted, over the turn": Problem(
-        task=planted_motion(np.random.default_rng(4), poses=4)[0],
-        requirements=Requirements(transmission_over="cycle"),
-    ),
+    "planted": planted(2),
+    "planted, over the turn": planted(4, transmission_over="cycle"),
 }
-
-
 REPEATING = {"planted", "luggage", "boxes", "random 105", "any order", "any order, random 102"}
 
 
@@ -128,8 +118,7 @@ def outside_the_arc(designs: Designs, rotation: complex, shift: complex) -> Floa
 @pytest.mark.parametrize("seed", [2, 6, 8])
 def test_no_linkage_is_lost_that_ends_its_motion_near_the_ground_line(seed: int) -> None:
     # Where A almost passes the ground line, its transmission angle there must not count.
-    task = planted_motion(np.random.default_rng(seed), poses=4)[0]
-    problem = Problem(task=task, requirements=Requirements(rotatability="any"))
+    problem = planted(seed, rotatability="any")
     curve = Required.of(ScaledProblem.of(problem)).curve
     designs = feasible_designs(problem, 40_000)
     off = outside_the_arc(designs, complex(curve.rotation[-1]), complex(curve.shift[-1]))
@@ -150,8 +139,7 @@ def least_area(designs: Designs, problem: Problem) -> FloatArray:
 @pytest.mark.quick("0")
 @pytest.mark.parametrize("seed", [0, 3, 7])
 def test_no_linkage_is_lost_whose_driver_hardly_moves_between_two_poses(seed: int) -> None:
-    task = planted_motion(np.random.default_rng(seed), poses=4)[0]
-    problem = Problem(task=task, requirements=Requirements(rotatability="any"))
+    problem = planted(seed, rotatability="any")
     designs = feasible_designs(problem, 40_000)
     area = least_area(designs, problem)
     assert np.sort(area)[200] < 1e-2

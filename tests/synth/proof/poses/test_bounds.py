@@ -5,8 +5,7 @@ from itertools import count
 
 import numpy as np
 import pytest
-from luggage_limits import STAIRS, luggage, with_links
-from planted_limits import planted_limits
+from proof_problems import STAIRS, TRANSLATIONS, luggage, planted_limits, rotation, with_links
 
 from grashof import load
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, ProblemError, Requirements
@@ -97,8 +96,8 @@ def test_none_is_proven_where_a_length_is_out_of_reach() -> None:
     assert np.degrees(made.upper) == pytest.approx(0.01)
 
 
-@pytest.mark.parametrize("at_least", [27.35])
-def test_more_than_the_best_is_proven_to_be_impossible(at_least: float) -> None:
+def test_more_than_the_best_is_proven_to_be_impossible() -> None:
+    at_least = 27.35
     demanded = prove(luggage(transmission_min_deg=at_least))
     for proof in (prove(load("luggage"), at_least=at_least), demanded):
         assert (proof.claim, proof.complete, proof.lower) == (Claim.NONE, True, None)
@@ -140,15 +139,11 @@ def test_requirements_without_a_form_leave_a_bound() -> None:
     assert own.upper == pytest.approx(27.34, abs=0.01)
 
 
-ROTATION = MotionTask.from_degrees([(np.cos(t), np.sin(t), np.degrees(t)) for t in (0.0, 0.4, 0.9, 1.7)])
-TRANSLATIONS = MotionTask.from_degrees([(0, 0, 0), (1, 0, 0), (2, 1, 0), (1, 3, 0)])
-
-
-@pytest.mark.parametrize("task", [ROTATION, TRANSLATIONS], ids=["rotation", "translations"])
-def test_a_plane_of_dyads_is_refused(task: MotionTask) -> None:
-    made = bounds(Problem(task=task))
-    assert made.refused
-    assert "plane of dyads" in made.why
+def test_a_plane_of_dyads_is_refused() -> None:
+    for task in (rotation(0.0, 0.4, 0.9, 1.7), MotionTask.from_degrees(TRANSLATIONS)):
+        made = bounds(Problem(task=task))
+        assert made.refused
+        assert "plane of dyads" in made.why
 
 
 def test_other_objectives_and_tasks_are_refused_in_words() -> None:
@@ -173,14 +168,11 @@ def test_an_angle_or_a_gap_that_cannot_be_is_refused(name: str, value: float) ->
         prove(load("luggage"), **{name: value})
 
 
-@pytest.mark.parametrize("scale", [1e6])
-def test_scale_and_place_change_nothing(scale: float) -> None:
-    task = load("luggage").task
-    assert isinstance(task, MotionTask)
-    rows = np.column_stack([task.positions * scale + 3 * scale, np.degrees(task.angles)])
+def test_scale_and_place_change_nothing() -> None:
+    task, scale = load("luggage").task, 1e6
     lengths = (0.3 * scale, 8 * scale)
     far = Problem(
-        task=MotionTask.from_degrees(rows),
+        task=MotionTask(task.positions * scale + 3 * scale, task.angles),
         requirements=Requirements(link_length=lengths, coupler_arms=lengths),
     )
     made = bounds(far)

@@ -5,9 +5,9 @@ from itertools import count
 
 import numpy as np
 import pytest
-from planted_limits import planted_limits
+from proof_problems import TRANSLATIONS, bonnet, of_three, planted_limits, rotation, with_links
 
-from grashof import load, synthesize
+from grashof import synthesize
 from grashof.problems import Box, FourBar, MotionTask, Objective, Problem, Requirements
 from grashof.synth import Claim, prove
 from grashof.synth.proof.claims.bounds import Bounds, Proving
@@ -16,17 +16,8 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import stopping
 from grashof.wording.proof import bound_line
 
-BRACKET, PLATE = Box((-60, 350), (-260, -60)), Box((0, 350), (-100, -10))
 WALL, INSIDE = Box((-1.2, -0.06), (0.3, 2.1)), Box((-1.0, 1.0), (0.04, 0.2))
 BEST = 53.3964  # deg, of the bonnet, by the search
-
-
-def bonnet(**requirements: object) -> Problem:
-    """The gallery's bonnet hinge."""
-    limits = {"o2": BRACKET, "o4": BRACKET, "a_on_body": PLATE, "b_on_body": PLATE}
-    wanted = {"rotatability": "any", "link_length": (60, 260), **limits, **requirements}
-    task = MotionTask.from_degrees([[0, 0, 0], [20, 33, 10], [76, 10, 50]])
-    return Problem(length_unit="mm", task=task, requirements=Requirements(**wanted))  # type: ignore[arg-type]
 
 
 def garage_door() -> Problem:
@@ -39,19 +30,9 @@ def garage_door() -> Problem:
     )
 
 
-def luggage() -> Problem:
+def three_of_luggage() -> Problem:
     """Poses 1, 2 and 4 of the luggage task, with practical limits."""
-    problem = load("luggage")
-    poses = np.column_stack([problem.task.positions, np.degrees(problem.task.angles)])[[0, 1, 3]]
-    wanted = replace(
-        problem.requirements,
-        transmission_min_deg=0.0,
-        transmission_over="cycle",
-        link_length=(1, 5),
-        coupler_arms=(0.5, 5),
-        link_ratio_max=8.0,
-    )
-    return replace(problem, task=MotionTask.from_degrees(poses), requirements=wanted)
+    return of_three(with_links(5, 1, coupler_arms=(0.5, 5), link_ratio_max=8.0, transmission_over="cycle"))
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +52,7 @@ def bounds(problem: Problem, **options: float) -> Bounds:
 @pytest.mark.parametrize("name", ["bonnet", "garage door", "luggage"])
 def test_bounds_close_about_the_best_known(name: str, of_bonnet: Bounds) -> None:
     gap, best = {"bonnet": (0.1, BEST), "garage door": (0.1, 79.353), "luggage": (1.0, 25.99)}[name]
-    others = {"garage door": garage_door, "luggage": luggage}
+    others = {"garage door": garage_door, "luggage": three_of_luggage}
     made = bounds(others[name](), gap=gap) if name in others else of_bonnet
     lower, upper = np.degrees(made.lower), np.degrees(made.upper)
     assert made.closed
@@ -186,15 +167,11 @@ def test_a_list_and_its_bound_agree() -> None:
     assert synthesize(bonnet(), enough=5).proof is None
 
 
-ROTATION = MotionTask.from_degrees([(np.cos(t), np.sin(t), np.degrees(t)) for t in (0.0, 0.4, 1.7)])
-TRANSLATIONS = MotionTask.from_degrees([(0, 0, 0), (1, 0, 0), (2, 1, 0)])
-
-
 @pytest.mark.parametrize(
     ("problem", "why"),
     [
-        (Problem(task=ROTATION), "the poses are a rotation about one point"),
-        (Problem(task=TRANSLATIONS), "the poses are translations"),
+        (Problem(task=rotation(0.0, 0.4, 1.7)), "the poses are a rotation about one point"),
+        (Problem(task=MotionTask.from_degrees(TRANSLATIONS[:3])), "the poses are translations"),
         (
             replace(bonnet(), objective=Objective(transmission=1.0, compactness=0.2)),
             "the objective has no forms; transmission alone has",
