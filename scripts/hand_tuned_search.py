@@ -11,7 +11,7 @@ every other.
 
 import argparse
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -91,10 +91,10 @@ class Tried:
     verdict: Verdict
 
 
-def improved(task: Task, guess: Sequence[float]) -> Dyad:
-    """A dyad from a guess, its turns in deg: least root of the sum of squares of its closure residuals.
+def residual_of(task: Task) -> Callable[[FloatArray], float]:
+    """The root of the sum of squares, a length, of the gaps of a dyad (W_x, W_y, Z_x, Z_y, turns in rad).
 
-    At each pose W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1; as in the report without derivatives.
+    At each pose W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1.
     """
     place = task.positions @ np.array([1, 1j])
     way, body = place[1:] - place[0], np.exp(1j * (task.angles[1:] - task.angles[0])) - 1
@@ -103,8 +103,13 @@ def improved(task: Task, guess: Sequence[float]) -> Dyad:
         open_by = complex(x[0], x[1]) * (np.exp(1j * x[4:]) - 1) + complex(x[2], x[3]) * body - way
         return float(np.sqrt((np.abs(open_by) ** 2).sum()))
 
+    return gap
+
+
+def improved(task: Task, guess: Sequence[float]) -> Dyad:
+    """A dyad of least residual from a guess, its turns in deg; as in the report without derivatives."""
     start = np.concatenate([guess[:4], np.radians(guess[4:])])
-    found = minimize(gap, start, method="BFGS")
+    found = minimize(residual_of(task), start, method="BFGS")
     x = found.x
     return Dyad(complex(x[0], x[1]), complex(x[2], x[3]), tuple(x[4:].tolist()), float(found.fun))
 
