@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from independent_search import elbow
 
 from grashof.problems import Box, FourBar, Problem, Requirements, Task
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 
-TURN = 2 * np.pi
 STEP = 1e-3  # rad, between two targets
 
 
@@ -93,7 +93,7 @@ class CouplerFormulation:
     def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
         """Of positions, and of angles times the task's length."""
         a = self.a(x, choice)
-        theta3 = np.angle(_elbow(complex(*x[2:4]) - a, x[5], x[6], choice.assembly))
+        theta3 = np.angle(elbow(complex(*x[2:4]) - a, x[5], x[6], choice.assembly))
         p = a + complex(*x[7:9]) * np.exp(1j * theta3)
         errors = [(p - self.task.positions @ np.array([1, 1j])).view(np.float64)]
         if self.task.has_angle.any():
@@ -160,7 +160,7 @@ class FunctionFormulation:
         """Of the output angle at every pair, rad."""
         r2, r3, r4 = x[:3]
         a = r2 * np.exp(1j * (x[3] + choice.way * self.task.driver_turns))
-        theta4 = np.angle(_elbow(a - 1, r4, r3, -choice.assembly))
+        theta4 = np.angle(elbow(a - 1, r4, r3, -choice.assembly))
         sense = choice.turning if self.task.sense == "either" else 1.0
         found: FloatArray = 2 * np.sin((theta4 - x[4] - choice.way * sense * self.task.outputs) / 2)
         return found
@@ -179,17 +179,6 @@ class FunctionFormulation:
 
 
 Formulation = CouplerFormulation | FunctionFormulation
-
-
-def _elbow(way: ComplexArray, near: float, far: float, side: float) -> ComplexArray:  # closure: RRR
-    """To the point `near` from the start and `far` from the end of a way, left of it where `side` is 1.
-
-    Where there is none, along the way.
-    """
-    d = np.abs(way) + 1e-12
-    along = (near**2 - far**2 + d**2) / (2 * d)
-    found: ComplexArray = way / d * (along + 1j * side * np.sqrt(np.maximum(near**2 - along**2, 0)))
-    return found
 
 
 def _transmission(square: FloatArray, r3: float, r4: float, wanted: Requirements) -> FloatArray:
