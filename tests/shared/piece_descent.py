@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.synth.proof.curve.table import Table
+from grashof.synth.theory.burmester import Dyads
 
 JUST_BELOW = 1e-7  # rad
 NOWHERE = -1
@@ -14,6 +15,21 @@ NOWHERE = -1
 Slack = tuple[float, float, float]
 # Which of some pairs of pieces may hold a design that transmits more than given angles, and their bounds.
 RowsLeft = Callable[[list[IntArray], FloatArray], tuple[IntArray, FloatArray]]
+
+
+@dataclass(frozen=True)
+class Designs:
+    """Dyads of linkages in the frame of a proof, and the transmission angle that counts, rad."""
+
+    driver: Dyads
+    driven: Dyads
+    transmission: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.driver)
+
+    def __getitem__(self, index: IntArray | BoolArray) -> "Designs":
+        return Designs(self.driver[index], self.driven[index], self.transmission[index])
 
 
 @dataclass(frozen=True)
@@ -44,8 +60,9 @@ class Side:
         return found
 
 
-def of_table(table: Table, role: BoolArray, z: ComplexArray, c: ComplexArray, slack: Slack) -> Side:
-    """Dyads, moving points and centres, and the pieces of a table: by the definition of tubes alone."""
+def of_table(table: Table, role: BoolArray, dyads: Dyads, slack: Slack) -> Side:
+    """Dyads and the pieces of a table that may hold them: by the definition of tubes alone."""
+    z, c = dyads.moving, dyads.ground
 
     def holds(which: IntArray, designs: IntArray) -> BoolArray:
         tubes, centres = table.pieces.tubes[which], table.pieces.centres[which]

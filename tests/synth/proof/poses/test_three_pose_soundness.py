@@ -1,10 +1,8 @@
 """Three poses: linkages that meet a problem are in its tiles, and no bound is below what they transmit."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
-from piece_descent import JUST_BELOW, Side, descent
+from piece_descent import JUST_BELOW, Designs, Side, descent
 from proof_problems import bonnet, of_three, planted, random_poses, with_links
 
 from grashof.problems import Box, MotionTask, Problem, Requirements
@@ -47,21 +45,6 @@ CASES = {
     ),
     "planted": planted(2, 3),
 }
-
-
-@dataclass(frozen=True)
-class Designs:
-    """Dyads of linkages in the frame of a proof, and the transmission angle that counts, rad."""
-
-    driver: Dyads
-    driven: Dyads
-    transmission: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.driver)
-
-    def __getitem__(self, index: IntArray | BoolArray) -> "Designs":
-        return Designs(self.driver[index], self.driven[index], self.transmission[index])
 
 
 def some_dyads(charts: Charts, reach: float, count: int, rng: np.random.Generator) -> Dyads:
