@@ -5,6 +5,7 @@ not installed is left out.
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
 from statistics import median
 from typing import Any
@@ -84,14 +85,19 @@ def many_linkages(count: int, seed: int, angles: int = 64) -> Iterator[str]:
     yield f"{count} linkages at {angles} angles in {seconds:.2f} s, {each:.0f} ns each"
 
 
-def against_pylinkage(count: int, seed: int) -> Iterator[str]:
-    """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
+def against(package: str, compared: Callable[[Any, int], str], count: int, seed: int) -> Iterator[str]:
+    """A comparison with another package, where it is installed."""
     del seed
     try:
-        conversion: Any = import_module("pylinkage.synthesis.conversion")
+        module = import_module(package)
     except ModuleNotFoundError:
         yield "not installed"
         return
+    yield compared(module, count)
+
+
+def with_pylinkage(conversion: Any, count: int) -> str:
+    """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
     r1, r2, r3, r4 = map(float, NORTON.lengths)
     made = conversion.fourbar_from_lengths(r2, r3, r4, r1, iterations=count)
     made.set_input_velocity(made._cranks[0], omega=2.0)
@@ -108,20 +114,14 @@ def against_pylinkage(count: int, seed: int) -> Iterator[str]:
         lambda: made.step_fast_with_kinematics(count),
         lambda: (state := solve_kinematics(NORTON, theta2, 2.0), state.a, state.b),
     )
-    yield (
+    return (
         f"{joints:.1f} ms for joints, {rates:.1f} ms with velocities and accelerations, "
         f"against {ours:.1f} ms; B differs by {apart / r1:.0e} of r1"
     )
 
 
-def against_mujoco(count: int, seed: int) -> Iterator[str]:
+def with_mujoco(mujoco: Any, count: int) -> str:
     """Steps of MuJoCo with the model that `grashof export` writes, against inverse dynamics."""
-    del seed
-    try:
-        mujoco: Any = import_module("mujoco")
-    except ModuleNotFoundError:
-        yield "not installed"
-        return
     spec = DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81), speed_rpm=60 / np.pi)
     model = Model.of(LinkageSpec(NORTON, "norton", length_unit="mm", dynamics=spec))
     made = mujoco.MjModel.from_xml_string(mjcf(model))
@@ -138,7 +138,7 @@ def against_mujoco(count: int, seed: int) -> Iterator[str]:
         lambda: mujoco.mj_step(made, data, count),
         lambda: inverse_dynamics(solve_kinematics(NORTON, theta2, 2.0), masses, loads),
     )
-    yield (
+    return (
         f"{steps:.0f} ms for {count} steps, {steps / ours:.0f} times kinematics and inverse dynamics at as "
         f"many angles ({ours:.0f} ms); its coupler angle differs by {worst:.0e} rad"
     )
@@ -147,6 +147,6 @@ def against_mujoco(count: int, seed: int) -> Iterator[str]:
 CASES = [
     Case("one linkage", ANGLES, many_angles),
     Case("many linkages", ANGLES, many_linkages),
-    Case("pylinkage with numba", ANGLES, against_pylinkage),
-    Case("MuJoCo", ANGLES, against_mujoco),
+    Case("pylinkage with numba", ANGLES, partial(against, "pylinkage.synthesis.conversion", with_pylinkage)),
+    Case("MuJoCo", ANGLES, partial(against, "mujoco", with_mujoco)),
 ]
