@@ -23,7 +23,7 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 STARTS, POLISHED = 800, 40
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
-HAIR = 1e-12  # sizes, by which the distance from A to O4 is never zero
+HAIR = 1e-12  # added to the length of a line, which may be zero
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
 

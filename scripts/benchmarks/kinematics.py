@@ -35,14 +35,14 @@ def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:  # closure: RRR
     theta4 = np.arctan2(r3 * sin3 - y, r3 * cos3 - x)
     cos4, sin4 = np.cos(theta4), np.sin(theta4)
     determinant = r3 * r4 * (sin3 * cos4 - cos3 * sin4)
-    right_x, right_y = r2 * omega2 * sin2, -r2 * omega2 * cos2
-    omega3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
-    omega4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
+
+    def solved(x: Array, y: Array) -> tuple[Array, Array]:
+        return (-x * r4 * cos4 - y * r4 * sin4) / determinant, (-y * r3 * sin3 - x * r3 * cos3) / determinant
+
+    omega3, omega4 = solved(r2 * omega2 * sin2, -r2 * omega2 * cos2)
     right_x = r2 * omega2**2 * cos2 + r3 * omega3**2 * cos3 - r4 * omega4**2 * cos4
     right_y = r2 * omega2**2 * sin2 + r3 * omega3**2 * sin3 - r4 * omega4**2 * sin4
-    alpha3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
-    alpha4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
-    return theta3, theta4, omega3, omega4, alpha3, alpha4
+    return theta3, theta4, omega3, omega4, *solved(right_x, right_y)
 
 
 def milliseconds(*functions: Callable[[], object]) -> list[float]:
