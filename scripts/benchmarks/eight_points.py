@@ -75,14 +75,20 @@ def arrived(kind: str, points: ComplexArray, rng: np.random.Generator) -> int:
     return len(family.distinct(ends[determined]))
 
 
+def measure(kind: str, number: int) -> tuple[Through[Any], float, float]:
+    """Linkages through planted points, the seconds taken, and the distance to the planted linkage."""
+    points, planted = planted_points(kind, np.random.default_rng([8, number]))
+    through, took = timed(lambda: THROUGH[kind](points, np.random.default_rng(number)), process_time)
+    return through, took, missed(planted, through)
+
+
 def all_through(kind: str, count: int, seed: int) -> Iterator[str]:
     """Paths that arrive and linkages found for each task, and whether the planted one is among them."""
     seconds, recovered = [], 0
     for number in range(seed, seed + count):
-        points, planted = planted_points(kind, np.random.default_rng([8, number]))
+        points, _ = planted_points(kind, np.random.default_rng([8, number]))
         paths = arrived(kind, points, np.random.default_rng([9, number]))
-        through, took = timed(partial(THROUGH[kind], points, np.random.default_rng(number)), process_time)
-        gap = missed(planted, through)
+        through, took, gap = measure(kind, number)
         seconds.append(took)
         recovered += gap < 1e-6
         yield (
