@@ -62,8 +62,6 @@ ASKED = (
 )
 FINDINGS = (TRACEBACK, HANG, WRONG, UNCLEAR)
 COUNTED = ("files", "refused", "accepted", "searched", "designs judged", "reports", *FINDINGS)
-
-
 Work = Callable[[], bool]
 
 
@@ -90,7 +88,7 @@ def examine(path: Path, kind: Kind, figures: Counter[str], work: Work) -> Findin
         return found
     except TooLongError:
         return Finding(HANG, traceback.format_exc())
-    except Exception:  # noqa: BLE001  (findings)
+    except Exception:  # noqa: BLE001  (any other error is a finding)
         return Finding(TRACEBACK, traceback.format_exc())
     return None
 

@@ -11,7 +11,7 @@ every other.
 
 import argparse
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -21,23 +21,18 @@ from rich.table import Table
 from scipy.optimize import minimize
 
 from grashof import load, synthesize
-from grashof.analysis import (
-    Verdict,
-    driver_ranges,
-    full_rotation,
-    rotatability,
-    verify,
-    worst_transmission,
-    worst_transmission_cycle,
-)
-from grashof.problems import FourBar, Problem, Rotatability, Task
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+from grashof.analysis import Verdict, verify
+from grashof.problems import FourBar, Problem, Requirements, Rotatability, Task, TransmissionOver
+from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.synth.starts import dyad_pairs
+from grashof.synth.theory.burmester import Displacements, Dyads
 
 STARTS, JUDGED, RESAMPLED = 600, 100, 1000
 TOLERANCE = 1e-5  # of the size of the task: a quasi-Newton method ends at some 1e-6 of a root of squares
 REACH, TURNED = 6.0, 300.0  # ranges of random guesses, m and deg: those of the report
 APART = 1e-3  # of the size: closer dyads count as one
 GOOD = 30.0  # deg: the transmission angle that textbooks require
+GREAT = 1e6  # m, or a ratio of links: no limit
 
 
 class Guess(NamedTuple):
@@ -96,10 +91,10 @@ class Tried:
     verdict: Verdict
 
 
-def improved(task: Task, guess: Sequence[float]) -> Dyad:
-    """A dyad from a guess, its turns in deg: least root of the sum of squares of its closure residuals.
+def residual_of(task: Task) -> Callable[[FloatArray], float]:
+    """The root of the sum of squares, a length, of the gaps of a dyad (W_x, W_y, Z_x, Z_y, turns in rad).
 
-    At each pose W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1; as in the report without derivatives.
+    At each pose W (e^(i beta) - 1) + Z (e^(i alpha) - 1) = P - P1.
     """
     place = task.positions @ np.array([1, 1j])
     way, body = place[1:] - place[0], np.exp(1j * (task.angles[1:] - task.angles[0])) - 1
@@ -108,8 +103,13 @@ def improved(task: Task, guess: Sequence[float]) -> Dyad:
         open_by = complex(x[0], x[1]) * (np.exp(1j * x[4:]) - 1) + complex(x[2], x[3]) * body - way
         return float(np.sqrt((np.abs(open_by) ** 2).sum()))
 
+    return gap
+
+
+def improved(task: Task, guess: Sequence[float]) -> Dyad:
+    """A dyad of least residual from a guess, its turns in deg; as in the report without derivatives."""
     start = np.concatenate([guess[:4], np.radians(guess[4:])])
-    found = minimize(gap, start, method="BFGS")
+    found = minimize(residual_of(task), start, method="BFGS")
     x = found.x
     return Dyad(complex(x[0], x[1]), complex(x[2], x[3]), tuple(x[4:].tolist()), float(found.fun))
 
@@ -178,61 +178,28 @@ class Pairs:
 
 
 def judged_pairs(problem: Problem, dyads: Sequence[Dyad]) -> Pairs:
-    """The properties of all pairs at once; `verify` agrees on each by itself."""
-    task, wanted = problem.task, problem.requirements.resolved(problem.task.size)
-    link, arm = (np.array([getattr(dyad, name) for dyad in dyads]) for name in ("link", "arm"))
-    turns = np.array([(0.0, *dyad.turns) for dyad in dyads])
-    closed = np.array([dyad.residual for dyad in dyads]) <= TOLERANCE * task.size
-    bar = arm[:, None] - arm  # from A to B in the first pose
-    exact = closed[:, None] & closed & (np.abs(bar) > APART * task.size)
+    """The properties of all pairs at once, as the search screens them; `verify` agrees on each by itself."""
+    task, size = problem.task, problem.task.size
+    place = task.positions @ np.array([1, 1j])
+    motion = Displacements.from_poses(place, task.angles)
+    moving = place[0] - np.array([dyad.arm for dyad in dyads])
+    every = Dyads(moving, moving - np.array([dyad.link for dyad in dyads]))
+    closed = np.array([dyad.residual for dyad in dyads]) <= TOLERANCE * size
+    exact = closed[:, None] & closed & (np.abs(moving[:, None] - moving) > APART * size)
     row, column = np.nonzero(exact)
-    first = complex(*task.positions[0])
-    o2, o4 = (first - arm[each] - link[each] for each in (row, column))
-    batch = FourBar(
-        np.stack([o2.real, o2.imag], -1), np.stack([o4.real, o4.imag], -1),
-        np.abs(link[row]), np.abs(bar[row, column]), np.abs(link[column]),
+    in_order = Requirements(
+        rotatability=Rotatability.ANY, rotatability_margin=0, link_ratio_max=GREAT,
+        r1=(APART * size, GREAT), link_length=(0, GREAT), coupler_arms=(0, GREAT),
     )  # fmt: skip
-    theta2 = np.angle(link[row])[:, None] + turns[row]
-    theta3 = np.angle(bar[row, column])[:, None] + task.angles - task.angles[0]
-    sines = np.sin(np.angle(link[column])[:, None] + turns[column] - theta3)
-    one_branch = ((sines > 0).all(axis=1) | (sines < 0).all(axis=1)) & (batch.r1 > APART * task.size)
-    turning, (round_once, end) = full_rotation(batch), _once_round(theta2)
-    in_order = one_branch & np.where(turning, round_once, _one_way(batch, theta2))
-    crank_rocker = in_order & turning & (np.argmin(batch.lengths, axis=-1) == 1)
-    good = crank_rocker & (worst_transmission_cycle(batch) >= np.radians(GOOD))
-    least, most = np.transpose(wanted.link_lengths)
-    made = ((batch.lengths >= least) & (batch.lengths <= most)).all(axis=-1)
-    made &= (rotatability(batch) >= wanted.rotatability_margin).all(axis=-1)
-    shortest, longest = wanted.coupler_arms or (0.0, np.inf)
-    for each in (row, column):
-        made &= (np.abs(arm[each]) >= shortest) & (np.abs(arm[each]) <= longest)
-    mu = worst_transmission(batch, theta2[:, 0], end)
-    usable = in_order & turning & made & (mu >= np.radians(wanted.transmission_min_deg))
-    return Pairs(exact, *(_spread(exact, each) for each in (in_order, crank_rocker, usable, good)))
-
-
-def _once_round(theta2: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Whether driver angles, shape (B, N), follow in either sense within one turn; the last so counted on."""
-    ways = [sense * (sense * np.diff(theta2, axis=1) % TURN).sum(axis=1) for sense in (1, -1)]
-    shorter = np.where(np.abs(ways[0]) <= np.abs(ways[1]), *ways)
-    return np.abs(shorter) < TURN, theta2[:, 0] + shorter
-
-
-def _one_way(batch: FourBar, theta2: FloatArray) -> BoolArray:
-    """The same of drivers that swing, where they are all in one range."""
-    found = np.zeros(len(theta2), dtype=bool)
-    for low, high in np.moveaxis(driver_ranges(batch), (-2, -1), (0, 1)):
-        inside = low[:, None] + (theta2 - low[:, None]) % TURN
-        step = np.diff(inside, axis=1)
-        held = (inside <= high[:, None] + 1e-9).all(axis=1)
-        found |= held & ((step > 0).all(axis=1) | (step < 0).all(axis=1))
-    return found
-
-
-def _spread(exact: BoolArray, values: BoolArray) -> BoolArray:
-    every = np.zeros(exact.shape, dtype=bool)
-    every[exact] = values
-    return every
+    crank_rocker = replace(in_order, rotatability=Rotatability.CRANK_ROCKER)
+    good = replace(crank_rocker, transmission_over=TransmissionOver.CYCLE, transmission_min_deg=GOOD)
+    held = []
+    for wanted in (in_order, crank_rocker, problem.requirements, good):
+        held.append(np.zeros_like(exact))
+        held[-1][exact] = dyad_pairs.judged_pairs(
+            motion, place[0], every[row], every[column], wanted.resolved(size)
+        ).feasible
+    return Pairs(exact, *held)
 
 
 def share(every: BoolArray, seed: int = 0) -> tuple[float, float, float]:

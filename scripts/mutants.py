@@ -136,7 +136,8 @@ class Mutator:
         document, done = copy.deepcopy(seed.document), []
         for _ in range(self.rng.choice((1, 1, 1, 2, 2, 3, 5))):
             way = self.rng.choices([way for _, way in self._ways], [weight for weight, _ in self._ways])[0]
-            way(document)
+            if document:
+                way(document)
             done.append(way.__name__.lstrip("_"))
         text = _json_text(document) if seed.kind == "list" else toml_text(document)
         content = text.encode("utf-8", "surrogatepass")
@@ -145,11 +146,9 @@ class Mutator:
             done.append("damaged")
         return Mutant(seed.kind, content, tuple(done))
 
-    def _place(self, document: dict[str, Any], *, deep: float = 0.75) -> tuple[Any, Any] | None:
+    def _place(self, document: dict[str, Any], *, deep: float = 0.75) -> tuple[Any, Any]:
         """A container somewhere in the document, and the key or index of one of its entries."""
         holder: Any = document
-        if not holder:
-            return None
         while True:
             keys = list(holder) if isinstance(holder, dict) else range(len(holder))
             key = self.rng.choice(keys)
@@ -160,31 +159,26 @@ class Mutator:
 
     def _scale(self, document: dict[str, Any]) -> None:
         """Another number in place of one: most likely to be accepted."""
-        place = self._place(document, deep=1.0)
-        if place is not None and type(place[0][place[1]]) in (int, float):
-            holder, key = place
+        holder, key = self._place(document, deep=1.0)
+        if type(holder[key]) in (int, float):
             factor = self.rng.choice((*_FACTORS, self.rng.uniform(0.5, 2)))
             holder[key] = holder[key] * factor if abs(holder[key]) < 1e300 else factor
 
     def _hostile(self, document: dict[str, Any]) -> None:
-        place = self._place(document)
-        if place is not None:
-            place[0][place[1]] = copy.deepcopy(self.rng.choice(self.rng.choice((_NUMBERS, _WORDS, _OTHERS))))
+        holder, key = self._place(document)
+        holder[key] = copy.deepcopy(self.rng.choice(self.rng.choice((_NUMBERS, _WORDS, _OTHERS))))
 
     def _add(self, document: dict[str, Any]) -> None:
         """A key of another file into the same table: most likely a conflict."""
         kind = "problem" if "kind" in document else "list" if "designs" in document else "linkage"
-        tables = list(tables_of(document))
-        path, table = self.rng.choice(tables)
-        entries = self._tables.get((kind, path))
-        if entries:
+        path, table = self.rng.choice(list(tables_of(document)))
+        if entries := self._tables.get((kind, path)):
             key, value = self.rng.choice(entries)
             table[key] = copy.deepcopy(value)
 
     def _drop(self, document: dict[str, Any]) -> None:
-        place = self._place(document, deep=0.6)
-        if place is not None:
-            del place[0][place[1]]
+        holder, key = self._place(document, deep=0.6)
+        del holder[key]
 
     def _rename(self, document: dict[str, Any]) -> None:
         _, table = self.rng.choice(list(tables_of(document)))
@@ -194,15 +188,13 @@ class Mutator:
             table[self.rng.choice((*ways, self.rng.choice(self._known)))] = table.pop(old)
 
     def _exchange(self, document: dict[str, Any]) -> None:
-        one, other = self._place(document), self._place(document)
-        if one is not None and other is not None:
-            value = copy.deepcopy(other[0][other[1]])
-            one[0][one[1]] = value
+        (holder, key), (other, there) = self._place(document), self._place(document)
+        holder[key] = copy.deepcopy(other[there])
 
     def _length(self, document: dict[str, Any]) -> None:
         """A list that is too long, too short, or says the same twice."""
-        place = self._place(document, deep=0.5)
-        entry = None if place is None else place[0][place[1]]
+        holder, key = self._place(document, deep=0.5)
+        entry = holder[key]
         if isinstance(entry, list) and entry:
             at = self.rng.randrange(len(entry))
             way = self.rng.random()
@@ -218,11 +210,9 @@ class Mutator:
                 entry[:] = (entry * (self.rng.choice((100, 4000)) // len(entry) + 1))[:4000]
 
     def _nest(self, document: dict[str, Any]) -> None:
-        place = self._place(document)
-        if place is not None:
-            holder, key = place
-            for _ in range(self.rng.choice((1, 1, 2, 50, 150))):
-                holder[key] = [holder[key]]
+        holder, key = self._place(document)
+        for _ in range(self.rng.choice((1, 1, 2, 50, 150))):
+            holder[key] = [holder[key]]
 
     def _damaged(self, content: bytes) -> bytes:
         """The bytes cut short, in another encoding, with other line ends, with something in between."""

@@ -62,63 +62,59 @@ def across(axes: Axes, start: complex, end: complex, name: str, aside: float = 0
     axes.text(beside.real, beside.imag, name, color=FRAME, ha="center", va="center")
 
 
+def moving(axes: Axes, linkage: FourBar | SliderCrank, theta2: float) -> tuple[complex, ...]:
+    """Draw links 2 and 3 with theta2, u and v; O2, A, B, P and the direction of the coupler."""
+    o2, along = complex(*linkage.o2), unit(float(solve_position(linkage, theta2).theta3))
+    a = o2 + float(linkage.r2) * unit(theta2)
+    b, (u, v) = a + float(linkage.r3) * along, map(float, linkage.coupler_point)
+    foot, p = a + u * along, a + complex(u, v) * along
+    for start in (o2, a):
+        line(axes, start, start + 0.95, color=THIN, lw=0.8, ls=":")
+    line(axes, o2, a)
+    line(axes, a, b, p, a, lw=2)
+    across(axes, foot - 0.22j * along, a - 0.22j * along, "u")
+    across(axes, foot, p, "v")
+    angle(axes, o2, 0, theta2, "θ2")
+    for place, name, aside in ((o2, "O2", -0.3j), (a, "A", -0.35)):
+        joint(axes, place, name, aside)
+    return o2, a, b, p, along
+
+
 def four_bar(axes: Axes) -> None:
     """The four-bar: angles from +x, P in the frame of the coupler, the body about P."""
     linkage, theta2 = FOUR_BAR, np.radians(70.0)
-    at = solve_position(linkage, theta2)
-    theta3, theta4, body = float(at.theta3), float(at.theta4), float(linkage.body_angle)
-    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
-    a = o2 + float(linkage.r2) * unit(theta2)
-    b, (u, v) = a + float(linkage.r3) * unit(theta3), map(float, linkage.coupler_point)
-    foot, p = a + u * unit(theta3), a + complex(u, v) * unit(theta3)
-    for start in (o2, a, o4, p):
+    o2, a, b, p, along = moving(axes, linkage, theta2)
+    o4, theta3, body = complex(*linkage.o4), float(np.angle(along)), float(linkage.body_angle)
+    theta4 = float(np.angle(b - o4))
+    for start in (o4, p):
         line(axes, start, start + 0.95, color=THIN, lw=0.8, ls=":")
-    line(axes, o2, a)
     line(axes, o4, b)
-    line(axes, a, b, p, a, lw=2)
     line(axes, o2, o4, color=THIN, lw=1)
-    down = -0.22 * unit(theta3 + np.pi / 2)
-    across(axes, foot + down, a + down, "u")
-    across(axes, foot, p, "v")
-    arrow(axes, p, p + 1.2 * unit(theta3 + body), "body")
-    arrow(axes, p, p + 1.2 * unit(theta3 + body + np.pi / 2), "")
-    line(axes, p, p + 1.0 * unit(theta3), color=THIN, lw=0.8, ls="--")
+    arrow(axes, p, p + 1.2 * along * unit(body), "body")
+    arrow(axes, p, p + 1.2j * along * unit(body), "")
+    line(axes, p, p + along, color=THIN, lw=0.8, ls="--")
     angle(axes, p, theta3, theta3 + body, "body_angle", 0.7)
-    angle(axes, o2, 0, theta2, "θ2")
     angle(axes, a, 0, theta3, "θ3", 0.75)
     angle(axes, o4, 0, theta4, "θ4")
     angle(axes, b, theta3 + np.pi, theta4 + np.pi, "μ", 0.5)
-    for place, name, aside in (
-        (o2, "O2", -0.3j), (a, "A", -0.35), (b, "B", 0.35), (o4, "O4", -0.3j), (p, "P", -0.1 + 0.32j)
-    ):  # fmt: skip
+    for place, name, aside in ((b, "B", 0.35), (o4, "O4", -0.3j), (p, "P", -0.1 + 0.32j)):
         joint(axes, place, name, aside)
 
 
 def slider_crank(axes: Axes) -> None:
     """The slider-crank: the slide's direction e, its offset from O2, and mu at B."""
     linkage, theta2 = SLIDER_CRANK, np.radians(65.0)
-    theta3, e = float(solve_position(linkage, theta2).theta3), float(linkage.slide_angle)
-    o2 = complex(*linkage.o2)
-    a = o2 + float(linkage.r2) * unit(theta2)
-    b, (u, v) = a + float(linkage.r3) * unit(theta3), map(float, linkage.coupler_point)
-    foot, p = a + u * unit(theta3), a + complex(u, v) * unit(theta3)
+    o2, a, b, p, along = moving(axes, linkage, theta2)
+    theta3, e = float(np.angle(along)), float(linkage.slide_angle)
     over = o2 + float(linkage.offset) * unit(e + np.pi / 2)
-    line(axes, over - 0.6 * unit(e), b + 1.2 * unit(e), color=THIN, lw=1, ls="-.")
-    for start in (o2, a):
-        line(axes, start, start + 0.95, color=THIN, lw=0.8, ls=":")
-    line(axes, b - 0.35 * unit(e), b + 0.35 * unit(e), lw=12, color="0.85", solid_capstyle="butt")
-    line(axes, o2, a)
-    line(axes, a, b, p, a, lw=2)
+    line(axes, over - 0.6 * unit(e), b + 1.2 * unit(e), color=THIN, lw=1, ls="-.", zorder=1)
+    line(axes, b - 0.35 * unit(e), b + 0.35 * unit(e), lw=12, color="0.85", solid_capstyle="butt", zorder=1)
     line(axes, b, b + 0.9 * unit(e + np.pi / 2), color=THIN, lw=0.8, ls="--")
     across(axes, o2, over, "offset", 0.32)
     arrow(axes, b + 0.5 * unit(e), b + 1.2 * unit(e), "e")
-    down = -0.22 * unit(theta3 + np.pi / 2)
-    across(axes, foot + down, a + down, "u")
-    across(axes, foot, p, "v")
-    angle(axes, o2, 0, theta2, "θ2")
     angle(axes, a, theta3, 0, "θ3", 0.75)
     angle(axes, b, e + np.pi / 2, theta3 + np.pi, "μ", 0.5)
-    for place, name, aside in ((o2, "O2", -0.3j), (a, "A", -0.35), (b, "B", -0.35j), (p, "P", 0.3j)):
+    for place, name, aside in ((b, "B", -0.35j), (p, "P", 0.3j)):
         joint(axes, place, name, aside)
 
 

@@ -11,13 +11,7 @@ from grashof.problems.values.checks import counted
 
 @dataclass(frozen=True, slots=True)
 class Package:
-    """A package whose names are public.
-
-    Parameters
-    ----------
-    name : str
-    title : str
-    """
+    """A package whose names are public."""
 
     name: str
     title: str

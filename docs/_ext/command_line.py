@@ -34,6 +34,4 @@ def _command(name: str, command: Any, above: typer.Context) -> str:
 def _marked(text: str) -> str:
     """Help text in Markdown: options, files and what stands in brackets as they are."""
     plain = text.replace("[", r"\[").replace("<", r"\<").replace("*", r"\*").replace("#", r"\#")
-    return re.sub(
-        r"(?<![\w`])(--[a-z][a-z-]*|DIR/[\w.\\#,]+)", lambda found: code(found[1].replace("\\", "")), plain
-    )
+    return _LITERAL.sub(lambda found: code(found[1].replace("\\", "")), plain)

@@ -12,15 +12,7 @@ _ENTRY = re.compile(r"^(?P<names>\*{0,2}\w+(?:, (?:\w+|\.\.\.))*) : (?P<type>.+)
 
 @dataclass(frozen=True, slots=True)
 class Described:
-    """A parameter as its docstring has it.
-
-    Parameters
-    ----------
-    type : str
-        What stands after the colon.
-    text : str
-        The lines below, as one; empty where there are none.
-    """
+    """A parameter as its docstring has it: what stands after the colon, and the lines below as one text."""
 
     type: str
     text: str

@@ -11,13 +11,7 @@ ORDER = (
 
 
 class Order:
-    """Key that sorts the files of a folder, as sphinx-gallery wants it.
-
-    Parameters
-    ----------
-    folder : str
-        Of the examples; there is only one.
-    """
+    """Key that sorts the files of a folder of examples, as sphinx-gallery wants it; there is only one."""
 
     def __init__(self, folder: str) -> None:
         self.folder = folder

@@ -47,19 +47,7 @@ LISTS = {name for name, each in MachineTables.model_fields.items() if get_origin
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key of a file.
-
-    Parameters
-    ----------
-    name : str
-    value : str
-        What it may be, in Markdown.
-    unit : str
-    default : str
-        In Markdown.
-    text : str
-        What it means.
-    """
+    """A key of a file: its allowed values and its default, both in Markdown, and its meaning, `text`."""
 
     name: str
     value: str

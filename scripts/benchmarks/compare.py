@@ -26,9 +26,9 @@ from typing import Any
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before NumPy is loaded
     os.environ[name] = "1"
 
+import limited  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
-from limited import problem_of  # noqa: E402
 from peers import PEERS, LeftOutError  # noqa: E402
 
 from grashof import load, synthesize  # noqa: E402
@@ -40,7 +40,6 @@ from grashof.synth.theory.distinct import pick_apart, signature  # noqa: E402
 NEAR, EXACT, APART = 1.01, 1e-6, 0.05
 PACKAGES = ("grashof", "scipy", "pymoo", "fourbarhinge", "pylinkage")
 OVERTIME = 3.0  # budgets after which a package is stopped in the middle of a call
-LIMITED = Path(__file__).parents[2] / "tests" / "data" / "limited.json"
 
 
 def tasks() -> dict[str, Problem]:
@@ -53,9 +52,9 @@ def tasks() -> dict[str, Problem]:
         task=poses, requirements=Requirements(rotatability=Rotatability.ANY)
     )
     found["nine planted points"] = Problem(task=points)
-    limited = {each["name"]: each["toml"] for each in json.loads(LIMITED.read_text())["tasks"]}
+    stated = {each["name"]: each["toml"] for each in limited.tasks(limited.KNOWN)}
     for name, of in (("knee, limited", "knee"), ("leg, limited", "leg_tight"), ("moon, limited", "shb_moon")):
-        found[name] = problem_of(limited[of], name)
+        found[name] = limited.problem_of(stated[of], name)
     found |= {name: load(name) for name in ("function-five-pairs", "function-sin", "function-log10")}
     return {name: replace(each, dynamics=None) for name, each in found.items()}
 

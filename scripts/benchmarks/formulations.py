@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from independent_search import elbow
 
-from grashof.problems import FourBar, Problem, Requirements, Task
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems import Box, FourBar, Problem, Requirements, Task
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 
-TURN = 2 * np.pi
 STEP = 1e-3  # rad, between two targets
 
 
@@ -55,23 +55,21 @@ class CouplerFormulation:
     "Whether the greatest residual is minimised instead of the sum of squares."
 
     @classmethod
-    def of(cls, task: Task, wanted: Requirements, reach: float = 3.0) -> CouplerFormulation:
-        """Pivots within `reach` sizes of the task, links as the requirements have them."""
+    def of(cls, task: Task, wanted: Requirements) -> CouplerFormulation:
+        """Pivots within three sizes of the task, links as the requirements have them."""
         size, middle = task.size, task.positions.mean(axis=0)
         least, most = wanted.link_length or (0.01 * size, 20 * size)
-        arm = (wanted.coupler_arms or (0, np.inf))[1]
-        most, arm = min(most, 20 * size), min(arm, 20 * size)
+        arm = min((wanted.coupler_arms or (0, np.inf))[1], 20 * size)
         angles = 1 if task.timing is not None else len(task)
-        place = [*(middle - reach * size), *(middle - reach * size)]
-        low = [*place, least, least, least, -arm, -arm, -np.pi, *[-TURN] * angles]
-        place = [*(middle + reach * size), *(middle + reach * size)]
-        high = [*place, most, most, most, arm, arm, np.pi, *[TURN] * angles]
-        for pivot, columns in (("o2", slice(0, 2)), ("o4", slice(2, 4))):
-            box = getattr(wanted, pivot)
-            for side, axis in zip(range(columns.start, columns.stop), ("x", "y"), strict=True):
-                if box is not None and np.isfinite(getattr(box, axis)).all():
-                    low[side], high[side] = getattr(box, axis)
-        return cls(task, wanted, np.array(low, dtype=float), np.array(high, dtype=float), size)
+        beside = np.tile(middle, 2)
+        low = np.array([*(beside - 3 * size), *[least] * 3, -arm, -arm, -np.pi, *[-TURN] * angles])
+        most = min(most, 20 * size)
+        high = np.array([*(beside + 3 * size), *[most] * 3, arm, arm, np.pi, *[TURN] * angles])
+        boxes = (wanted.o2 or Box(), wanted.o4 or Box())
+        for column, ends in enumerate(ends for box in boxes for ends in (box.x, box.y)):
+            if np.isfinite(ends).all():
+                low[column], high[column] = ends
+        return cls(task, wanted, low, high, size)
 
     def start(self, rng: np.random.Generator, choice: Choice) -> FloatArray:
         """A random point of the box, the driver angles in order."""
@@ -87,33 +85,27 @@ class CouplerFormulation:
         driver: FloatArray = x[10] + choice.way * self.task.timing
         return driver
 
-    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:  # closure: RRR
+    def a(self, x: FloatArray, choice: Choice) -> ComplexArray:
+        """A at each target."""
+        found: ComplexArray = complex(*x[:2]) + x[4] * np.exp(1j * self.driver(x, choice))
+        return found
+
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
         """Of positions, and of angles times the task's length."""
-        o2, (r2, r3, r4), (u, v), body = x[:2], x[4:7], x[7:9], x[9]
-        theta2 = self.driver(x, choice)
-        a = o2 + r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
-        way = x[2:4] - a
-        d = np.hypot(*way.T) + 1e-12
-        along = (r3**2 - r4**2 + d**2) / (2 * d)
-        beside = choice.assembly * np.sqrt(np.maximum(r3**2 - along**2, 0))
-        unit = way / d[:, None]
-        ab = along[:, None] * unit + beside[:, None] * np.stack([-unit[:, 1], unit[:, 0]], axis=-1)
-        theta3 = np.arctan2(ab[:, 1], ab[:, 0])
-        cosine, sine = np.cos(theta3), np.sin(theta3)
-        p = a + np.stack([u * cosine - v * sine, u * sine + v * cosine], axis=-1)
-        errors = [p - self.task.positions]
+        a = self.a(x, choice)
+        theta3 = np.angle(elbow(complex(*x[2:4]) - a, x[5], x[6], choice.assembly))
+        p = a + complex(*x[7:9]) * np.exp(1j * theta3)
+        errors = [(p - self.task.positions @ np.array([1, 1j])).view(np.float64)]
         if self.task.has_angle.any():
-            turn = theta3 + body - self.task.angles
-            errors.append(2 * self.task.angle_length * np.sin(turn / 2)[:, None])
-        return np.concatenate([each.ravel() for each in errors])
+            turn = theta3 + x[9] - self.task.angles
+            errors.append(2 * self.task.angle_length * np.sin(turn / 2))
+        return np.concatenate(errors)
 
     def limits(self, x: FloatArray, choice: Choice) -> FloatArray:
         """Assembly and transmission at the targets or over the cycle, full rotation, order, arms."""
         (r2, r3, r4), (u, v) = x[4:7], x[7:9]
         r1 = float(np.hypot(*(x[2:4] - x[:2])))
-        theta2 = self.driver(x, choice)
-        a = x[:2] + r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
-        square = ((x[2:4] - a) ** 2).sum(axis=-1)
+        square = np.abs(complex(*x[2:4]) - self.a(x, choice)) ** 2
         turns = self.wanted.rotatability != "any"
         if turns and self.wanted.transmission_over == "cycle":
             square = np.array([(r1 - r2) ** 2, (r1 + r2) ** 2])
@@ -122,7 +114,7 @@ class CouplerFormulation:
             crank = self.wanted.rotatability == "crank-rocker" or choice.turning > 0
             found.append(_turning(*((r2, r1) if crank else (r1, r2)), r3, r4) / self.scale)
         if self.task.timing is None:
-            steps = choice.way * np.diff(theta2)
+            steps = choice.way * np.diff(x[10:])
             found += [STEP - steps, np.array([steps.sum() + STEP - TURN])]
         if self.wanted.coupler_arms is not None:
             arms = np.array([np.hypot(u, v), np.hypot(u - r3, v)])
@@ -164,15 +156,11 @@ class FunctionFormulation:
         x[:3] = np.exp(rng.uniform(np.log(self.low[:3]), np.log(self.high[:3])))
         return x
 
-    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:  # closure: RRR
+    def residuals(self, x: FloatArray, choice: Choice) -> FloatArray:
         """Of the output angle at every pair, rad."""
         r2, r3, r4 = x[:3]
-        theta2 = x[3] + choice.way * self.task.driver_turns
-        a = r2 * np.exp(1j * theta2)
-        d = np.abs(a - 1) + 1e-12
-        along = (r4**2 - r3**2 + d**2) / (2 * d)
-        beside = -choice.assembly * np.sqrt(np.maximum(r4**2 - along**2, 0))
-        theta4 = np.angle((a - 1) / d * (along + 1j * beside))
+        a = r2 * np.exp(1j * (x[3] + choice.way * self.task.driver_turns))
+        theta4 = np.angle(elbow(a - 1, r4, r3, -choice.assembly))
         sense = choice.turning if self.task.sense == "either" else 1.0
         found: FloatArray = 2 * np.sin((theta4 - x[4] - choice.way * sense * self.task.outputs) / 2)
         return found

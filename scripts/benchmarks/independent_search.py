@@ -18,11 +18,12 @@ from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
 from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
-from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
-TURN, STARTS, POLISHED = 2 * np.pi, 800, 40
+STARTS, POLISHED = 800, 40
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
+HAIR = 1e-12  # added to the length of a line, which may be zero
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
 
@@ -102,7 +103,6 @@ class Places:
     a: ComplexArray
     b: ComplexArray
     p: ComplexArray
-    diagonal: FloatArray
 
     @property
     def r1(self) -> FloatArray:
@@ -110,7 +110,19 @@ class Places:
         return np.abs(self.o4 - self.o2)
 
 
-def places(aim: Aim, designs: Designs) -> Places:  # closure: RRR
+def elbow(line: ComplexArray, near: Any, far: Any, side: Any) -> ComplexArray:  # closure: RRR
+    """From the start of a line to the point `near` from it and `far` from its end, left where `side` is 1.
+
+    Where there is none, in line.
+    """
+    length = np.abs(line) + HAIR
+    along = (length**2 + near**2 - far**2) / (2 * length)
+    across = np.sqrt(np.maximum(near**2 - along**2, 1e-16))
+    found: ComplexArray = line / length * (along + 1j * side * across)
+    return found
+
+
+def places(aim: Aim, designs: Designs) -> Places:
     """All joints at all targets; where a loop does not close, links 3 and 4 are in line."""
     x = designs.x
     o2, o4, coupler = (x[:, k : k + 1] + 1j * x[:, k + 1 : k + 2] for k in (0, 2, 7))
@@ -119,13 +131,9 @@ def places(aim: Aim, designs: Designs) -> Places:  # closure: RRR
     if aim.timed:
         theta2 = theta2 + designs.sense[:, None] * aim.timing
     a = o2 + r2 * np.exp(1j * theta2)
-    line = o4 - a
-    diagonal = np.abs(line) + 1e-12
-    along = (diagonal**2 + r3**2 - r4**2) / (2 * diagonal)
-    across = np.sqrt(np.maximum(r3**2 - along**2, 1e-16))
-    b = a + line / diagonal * (along + 1j * designs.elbow[:, None] * across)
+    b = a + elbow(o4 - a, r3, r4, designs.elbow[:, None])
     p = a + coupler * (b - a) / np.abs(b - a)
-    return Places(o2, o4, r2, r3, r4, coupler, x[:, 9:10], theta2, a, b, p, diagonal)
+    return Places(o2, o4, r2, r3, r4, coupler, x[:, 9:10], theta2, a, b, p)
 
 
 def misses(aim: Aim, at: Places) -> FloatArray:
@@ -189,7 +197,7 @@ def transmission(aim: Aim, at: Places) -> list[FloatArray]:
         # Driver angles from the ground line; A passes it within the motion or not.
         around = (at.theta2 - np.angle(at.o4 - at.o2)) / TURN
         low, high = around.min(axis=1, keepdims=True), around.max(axis=1, keepdims=True)
-        ends = at.diagonal[:, [0, -1]]
+        ends = np.abs(at.o4 - at.a)[:, [0, -1]] + HAIR
         folded, drawn = np.floor(high) > np.floor(low), np.floor(high - 0.5) > np.floor(low - 0.5)
         shortest = np.where(folded, shortest, ends.min(axis=1, keepdims=True))
         longest = np.where(drawn, longest, ends.max(axis=1, keepdims=True))

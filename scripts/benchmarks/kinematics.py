@@ -5,6 +5,7 @@ not installed is left out.
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
 from statistics import median
 from typing import Any
@@ -34,14 +35,14 @@ def plain(theta2: Array, omega2: float) -> tuple[Array, ...]:  # closure: RRR
     theta4 = np.arctan2(r3 * sin3 - y, r3 * cos3 - x)
     cos4, sin4 = np.cos(theta4), np.sin(theta4)
     determinant = r3 * r4 * (sin3 * cos4 - cos3 * sin4)
-    right_x, right_y = r2 * omega2 * sin2, -r2 * omega2 * cos2
-    omega3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
-    omega4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
+
+    def solved(x: Array, y: Array) -> tuple[Array, Array]:
+        return (-x * r4 * cos4 - y * r4 * sin4) / determinant, (-y * r3 * sin3 - x * r3 * cos3) / determinant
+
+    omega3, omega4 = solved(r2 * omega2 * sin2, -r2 * omega2 * cos2)
     right_x = r2 * omega2**2 * cos2 + r3 * omega3**2 * cos3 - r4 * omega4**2 * cos4
     right_y = r2 * omega2**2 * sin2 + r3 * omega3**2 * sin3 - r4 * omega4**2 * sin4
-    alpha3 = (-right_x * r4 * cos4 - right_y * r4 * sin4) / determinant
-    alpha4 = (-right_y * r3 * sin3 - right_x * r3 * cos3) / determinant
-    return theta3, theta4, omega3, omega4, alpha3, alpha4
+    return theta3, theta4, omega3, omega4, *solved(right_x, right_y)
 
 
 def milliseconds(*functions: Callable[[], object]) -> list[float]:
@@ -84,14 +85,19 @@ def many_linkages(count: int, seed: int, angles: int = 64) -> Iterator[str]:
     yield f"{count} linkages at {angles} angles in {seconds:.2f} s, {each:.0f} ns each"
 
 
-def against_pylinkage(count: int, seed: int) -> Iterator[str]:
-    """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
+def against(package: str, compared: Callable[[Any, int], str], count: int, seed: int) -> Iterator[str]:
+    """A comparison with another package, where it is installed."""
     del seed
     try:
-        conversion: Any = import_module("pylinkage.synthesis.conversion")
+        module = import_module(package)
     except ModuleNotFoundError:
         yield "not installed"
         return
+    yield compared(module, count)
+
+
+def with_pylinkage(conversion: Any, count: int) -> str:
+    """The same turn by pylinkage's compiled solver: joints alone, and with rates and accelerations."""
     r1, r2, r3, r4 = map(float, NORTON.lengths)
     made = conversion.fourbar_from_lengths(r2, r3, r4, r1, iterations=count)
     made.set_input_velocity(made._cranks[0], omega=2.0)
@@ -108,20 +114,14 @@ def against_pylinkage(count: int, seed: int) -> Iterator[str]:
         lambda: made.step_fast_with_kinematics(count),
         lambda: (state := solve_kinematics(NORTON, theta2, 2.0), state.a, state.b),
     )
-    yield (
+    return (
         f"{joints:.1f} ms for joints, {rates:.1f} ms with velocities and accelerations, "
         f"against {ours:.1f} ms; B differs by {apart / r1:.0e} of r1"
     )
 
 
-def against_mujoco(count: int, seed: int) -> Iterator[str]:
+def with_mujoco(mujoco: Any, count: int) -> str:
     """Steps of MuJoCo with the model that `grashof export` writes, against inverse dynamics."""
-    del seed
-    try:
-        mujoco: Any = import_module("mujoco")
-    except ModuleNotFoundError:
-        yield "not installed"
-        return
     spec = DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81), speed_rpm=60 / np.pi)
     model = Model.of(LinkageSpec(NORTON, "norton", length_unit="mm", dynamics=spec))
     made = mujoco.MjModel.from_xml_string(mjcf(model))
@@ -138,7 +138,7 @@ def against_mujoco(count: int, seed: int) -> Iterator[str]:
         lambda: mujoco.mj_step(made, data, count),
         lambda: inverse_dynamics(solve_kinematics(NORTON, theta2, 2.0), masses, loads),
     )
-    yield (
+    return (
         f"{steps:.0f} ms for {count} steps, {steps / ours:.0f} times kinematics and inverse dynamics at as "
         f"many angles ({ours:.0f} ms); its coupler angle differs by {worst:.0e} rad"
     )
@@ -147,6 +147,6 @@ def against_mujoco(count: int, seed: int) -> Iterator[str]:
 CASES = [
     Case("one linkage", ANGLES, many_angles),
     Case("many linkages", ANGLES, many_linkages),
-    Case("pylinkage with numba", ANGLES, against_pylinkage),
-    Case("MuJoCo", ANGLES, against_mujoco),
+    Case("pylinkage with numba", ANGLES, partial(against, "pylinkage.synthesis.conversion", with_pylinkage)),
+    Case("MuJoCo", ANGLES, partial(against, "mujoco", with_mujoco)),
 ]

@@ -12,20 +12,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One case of a benchmark.
-
-    Parameters
-    ----------
-    name : str
-    usual : int
-        Tasks, repetitions or size, unless ``--count`` states another number.
-    measure : callable
-        Takes that number and the seed, and returns lines; one that ends with "!" is a failure.
-    """
+    """One case of a benchmark."""
 
     name: str
     usual: int
+    "Tasks, repetitions or size, unless ``--count`` states another number."
     measure: Callable[[int, int], Iterable[str]]
+    'Takes that number and the seed, and returns lines; one that ends with "!" is a failure.'
 
 
 def timed(run: Callable[[], T], clock: Callable[[], float] = perf_counter) -> tuple[T, float]:

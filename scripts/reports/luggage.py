@@ -7,20 +7,17 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from hand_tuned_search import GUESSES, Tried, outcome, tried
-from matplotlib import rc_context
-from matplotlib.figure import Figure
+from hand_tuned_search import GUESSES, Tried, outcome, residual_of, tried
 
 from grashof.analysis import Verdict, extremes_of, inverse_dynamics, solve_position, verify
 from grashof.figures import plot_linkage, plot_task
-from grashof.figures.files import STYLE
 from grashof.problems import FourBar, LinkageSpec, load, load_linkage_spec
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.asked import Asked
 from grashof.study.section import DRIVER_ANGLE, Plot
 from grashof.study.study import LinkageStudy
 from reports import published
-from reports.material import WIDTH, Analysis, Made, lines, shown
+from reports.material import Analysis, Made, lines, pictured, shown
 
 _FINE = 10  # steps of our curves for one of the report's
 _DENSE = 7200  # of a turn, for means
@@ -154,35 +151,27 @@ class Luggage:
     def _residuals(self) -> tuple[float, float]:
         """Root of the sum of squares of the gaps of each dyad at the driver angles printed."""
         task, first = self.problem.task, solve_position(self.linkage, self.verdict.theta2[0])
-        place = task.positions @ np.array([1, 1j])
-        body = np.exp(1j * (task.angles - task.angles[0])) - 1
-        found = []
         dyads = (self.linkage.o2, first.a, published.BETA), (self.linkage.o4, first.b, published.GAMMA)
-        for pivot, joint, turns in dyads:
-            link, arm = complex(*(joint - pivot)), place[0] - complex(*joint)
-            gap = link * (np.exp(1j * np.radians([0.0, *turns])) - 1) + arm * body - (place - place[0])
-            found.append(float(np.sqrt((np.abs(gap) ** 2).sum())))
-        return found[0], found[1]
+        left, right = (
+            residual_of(task)(np.array([*(joint - pivot), *(task.positions[0] - joint), *np.radians(turns)]))
+            for pivot, joint, turns in dyads
+        )
+        return left, right
 
     # The items.
 
     def task(self) -> Made:
         """Poses, staircase and box."""
-        with rc_context(STYLE):
-            figure = Figure(figsize=(WIDTH, 5.4), layout="constrained")
-            plot_task(self.problem, ax=figure.subplots())
         task = self.problem.task
         table = pd.DataFrame({"x_m": task.positions[:, 0], "y_m": task.positions[:, 1]})
         table["angle_deg"] = np.degrees(task.angles).round(12)
-        return Made({"": figure}, {"": table})
+        return Made({"": pictured(5.4, plot_task, self.problem)}, {"": table})
 
     def poses(self, number: int | None = None) -> Made:
         """The linkage in its four poses, or in one of them, in place of a photograph of the prototype."""
         angles = self.poses_deg if number is None else [self.poses_deg[number - 1]]
-        with rc_context(STYLE):
-            figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
-            theta2 = None if number is None else np.radians(angles[0])
-            plot_linkage(self.spec, self.problem, theta2=theta2, ax=figure.subplots())
+        theta2 = None if number is None else np.radians(angles[0])
+        figure = pictured(6.4, plot_linkage, self.spec, self.problem, theta2=theta2)
         return Made({"": figure}, {"": Analysis.of(self.spec, at_deg=tuple(angles)).tables["positions"]})
 
     def guess(self, name: str) -> Made:
@@ -206,13 +195,10 @@ class Luggage:
             "mu on the way, deg": float(np.degrees(verdict.transmission_min_task)),
             "mu over the turn, deg": float(np.degrees(verdict.transmission_min_cycle)),
         }  # fmt: skip
-        figure = None
-        if verdict.branch_ok:
-            with rc_context(STYLE):
-                figure = Figure(figsize=(WIDTH, 6.0), layout="constrained")
-                plot_linkage(each.linkage, self.problem, ax=figure.subplots())
         tables = {"": pd.DataFrame(rows), "judged": pd.DataFrame([judged])}
-        return Made({} if figure is None else {"": figure}, tables)
+        if not verdict.branch_ok:
+            return Made(tables=tables)
+        return Made({"": pictured(6.0, plot_linkage, each.linkage, self.problem)}, tables)
 
     def result(self) -> Made:
         """Table 7 beside the catalogue's linkage, and its errors, which the report does not state."""
@@ -239,17 +225,9 @@ class Luggage:
         )  # fmt: skip
         return Made(tables={"": table, "poses": errors})
 
-    def newton_raphson(self) -> Made:
-        """theta3 and theta4 by Newton-Raphson, and the steps it takes."""
-        return shown(*map(self.fine.over_angle, ("newton-raphson", "newton-raphson-steps")))
-
-    def centre(self, link: int, rate: str = "place") -> Made:
-        """Place, velocity or acceleration of a centre of mass."""
-        return shown(self.fine.over_angle(f"g{link}-{rate}"))
-
-    def angular(self, rate: str) -> Made:
-        """omega3 and omega4, or alpha3 and alpha4."""
-        return shown(self.fine.over_angle(f"angular-{rate}"))
+    def curves(self, *keys: str) -> Made:
+        """Plots of the analysis over the driver's angle."""
+        return shown(*map(self.fine.over_angle, keys))
 
     def angular_differences(self, rate: str, order: int) -> Made:
         """The same by central differences at the samples of the report."""
@@ -322,16 +300,13 @@ class Luggage:
         made = shown(lines(plot, besides=besides))
         return replace(made, tables={**made.tables, "figures": self.torque_table})
 
-    def regression(self, link: int) -> Made:
-        """The path of a centre with regressions y(x), and beside it the fits of x and y over theta2."""
-        return self._fit(link, "regression", "parametric", "least squares")
-
-    def interpolation(self, link: int) -> Made:
-        """The path of a centre with Newton's interpolation y(x), and beside it that over theta2."""
-        return self._fit(link, "newton", "parametric-newton", "Newton interpolation")
-
-    def _fit(self, link: int, wrong: str, right: str, by: str) -> Made:
-        plots = [self.fits.plots[f"fits-{key}-g{link}"] for key in (wrong, right)]
+    def fit(self, link: int, way: str) -> Made:
+        """The path of a centre with fits y(x), and beside it the fits of x and y over theta2."""
+        keys, by = {
+            "regression": (("regression", "parametric"), "least squares"),
+            "interpolation": (("newton", "parametric-newton"), "Newton interpolation"),
+        }[way]
+        plots = [self.fits.plots[f"fits-{key}-g{link}"] for key in keys]
         label = f"the centre of link {link}"
         named = [replace(plot, title=plot.title.removeprefix(f"path of {label}: ")) for plot in plots]
         quality, factors = (

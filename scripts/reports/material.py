@@ -1,6 +1,6 @@
 """Material of the items: analyses, figures of their plots, tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import cycle
 from typing import Any
@@ -69,6 +69,14 @@ def lines(plot: Plot, wanted: Sequence[str] = (), besides: Mapping[str, FloatArr
     count = 0 if plot.places is None else len(plot.places)
     more = {label: np.broadcast_to(np.asarray(values), count) for label, values in (besides or {}).items()}
     return replace(plot, series={**chosen, **more}, bounded=True)
+
+
+def pictured(height: float, plot: Callable[..., object], *given: Any, **named: Any) -> Figure:
+    """A figure of what a function plots on its axes."""
+    with rc_context(STYLE):
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        plot(*given, ax=figure.subplots(), **named)
+    return figure
 
 
 def drawn(*plots: Plot, beside: bool = False) -> Figure:

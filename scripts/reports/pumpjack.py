@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from grashof.analysis import (
     AppliedMoment,
@@ -26,12 +24,11 @@ from grashof.analysis import (
     uniform_bars,
 )
 from grashof.figures import draw_motion, plot_linkage
-from grashof.figures.files import STYLE
 from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.section import Plot
 from reports import published
-from reports.material import HEIGHT, WIDTH, Analysis, Made, lines, shown
+from reports.material import HEIGHT, Analysis, Made, lines, pictured, shown
 
 _DENSE = 7201
 # N: polished-rod loads, up and down; assumed, as the report has none. They change while the head rests.
@@ -209,9 +206,7 @@ class Pumpjack:
 
     def animation(self) -> Made:
         """The linkage in motion, at its own speed, and standing still."""
-        with rc_context(STYLE):
-            figure = Figure(figsize=(WIDTH, 6.2), layout="constrained")
-            plot_linkage(self.spec, theta2=np.radians(published.START_DEG), ax=figure.subplots())
+        figure = pictured(6.2, plot_linkage, self.spec, theta2=np.radians(published.START_DEG))
         seconds = TURN / self.omega2
         return Made({"": figure, "moving": draw_motion(self.spec, seconds=seconds, fps=12.5, annotated=True)})
 
@@ -269,15 +264,15 @@ class Pumpjack:
         right["system"] = system_centre(self.bars, state).position
         right["system with the whole beam"] = system_centre(self.full, state).position
         theirs = {**published.CENTRES, "system with the whole beam": published.SYSTEM}
-        with rc_context(STYLE):
-            figure = Figure(figsize=(WIDTH, 6.6), layout="constrained")
-            axes = plot_linkage(self.spec, theta2=np.pi / 2, ax=figure.subplots())
-            _mark(axes, right, theirs)
+
+        def plot(ax: Axes) -> None:
+            _mark(plot_linkage(self.spec, theta2=np.pi / 2, ax=ax), right, theirs)
+
         rows = [
             {"centre of": name, "x_m": place[0], "y_m": place[1], **_as_published(theirs.get(name))}
             for name, place in right.items()
         ]
-        return Made({"": figure}, {"": pd.DataFrame(rows)})
+        return Made({"": pictured(6.6, plot)}, {"": pd.DataFrame(rows)})
 
     def head(self) -> Made:
         """Torque factor, and the drive torque under an assumed rod load with and without a counterweight."""
@@ -324,9 +319,7 @@ class Pumpjack:
 
     def picture(self, theta2_deg: float) -> Made:
         """The linkage at one driver angle, in place of a photograph of the model."""
-        with rc_context(STYLE):
-            figure = Figure(figsize=(WIDTH, HEIGHT + 1.2), layout="constrained")
-            plot_linkage(self.spec, theta2=np.radians(theta2_deg), ax=figure.subplots())
+        figure = pictured(HEIGHT + 1.2, plot_linkage, self.spec, theta2=np.radians(theta2_deg))
         table = self.history.tables["positions"]
         return Made({"": figure}, {"": table[table["theta2_deg"] == theta2_deg]})
 

@@ -11,7 +11,7 @@ from grashof.problems import Linkage
 # As counted when they were last lowered: they may only fall.
 LIMITS = {
     "asks": {"problems": 1, "analysis": 1, "synth": 3, "src/grashof": 0, "scripts": 1},
-    "closures": {"problems": 0, "analysis": 7, "synth": 6, "src/grashof": 6, "scripts": 4},
+    "closures": {"problems": 0, "analysis": 7, "synth": 6, "src/grashof": 6, "scripts": 2},
     "suspects": {"problems": 0, "analysis": 4, "synth": 11, "src/grashof": 0, "scripts": 1},
     "circles": {"files": 0, "rooms": 0},
     "large": {"full": 0, "long": 0},

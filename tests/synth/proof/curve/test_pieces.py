@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from proof_problems import planted
 
 from grashof import load
-from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Problem
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.proof.curve.centres import centres_of, of_rows
@@ -16,10 +16,7 @@ from grashof.synth.proof.forms.forms import Span
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import Displacements, Dyads, centre_points, circle_points_on_lines, polish
 
-PROBLEMS = [
-    load("luggage"),
-    *(Problem(task=planted_motion(np.random.default_rng(seed), poses=4)[0]) for seed in range(3)),
-]
+PROBLEMS = [load("luggage"), *map(planted, range(3))]
 
 
 def required(problem: Problem) -> Required:

@@ -5,11 +5,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from proof_problems import planted
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
-from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import FourBar, Problem, Requirements
+from grashof.problems import FourBar
 from grashof.synth import Claim, Result
 from grashof.synth.proof.claims.bounds import Proving
 from grashof.synth.proof.poses.atlas import Atlas, atlas_of
@@ -18,12 +18,8 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import screen
 from grashof.synth.theory.burmester import trace_four_pose_curves
 
-OVER_TURN = Requirements(transmission_over="cycle")  # type: ignore[arg-type]
 PROBLEMS = {"luggage": load("luggage")} | {
-    f"planted {seed}": Problem(
-        task=planted_motion(np.random.default_rng(seed), poses=4)[0], requirements=OVER_TURN
-    )
-    for seed in (0, 3, 7)
+    f"planted {seed}": planted(seed, transmission_over="cycle") for seed in (0, 3, 7)
 }
 
 

@@ -1,13 +1,15 @@
 """Five poses: all dyads within limits are counted, each in a box of its own."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from proof_problems import planted, random_poses, rotation
 
 from grashof import synthesize
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import MotionTask, Problem, Requirements
+from grashof.problems import Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth import Claim, prove
 from grashof.synth.proof.poses.five_poses import Certified, certified_poses
@@ -15,13 +17,12 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.five_poses import five_pose_dyads
 
 REACH = 50.0
-WIDE = {"link_length": (1e-6, REACH), "coupler_arms": (0.0, REACH), "rotatability": "any"}
+WIDE: dict[str, Any] = {"link_length": (1e-6, REACH), "coupler_arms": (0.0, REACH), "rotatability": "any"}
 
 
-def random_poses(seed: int) -> Problem:
-    rng = np.random.default_rng(seed)
-    poses = np.column_stack([rng.uniform(-0.5, 0.5, (5, 2)), rng.uniform(-180, 180, 5)])
-    return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**WIDE))  # type: ignore[arg-type]
+def problem_of(seed: int) -> Problem:
+    """Five poses at random, under limits that hardly bind."""
+    return random_poses(seed, 5, low=-0.5, **WIDE)
 
 
 def certified(problem: Problem) -> Certified:
@@ -42,7 +43,7 @@ def off_circles(problem: Problem, z: ComplexArray, c: ComplexArray) -> FloatArra
 @pytest.mark.quick(*map(str, range(6)))
 @pytest.mark.parametrize("seed", range(200))
 def test_every_dyad_is_counted_once(seed: int) -> None:
-    problem = random_poses(seed)
+    problem = problem_of(seed)
     made = certified(problem)
     assert (made.complete, made.why) == (True, "")
     assert np.all(off_circles(problem, made.moving, made.ground) < 1e-9)
@@ -58,7 +59,7 @@ def test_every_dyad_is_counted_once(seed: int) -> None:
 def test_boxes_hold_one_zero_each() -> None:
     # Newton's method from anywhere in a box leads to its dyad.
     for seed in range(2):
-        problem = random_poses(seed)
+        problem = problem_of(seed)
         made, rng = certified(problem), np.random.default_rng(seed)
         for k in range(len(made.moving)):
             for _ in range(20):
@@ -101,22 +102,19 @@ def test_a_planted_linkage_is_listed_and_all_are_proven() -> None:
 
 
 def test_none_of_five_poses_is_proven() -> None:
-    problem = random_poses(52)
+    problem = problem_of(52)
     assert certified(problem).within == 0
     proof = prove(problem)
     assert (proof.claim, proof.complete, proof.lower) == (Claim.NONE, True, None)
 
 
 def test_a_search_that_is_cut_short_proves_nothing() -> None:
-    task, _ = planted_motion(np.random.default_rng(1), poses=5)
-    problem = Problem(task=task, requirements=Requirements(rotatability="any"))  # type: ignore[arg-type]
-    proof = synthesize(problem, enough=1).proof
+    proof = synthesize(planted(1, 5, rotatability="any"), enough=1).proof
     assert proof is not None
     assert proof.claim is Claim.REFUSED
     assert proof.why == "the search was not exhaustive"
 
 
 def test_equal_poses_and_rotations_are_refused() -> None:
-    angles = np.array([0.0, 0.4, 0.9, 1.7, 2.0])
-    rotation = MotionTask.from_degrees(np.column_stack([np.cos(angles), np.sin(angles), np.degrees(angles)]))
-    assert "plane of dyads" in certified(replace(random_poses(0), task=rotation)).why
+    task = rotation(0.0, 0.4, 0.9, 1.7, 2.0)
+    assert "plane of dyads" in certified(replace(problem_of(0), task=task)).why

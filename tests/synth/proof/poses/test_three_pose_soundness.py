@@ -1,12 +1,10 @@
 """Three poses: linkages that meet a problem are in its tiles, and no bound is below what they transmit."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import pytest
+from piece_descent import JUST_BELOW, Designs, Side, descent
+from proof_problems import bonnet, of_three, planted, random_poses, with_links
 
-from grashof import load
-from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, MotionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.proof.curve.curve import poles
@@ -19,45 +17,10 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.dyad_pairs import judged_pairs
 from grashof.synth.theory.burmester import Displacements, Dyads, circle_dyads, circle_dyads_of_ground, polish
 
-JUST_BELOW = 1e-7  # rad
-NOWHERE = -1
-BRACKET, PLATE = Box((-60, 350), (-260, -60)), Box((0, 350), (-100, -10))
-
-
-def bonnet(**requirements: object) -> Problem:
-    """The gallery's bonnet hinge."""
-    limits = {"o2": BRACKET, "o4": BRACKET, "a_on_body": PLATE, "b_on_body": PLATE}
-    wanted = {"rotatability": "any", "link_length": (60, 260), **limits, **requirements}
-    task = MotionTask.from_degrees([[0, 0, 0], [20, 33, 10], [76, 10, 50]])
-    return Problem(length_unit="mm", task=task, requirements=Requirements(**wanted))  # type: ignore[arg-type]
-
-
-def luggage(shortest: float, longest: float, ratio: float = 20.0, **requirements: object) -> Problem:
-    """Poses 1, 2 and 4 of the luggage task."""
-    problem, limits = load("luggage"), (shortest, longest)
-    poses = np.column_stack([problem.task.positions, np.degrees(problem.task.angles)])[[0, 1, 3]]
-    wanted = {
-        "transmission_min_deg": 0.0,
-        "link_length": limits,
-        "coupler_arms": limits,
-        "link_ratio_max": ratio,
-    }
-    return replace(
-        problem,
-        task=MotionTask.from_degrees(poses),
-        requirements=replace(problem.requirements, **{**wanted, **requirements}),
-    )
-
-
-def random_poses(seed: int, **requirements: object) -> Problem:
-    rng = np.random.default_rng(seed)
-    poses = np.column_stack([rng.uniform(0, 1, (3, 2)), rng.uniform(-180, 180, 3)])
-    return Problem(task=MotionTask.from_degrees(poses), requirements=Requirements(**requirements))  # type: ignore[arg-type]
-
 
 def about_pole(seed: int, number: int) -> Box:
     """A box of ground pivots about a pole of random poses."""
-    scaled = ScaledProblem.of(random_poses(seed))
+    scaled = ScaledProblem.of(random_poses(seed, 3))
     assert scaled.motion is not None
     x, y = scaled.frame.outward(poles(scaled.motion.inverse())[1][number : number + 1])[0]
     return Box((x - 0.2, x + 0.3), (y - 0.3, y + 0.2))
@@ -69,34 +32,19 @@ CASES = {
     "bonnet": bonnet(),
     "bonnet, area kept out": bonnet(keep_out=(STAIRS,)),
     "bonnet, angles": bonnet(driver_sense="cw", driver_rotation_deg=(10, 120), ground_angle_deg=(-90, 60)),
-    "luggage over the turn": luggage(1, 5, 8, transmission_over="cycle"),
-    "luggage, crank-rocker": luggage(0.3, 8, rotatability="crank-rocker"),
-    "luggage, any order": luggage(0.3, 8, order=False, rotatability="any"),
-    "random": random_poses(3, rotatability="any"),
+    "luggage over the turn": of_three(with_links(5, 1, link_ratio_max=8, transmission_over="cycle")),
+    "luggage, crank-rocker": of_three(with_links(8, rotatability="crank-rocker")),
+    "luggage, any order": of_three(with_links(8, order=False, rotatability="any")),
+    "random": random_poses(3, 3, rotatability="any"),
     "random, short links": random_poses(
-        5, rotatability="any", link_length=(0.1, 2.0), coupler_arms=(0.0, 2.0)
+        5, 3, rotatability="any", link_length=(0.1, 2.0), coupler_arms=(0.0, 2.0)
     ),
-    "boxes about poles": random_poses(3, rotatability="any", o2=about_pole(3, 0), o4=about_pole(3, 1)),
+    "boxes about poles": random_poses(3, 3, rotatability="any", o2=about_pole(3, 0), o4=about_pole(3, 1)),
     "two parallel poses": Problem(
         task=MotionTask.from_degrees(PARALLEL), requirements=Requirements(rotatability="any")
     ),
-    "planted": Problem(task=planted_motion(np.random.default_rng(2), poses=3)[0]),
+    "planted": planted(2, 3),
 }
-
-
-@dataclass(frozen=True)
-class Designs:
-    """Dyads of linkages in the frame of a proof, and the transmission angle that counts, rad."""
-
-    driver: Dyads
-    driven: Dyads
-    transmission: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.driver)
-
-    def __getitem__(self, index: IntArray | BoolArray) -> "Designs":
-        return Designs(self.driver[index], self.driven[index], self.transmission[index])
 
 
 def some_dyads(charts: Charts, reach: float, count: int, rng: np.random.Generator) -> Dyads:
@@ -200,42 +148,13 @@ def holds(sites: Sites, which: IntArray, dyads: Dyads) -> BoolArray:
     return inside
 
 
-def tile_of(tiling: Tiling, dyads: Dyads) -> IntArray:
-    """The first tile that holds each dyad; `NOWHERE` where none does."""
-    found = np.full(len(dyads), NOWHERE)
-    for tile in range(len(tiling) - 1, -1, -1):
-        found[holds(tiling.sites, np.full(len(dyads), tile), dyads)] = tile
-    return found
-
-
-def half_of(tiling: Tiling, which: IntArray, dyads: Dyads) -> IntArray:
-    """The half of each tile that holds each dyad."""
-    halves, found = tiling.halve(which), np.full(len(dyads), NOWHERE)
-    for half in halves.T:
-        rows = np.flatnonzero(half >= 0)
-        rows = rows[holds(tiling.sites, half[rows], dyads[rows])]
-        found[rows] = half[rows]
-    return found
-
-
-def followed(problem: Problem, designs: Designs, levels: int) -> tuple[int, int, float]:
-    """How many designs are in no tile or excluded on the way down, and how near a bound came, rad."""
-    sides = Tilings.covering(Required.of(ScaledProblem.of(problem)))
-    one, other = tile_of(sides.driver, designs.driver), tile_of(sides.driven, designs.driven)
-    lost = excluded = 0
-    nearest = np.inf
-    for _ in range(levels):
-        there = (one >= 0) & (other >= 0)
-        lost += int((~there).sum())
-        designs, one, other = designs[there], one[there], other[there]
-        for k in range(0, len(designs), 4096):
-            rows = slice(k, k + 4096)
-            least = designs.transmission[rows] - JUST_BELOW
-            kept, bound = sides.each_bounded(one[rows], other[rows], least)
-            excluded += len(least) - len(kept)
-            nearest = min(nearest, float((bound - least[kept]).min(initial=np.inf)))
-        one, other = half_of(sides.driver, one, designs.driver), half_of(sides.driven, other, designs.driven)
-    return lost, excluded, nearest
+def side_of(tiling: Tiling, dyads: Dyads) -> Side:
+    """One dyad of each design, and the tiles that have to hold it."""
+    return Side(
+        np.arange(len(tiling)),
+        tiling.halve,
+        lambda which, designs: holds(tiling.sites, which, dyads[designs]),
+    )
 
 
 REPEATING = {"bonnet", "bonnet, angles", "luggage, crank-rocker", "random", "random, short links", "planted"}
@@ -246,9 +165,11 @@ REPEATING = {"bonnet", "bonnet, angles", "luggage, crank-rocker", "random", "ran
 def test_no_linkage_is_lost_or_bounded_too_low(name: str) -> None:
     designs = feasible_designs(CASES[name], 150, count=800)
     assert len(designs) > 20
-    lost, excluded, nearest = followed(CASES[name], designs, 20)
-    assert (lost, excluded) == (0, 0)
-    assert nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
+    sides = Tilings.covering(Required.of(ScaledProblem.of(CASES[name])))
+    traced = [side_of(sides.driver, designs.driver), side_of(sides.driven, designs.driven)]
+    found = descent(traced, designs.transmission, lambda tiles, least: sides.each_bounded(*tiles, least), 20)
+    assert (found.lost, found.excluded) == (0, 0)
+    assert found.nearest < np.radians(0.1)  # sharp: a bound that is 0.1 deg too low would show
 
 
 def used(span: Span, points: ComplexArray, s: FloatArray) -> FloatArray:
@@ -260,7 +181,7 @@ def used(span: Span, points: ComplexArray, s: FloatArray) -> FloatArray:
 @pytest.mark.parametrize(("main", "half"), [(MOVING, 0.1), (GROUND, 0.01), (MOVING, 0.001)])
 def test_charts_hold_every_dyad(main: int, half: float) -> None:
     rng, longest = np.random.default_rng(main), 6.0
-    scaled = ScaledProblem.of(random_poses(3))
+    scaled = ScaledProblem.of(random_poses(3, 3))
     assert scaled.motion is not None
     charts = Charts.of(scaled.motion, longest, main, complex(np.exp(0.7j)))
     dyads = exact(charts.motion, some_dyads(charts, 3.0, 3000, rng))

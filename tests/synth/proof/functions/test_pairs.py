@@ -1,11 +1,13 @@
-"""Three and four pairs of a function: no generator is above a bound, and forms hold every coupler."""
+"""Three to five pairs of a function: no generator exceeds a bound, forms hold all couplers, none is lost."""
+
+from typing import Any
 
 import numpy as np
 import pytest
 
 from grashof import synthesize
-from grashof.analysis import verify
-from grashof.problems import FunctionTask, Problem, Requirements
+from grashof.analysis import solve_position, verify
+from grashof.problems import FourBar, FunctionTask, Problem, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth import Claim
 from grashof.synth.proof.claims.bounds import Proving
@@ -13,6 +15,7 @@ from grashof.synth.proof.curve.patches import Patches
 from grashof.synth.proof.forms.forms import Span
 from grashof.synth.proof.functions.couplers import ABOUT, PlaneOfCouplers
 from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
+from grashof.synth.proof.functions.five_pairs import certified_functions
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.pairs import exact_functions
@@ -20,12 +23,16 @@ from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.functions.four_bar import FourBars
 
 
-def random_function(seed: int, count: int, **requirements: object) -> Problem:
+def function(turned: FloatArray, output: FloatArray, **wanted: Any) -> Problem:
+    """Pairs of angles in deg, from the first ones on."""
+    task = FunctionTask.from_degrees(turned - turned[0], output - output[0])
+    return Problem(task=task, requirements=Requirements(**wanted))
+
+
+def random_function(seed: int, count: int, **wanted: Any) -> Problem:
     rng = np.random.default_rng(seed)
     turned, output = np.sort(rng.uniform(0, 120, count)), np.sort(rng.uniform(0, 90, count))
-    output *= rng.choice([-1, 1])
-    task = FunctionTask.from_degrees(turned - turned[0], output - output[0])
-    return Problem(task=task, requirements=Requirements(**requirements))  # type: ignore[arg-type]
+    return function(turned, output * rng.choice([-1, 1]), **wanted)
 
 
 def motion_of(problem: Problem) -> Displacements:
@@ -211,3 +218,25 @@ def test_no_square_that_holds_a_generator_is_dropped(seed: int) -> None:
             assert len(kept)
             assert np.all(bound[0] >= np.where(held[row], worth, 0.0).max())
         plane.divided(which)
+
+
+MORE = [pytest.param(seed, marks=pytest.mark.study) for seed in range(8, 100)]
+
+
+@pytest.mark.parametrize("seed", [*range(8), *MORE])
+def test_every_coupler_of_five_random_pairs_is_known(seed: int) -> None:
+    made = certified_functions(ScaledProblem.of(random_function(seed, 5, link_ratio_max=50.0)))
+    assert made is not None
+    assert (made.complete, made.why) == (True, "")
+    assert 1 <= made.within <= 3
+
+
+def test_a_planted_function_is_listed_and_all_are_proven() -> None:
+    linkage = FourBar(o2=(0, 0), o4=(1, 0), r2=0.4, r3=1.1, r4=0.8, assembly=1)
+    theta2 = np.radians([20.0, 45.0, 70.0, 95.0, 120.0])
+    theta4 = np.unwrap(solve_position(linkage, theta2, 1).theta4)
+    found = synthesize(function(np.degrees(theta2), np.degrees(theta4), link_ratio_max=50.0))
+    assert found.proof is not None
+    assert (found.proof.claim, found.proof.complete) == (Claim.BEST, True)
+    ratios = [one.linkage.lengths / one.linkage.lengths[0] for one in found.candidates]
+    assert min(float(np.abs(each - [1, 0.4, 1.1, 0.8]).max()) for each in ratios) < 1e-6
