@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -26,7 +26,8 @@ class Met:
     """A linkage at the targets of a task, and its motion.
 
     It must be on one circuit, and branch, at `theta2` (K,), rad, with `assembly` (K,); `covered` if it can be
-    assembled over the entire range of the task. `figures` are further fields of the verdict.
+    assembled over the entire range of the task. `figures` are further fields of the verdict, `defects` those
+    against requirements of the kind of task alone.
     """
 
     targets: Targets
@@ -35,6 +36,7 @@ class Met:
     assembly: IntArray
     covered: bool = True
     figures: Mapping[str, Any] = field(default_factory=dict)
+    defects: tuple[Defect, ...] = ()
 
 
 def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
@@ -99,7 +101,8 @@ def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     first -= TURN * np.ceil((first - np.pi) / TURN)
     theta2, assembly = np.array([first, first + sense * way]), np.full(2, int(linkage.assembly))
     motion = TaskMotion.ordered(theta2, sense).closed()
-    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly)
+    defects = tuple(_stroke_defects(linkage, task, wanted))
+    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, defects=defects)
 
 
 def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
@@ -126,20 +129,8 @@ def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Itera
             yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)
 
 
-def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements) -> Iterable[Defect]:
-    return ()
-
-
-@dataclass(frozen=True, slots=True)
-class HowMet:
-    """How a kind of task is met, and the defects against its own requirements."""
-
-    met: Callable[[Linkage, Any, Requirements], Met]
-    defects: Callable[[Linkage, Any, Requirements], Iterable[Defect]] = _no_defects
-
-
-HOW_MET: Mapping[type, HowMet] = {
-    Task: HowMet(_in_plane),
-    FunctionTask: HowMet(_as_function),
-    StrokeTask: HowMet(_between_limits, _stroke_defects),
+HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements], Met]] = {
+    Task: _in_plane,
+    FunctionTask: _as_function,
+    StrokeTask: _between_limits,
 }

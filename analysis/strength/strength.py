@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, joined, pins_of
+from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.analysis.strength.along_bar import (
     Along,
@@ -104,7 +104,7 @@ def pin_measures(
         joint: {"pin_force": force * structure.in_si("N")}
         | {
             key: force / area * structure.in_si("Pa")
-            for key, area in structure.pin_areas(joint, joined(linkage, joint)).items()
+            for key, area in structure.pin_areas(joint, linkage.mechanism.every_joint[joint].links).items()
         }
         for joint, force in forces.items()
     }
