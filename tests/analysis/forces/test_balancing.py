@@ -6,42 +6,27 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from loaded_linkages import JACK, TURN
 from scipy.optimize import minimize
 
-from grashof.analysis import (
-    AppliedForce,
-    Body,
-    GrashofClass,
-    Loads,
-    Masses,
-    balance_force,
-    balance_reciprocating,
-    balance_torque,
-    balance_turn,
-    inverse_dynamics,
-    output_stroke,
-    shaking_harmonics,
-    solve_kinematics,
-    uniform_bars,
-)
+from grashof import analysis
+from grashof.analysis import Body, Masses, inverse_dynamics, shaking_harmonics, solve_kinematics
 from grashof.analysis.mechanism.driver_law import mean_over
 from grashof.problems import AssemblyError, FourBar, ProblemError, SliderCrank
 
 CHECKED = settings(max_examples=10)
-TURN = 2 * np.pi
-JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
+Drawer = Callable[[analysis.GrashofClass], st.SearchStrategy[FourBar]]
 
 
 @given(data=st.data())
 @CHECKED
 def test_no_shaking_force_is_left(four_bars: Drawer, data: st.DataObject) -> None:
-    linkage = data.draw(four_bars(GrashofClass.CRANK_ROCKER))
+    linkage = data.draw(four_bars(analysis.GrashofClass.CRANK_ROCKER))
     place = st.tuples(st.floats(-2, 2), st.floats(-2, 2))
     masses = Masses(*(Body(data.draw(st.floats(0.1, 5)), 0.3, data.draw(place)) for _ in range(3)))
     state = solve_kinematics(linkage, np.linspace(0, TURN, 60), 2.0, 0.5)
     before = inverse_dynamics(state, masses).shaking_force
-    balanced = balance_force(linkage, masses, crank_radius=0.7)
+    balanced = analysis.balance_force(linkage, masses, crank_radius=0.7)
     after = inverse_dynamics(state, balanced.masses).shaking_force
     assert np.abs(after).max() < 1e-9 * np.abs(before).max()
     assert np.hypot(*balanced.crank_weight.centre) == pytest.approx(0.7)
@@ -50,20 +35,20 @@ def test_no_shaking_force_is_left(four_bars: Drawer, data: st.DataObject) -> Non
 
 def test_batches_are_balanced_at_once() -> None:
     batch = FourBar(o2=(0, 0), o4=(4, 1), r2=[[1.0], [0.8]], r3=4, r4=3)
-    bars = uniform_bars(batch, 2.0)
+    bars = analysis.uniform_bars(batch, 2.0)
     state = solve_kinematics(batch, np.linspace(0, 6, 9))
     before = inverse_dynamics(state, bars).shaking_force
-    after = inverse_dynamics(state, balance_force(batch, bars).masses).shaking_force
+    after = inverse_dynamics(state, analysis.balance_force(batch, bars).masses).shaking_force
     assert np.abs(after).max() < 1e-12 * np.abs(before).max()
 
 
 @pytest.mark.parametrize("measure", ["rms", "peak"])
 def test_no_other_counterweight_makes_the_torque_more_even(measure: str) -> None:
-    rods = AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
-    loads = Loads(gravity=(0, -9.81), forces=(rods,))
-    bars = uniform_bars(JACK, (312, 312, 314))
+    rods = analysis.AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
+    loads = analysis.Loads(gravity=(0, -9.81), forces=(rods,))
+    bars = analysis.uniform_bars(JACK, (312, 312, 314))
     state = solve_kinematics(JACK, np.arange(0, TURN, TURN / 180), TURN / 3)
-    found = balance_torque(state, bars, loads, 1.0, measure)
+    found = analysis.balance_torque(state, bars, loads, 1.0, measure)
 
     def size(torque: np.ndarray) -> float:
         return float(np.sqrt(np.mean(torque**2)) if measure == "rms" else np.abs(torque).max())
@@ -87,11 +72,11 @@ def test_no_other_counterweight_makes_the_torque_more_even(measure: str) -> None
 @pytest.mark.parametrize("measure", ["rms", "peak"])
 def test_no_other_counterweight_makes_the_torque_of_a_turn_more_even(measure: str) -> None:
     """Between samples, too: against dense ones, and the counterweights beside it."""
-    rods = AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
-    loads, speed = Loads(gravity=(0, -9.81), forces=(rods,)), TURN / 3
-    bars = uniform_bars(JACK, (312, 312, 314))
-    found = balance_turn(JACK, bars, speed, loads, 1.0, measure)
-    toggles = output_stroke(JACK).theta2  # where the load jumps
+    rods = analysis.AppliedForce(4, (-4.572, 0), lambda state: _rods(state.omega4), turning=True)
+    loads, speed = analysis.Loads(gravity=(0, -9.81), forces=(rods,)), TURN / 3
+    bars = analysis.uniform_bars(JACK, (312, 312, 314))
+    found = analysis.balance_turn(JACK, bars, speed, loads, 1.0, measure)
+    toggles = analysis.output_stroke(JACK).theta2  # where the load jumps
     beside = np.concatenate([toggles - 1e-9, toggles + 1e-9])
 
     def size(moment: np.ndarray) -> float:
@@ -114,7 +99,7 @@ def test_no_other_counterweight_makes_the_torque_of_a_turn_more_even(measure: st
     assert len(found.torque_after) == 361
     state = solve_kinematics(JACK, np.radians(np.arange(361)), speed)
     np.testing.assert_allclose(found.torque_after, inverse_dynamics(state, found.masses, loads).torque)
-    samples = balance_torque(state, bars, loads, 1.0, measure)
+    samples = analysis.balance_torque(state, bars, loads, 1.0, measure)
     assert found.crank_weight.mass == pytest.approx(samples.crank_weight.mass, rel=0.01)
 
 
@@ -125,20 +110,20 @@ def _rods(omega4: np.ndarray) -> np.ndarray:
 
 
 def test_bad_input_is_reported() -> None:
-    bars, state = uniform_bars(JACK, 300.0), solve_kinematics(JACK, np.linspace(0, 6, 20))
-    gravity = Loads(gravity=(0, -9.81))
+    bars, state = analysis.uniform_bars(JACK, 300.0), solve_kinematics(JACK, np.linspace(0, 6, 20))
+    gravity = analysis.Loads(gravity=(0, -9.81))
     with pytest.raises(ProblemError, match="gravity is zero"):
-        balance_torque(state, bars, Loads(), 1.0)
+        analysis.balance_torque(state, bars, analysis.Loads(), 1.0)
     with pytest.raises(ProblemError, match="steady speed"):
-        balance_torque(solve_kinematics(JACK, [0.0, 1.0], 1.0, 2.0), bars, gravity, 1.0)
+        analysis.balance_torque(solve_kinematics(JACK, [0.0, 1.0], 1.0, 2.0), bars, gravity, 1.0)
     with pytest.raises(ProblemError, match="measure is 'mean'"):
-        balance_torque(state, bars, gravity, 1.0, "mean")
+        analysis.balance_torque(state, bars, gravity, 1.0, "mean")
     with pytest.raises(ProblemError, match="measure is 'mean'"):
-        balance_turn(JACK, bars, 1.0, gravity, 1.0, "mean")
+        analysis.balance_turn(JACK, bars, 1.0, gravity, 1.0, "mean")
     with pytest.raises(AssemblyError, match="turn fully"):
-        balance_turn(FourBar((0, 0), (4, 0), 2, 2, 3), bars, 1.0, gravity, 1.0)
+        analysis.balance_turn(FourBar((0, 0), (4, 0), 2, 2, 3), bars, 1.0, gravity, 1.0)
     with pytest.raises(ProblemError, match="radius"):
-        balance_force(JACK, bars, crank_radius=0.0)
+        analysis.balance_force(JACK, bars, crank_radius=0.0)
 
 
 R, LENGTH, OMEGA, PISTON = 0.05, 0.2, 120.0, 0.7
@@ -163,7 +148,7 @@ def test_a_share_of_the_primary_force_goes_across(share: float, along: float, ac
     engine = SliderCrank((0, 0), R, LENGTH, slide_angle=0.4)
     rod = Body(0.6, 0.0, (0.0, 0.0)) + Body(0.2, 0.0, (LENGTH, 0.0))
     masses = Masses(Body(0.5, 0.01, (0.01, -0.02)), rod, Body(PISTON))
-    found = balance_reciprocating(engine, masses, share, radius=0.04)
+    found = analysis.balance_reciprocating(engine, masses, share, radius=0.04)
     assert float(found.rotating) == pytest.approx(0.6)
     assert float(found.reciprocating) == pytest.approx(0.2 + PISTON)
     assert np.linalg.norm(found.crank_weight.centre) == pytest.approx(0.04)
@@ -176,7 +161,7 @@ def test_the_secondary_force_is_not_changed_and_the_series_is_the_force() -> Non
     engine = SliderCrank((0, 0), R, LENGTH, offset=0.03)
     masses = Masses(Body(0.5, 0.01, (0.01, 0.0)), Body(0.8, 0.004, (0.07, 0.01)), Body(PISTON))
     before = shaking_harmonics(engine, masses, OMEGA, 30)
-    after = shaking_harmonics(engine, balance_reciprocating(engine, masses).masses, OMEGA, 30)
+    after = shaking_harmonics(engine, analysis.balance_reciprocating(engine, masses).masses, OMEGA, 30)
     np.testing.assert_allclose(after[1:], before[1:], rtol=0, atol=1e-11 * np.abs(before).max())
     theta = np.linspace(0, 6, 31)
     waves = np.exp(1j * np.outer(theta, np.arange(1, 31)))
@@ -189,6 +174,6 @@ def test_a_linkage_without_harmonics_is_refused() -> None:
     with pytest.raises(AssemblyError, match="does not turn fully"):
         shaking_harmonics(SliderCrank((0, 0), 2, 1), none, 1.0)
     with pytest.raises(ProblemError, match=r"^linkage is .*; it must be a SliderCrank$"):
-        balance_reciprocating(FourBar((0, 0), (4, 0), 1, 4, 3), none)  # type: ignore[arg-type]
+        analysis.balance_reciprocating(FourBar((0, 0), (4, 0), 1, 4, 3), none)  # type: ignore[arg-type]
     with pytest.raises(ProblemError, match=r"^share is 1.5"):
-        balance_reciprocating(SliderCrank((0, 0), 1, 2), none, 1.5)
+        analysis.balance_reciprocating(SliderCrank((0, 0), 1, 2), none, 1.5)

@@ -4,50 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from loaded_linkages import JACK, ROCKER, SPRUNG, TURN, WEIGHT
 
-from grashof.analysis import (
-    WEIGHTLESS,
-    AppliedMoment,
-    Body,
-    Joint,
-    Loads,
-    Masses,
-    Spring,
-    TorsionSpring,
-    balance_force,
-    driver_ranges,
-    equilibria,
-    free_response,
-    mechanical_energy,
-    solve_kinematics,
-    uniform_bars,
-)
+from grashof import analysis
+from grashof.analysis import WEIGHTLESS, AppliedMoment, Body, Loads, Masses, equilibria, uniform_bars
 from grashof.problems import FourBar
-
-TURN = 2 * np.pi
-JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762, coupler_point=(1.7, 0.7))
-ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3, coupler_point=(1, 1), assembly=-1)
-SPRUNG = Loads(
-    gravity=(0.5, -9.81),
-    springs=(Spring(1, (2, 0), 4, (1, 0.2), 60, 1.0),),
-    torsion_springs=(TorsionSpring(Joint.B, 5.0, 1.0),),
-)
 
 
 def ends(linkage: FourBar) -> tuple[float, float]:
-    low, high = driver_ranges(linkage)[0]
+    low, high = analysis.driver_ranges(linkage)[0]
     return (0.0, TURN) if linkage is JACK else (float(low), float(high))
 
 
 @pytest.mark.parametrize("linkage", [JACK, ROCKER])
-@pytest.mark.parametrize("loads", [Loads(gravity=(0, -9.81)), SPRUNG])
+@pytest.mark.parametrize("loads", [WEIGHT, SPRUNG])
 def test_the_energy_is_stationary_and_least_where_it_is_stable(linkage: FourBar, loads: Loads) -> None:
     masses = uniform_bars(linkage, 2.0, payload=3.0)
     found = equilibria(linkage, masses, loads, *ends(linkage), closed=linkage is JACK)
     assert found.theta2.size
     low, high = ends(linkage)
     theta2 = np.linspace(low + 1e-3, high - 1e-3, 5001)
-    energy = mechanical_energy(solve_kinematics(linkage, theta2, 0.0), masses, loads)
+    energy = analysis.mechanical_energy(analysis.solve_kinematics(linkage, theta2, 0.0), masses, loads)
     slope = np.diff(energy)
     turning = np.flatnonzero(slope[:-1] * slope[1:] < 0) + 1
     np.testing.assert_allclose(found.theta2, theta2[turning], atol=2 * (theta2[1] - theta2[0]))
@@ -56,7 +33,7 @@ def test_the_energy_is_stationary_and_least_where_it_is_stable(linkage: FourBar,
     np.testing.assert_array_equal(np.isfinite(found.frequency), least)
 
 
-@pytest.mark.parametrize(("linkage", "loads"), [(JACK, SPRUNG), (ROCKER, Loads(gravity=(0, -9.81)))])
+@pytest.mark.parametrize(("linkage", "loads"), [(JACK, SPRUNG), (ROCKER, WEIGHT)])
 def test_small_swings_have_the_natural_frequency(linkage: FourBar, loads: Loads) -> None:
     masses = uniform_bars(linkage, 2.0, payload=3.0)
     found = equilibria(linkage, masses, loads, *ends(linkage), closed=linkage is JACK)
@@ -65,7 +42,7 @@ def test_small_swings_have_the_natural_frequency(linkage: FourBar, loads: Loads)
     for k in stable:
         middle, frequency = float(found.theta2[k]), float(found.frequency[k])
         time = np.linspace(0, 2.2 / frequency, 221)
-        swing = free_response(linkage, masses, time, middle + 1e-3, 0.0, loads=loads)
+        swing = analysis.free_response(linkage, masses, time, middle + 1e-3, 0.0, loads=loads)
         speed = swing.state.omega2
         back = np.flatnonzero((speed[:-1] > 0) & (speed[1:] <= 0))
         through = time[back] + speed[back] / (speed[back] - speed[back + 1]) * (time[1] - time[0])
@@ -75,21 +52,20 @@ def test_small_swings_have_the_natural_frequency(linkage: FourBar, loads: Loads)
 
 def test_a_moment_shifts_it_and_a_strong_one_leaves_none() -> None:
     rod = Masses(Body(2.0, 0.3, (0.5, 0.0)), WEIGHTLESS.coupler, WEIGHTLESS.output)
-    gravity = Loads(gravity=(0, -9.81))
-    turned = replace(gravity, moments=(AppliedMoment(2, 2.0),))
+    turned = replace(WEIGHT, moments=(AppliedMoment(2, 2.0),))
     found = equilibria(JACK, rod, turned, 0.0, TURN, closed=True)
     angle = np.arccos(2.0 / 9.81)  # m g a cos(theta2) = M
     np.testing.assert_allclose(found.theta2, [angle, TURN - angle], rtol=1e-12)
     stiffness = 9.81 * np.sin(angle)
     np.testing.assert_allclose(found.stiffness, [-stiffness, stiffness], rtol=1e-9)
     np.testing.assert_allclose(found.inertia, 0.3 + 2 * 0.25, rtol=1e-12)
-    strong = replace(gravity, moments=(AppliedMoment(2, 20.0),))
+    strong = replace(WEIGHT, moments=(AppliedMoment(2, 20.0),))
     assert equilibria(JACK, rod, strong, 0.0, TURN, closed=True).theta2.size == 0
 
 
 def test_a_balanced_linkage_rests_everywhere() -> None:
-    bars = balance_force(JACK, uniform_bars(JACK, 2.0)).masses
-    found = equilibria(JACK, bars, Loads(gravity=(0, -9.81)), 0.0, TURN, closed=True)
+    bars = analysis.balance_force(JACK, uniform_bars(JACK, 2.0)).masses
+    found = equilibria(JACK, bars, WEIGHT, 0.0, TURN, closed=True)
     assert found.everywhere
     assert found.theta2.size == 0
     assert equilibria(JACK, bars, Loads(), 0.0, TURN, closed=True).everywhere

@@ -3,35 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+from loaded_linkages import JACK, LOADS, MASSES, ROCKER
 
-from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    Body,
-    Friction,
-    Joint,
-    Loads,
-    Masses,
-    Spring,
-    TorsionSpring,
-    advantage,
-    driver_ranges,
-    holding,
-    output_stroke,
-)
+from grashof.analysis import Friction, Loads, advantage, driver_ranges, holding, output_stroke
 from grashof.problems import FourBar
-
-TURN = 2 * np.pi
-JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762, coupler_point=(1.7, 0.7))
-ROCKER = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3, coupler_point=(1, 1), assembly=-1)
-MASSES = Masses(Body(2, 0.3, (0.4, 0.1)), Body(3, 0.5, (1.0, -0.3)), Body(1.5, 0.2, (0.7, 0.2)))
-LOADS = Loads(
-    gravity=(1.0, -9.81),
-    forces=(AppliedForce(3, (0.3, 0.4), (5.0, -7.0)), AppliedForce(4, (1, 0), (0.0, 8.0), turning=True)),
-    moments=(AppliedMoment(2, 3.0), AppliedMoment(4, lambda state: np.sin(state.theta2))),
-    springs=(Spring(1, (2, 0), 4, (1, 0.2), 20, 1.0, damping=4.0), Spring(2, (0.5, 0), 4, (1, 0), 10, 0.5)),
-    torsion_springs=(TorsionSpring(Joint.B, 5.0, 1.0), TorsionSpring(Joint.A, 2.0, -1.0)),
-)
 
 
 def angles_of(linkage: FourBar) -> np.ndarray:
