@@ -7,19 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof.analysis import (
-    DriverLaw,
-    Kinematics,
-    Loads,
-    Verdict,
-    inverse_dynamics,
-    over_task,
-    solve_kinematics,
-    solve_position,
-    stated_loads,
-    stated_masses,
-    verify,
-)
+from grashof import analysis
+from grashof.analysis import Loads, inverse_dynamics, over_task, solve_kinematics, stated_masses, verify
 from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.over_task import motion_ends
@@ -48,9 +37,9 @@ ANY = Requirements(rotatability="any")
 
 def judged(
     linkage: Linkage, theta2: Any, spec: DynamicsSpec = BARS, unit: str = "m", *, closed: bool = False
-) -> tuple[Problem, Verdict]:
+) -> tuple[Problem, analysis.Verdict]:
     """A task of points that the linkage passes at these driver angles, and the verdict on it."""
-    task = PathTask(solve_position(linkage, theta2).p, closed=closed)
+    task = PathTask(analysis.solve_position(linkage, theta2).p, closed=closed)
     word = linkage.mechanism.word
     problem = Problem(task=task, requirements=ANY, length_unit=unit, dynamics=spec, mechanism=word)
     return problem, verify(linkage, task, ANY)
@@ -109,7 +98,7 @@ def test_a_peak_beside_a_near_dead_position_is_met() -> None:
     found = over_task(linkage, problem, verdict)
     masses, loads = stated_masses(linkage, BARS), Loads(gravity=BARS.gravity)
 
-    def state(theta2: FloatArray) -> Kinematics:
+    def state(theta2: FloatArray) -> analysis.Kinematics:
         return solve_kinematics(linkage, theta2, BARS.omega2)
 
     curves: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -264,12 +253,12 @@ def test_peaks_and_means_are_those_of_dense_samples_in_time(motor: str, seed: in
     verdict = verify(linkage, task, problem.requirements)
     found = over_task(linkage, problem, verdict)
     start, rotation = float(verdict.theta2[0]), float(verdict.theta2[-1] - verdict.theta2[0])
-    law = DriverLaw(start, rotation, np.copysign(np.pi, rotation), spec.motor or MotorSpec())
+    law = analysis.DriverLaw(start, rotation, np.copysign(np.pi, rotation), spec.motor or MotorSpec())
     beside = (law.corners[:, None] + [-1e-9, 1e-9]).ravel()
     share = np.unique(np.concatenate([np.linspace(0, 1, 20_001), beside]))
     time = share[(share > 0) & (share < 1)] * law.duration  # at rest friction may be anything
     state = solve_kinematics(linkage, *law.at_time(time), assembly=verdict.assembly[0])
-    loads = stated_loads(spec, 1.0, lambda _: time)
+    loads = analysis.stated_loads(spec, 1.0, lambda _: time)
     dynamics = inverse_dynamics(state, stated_masses(linkage, spec), loads)
     rms = np.sqrt(np.trapezoid(dynamics.torque**2, time) / law.duration)
     force = max(dynamics.joint_force(joint).max() for joint in joints_of(linkage))
@@ -324,7 +313,7 @@ def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre:
     assert np.sign(end - start) == sense
     theta2 = np.linspace(start, end, 20_001)
     state = solve_kinematics(own, theta2, sense * spec.omega2)
-    dynamics = inverse_dynamics(state, stated_masses(own, spec, metre), stated_loads(spec, metre))
+    dynamics = inverse_dynamics(state, stated_masses(own, spec, metre), analysis.stated_loads(spec, metre))
     torque = dynamics.torque * metre**2
     force = max(float(dynamics.joint_force(joint).max()) for joint in joints_of(own)) * metre
     assert found.torque_peak == pytest.approx(np.abs(torque).max(), rel=1e-6)

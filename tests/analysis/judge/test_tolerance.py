@@ -45,18 +45,6 @@ def nominal(linkage: FourBar) -> FloatArray:
     return np.concatenate([linkage.lengths, linkage.coupler_point])
 
 
-def differences(linkage: FourBar, theta2: FloatArray, assembly: FloatArray, step: float) -> FloatArray:
-    """Central differences of x, y of P and theta3, shape (N, 3, 6)."""
-    columns = []
-    for way in step * np.eye(6):
-        there, back = (
-            solve_position(made(linkage, nominal(linkage) + sign * way), theta2, assembly) for sign in (1, -1)
-        )
-        turned = np.angle(np.exp(1j * (there.theta3 - back.theta3)))
-        columns.append(np.column_stack([there.p - back.p, turned]) / (2 * step))
-    return np.stack(columns, axis=-1)
-
-
 def poses_of(
     linkage: FourBar, theta2: FloatArray, angle_length: float | None = None
 ) -> tuple[MotionTask, Verdict]:
@@ -265,7 +253,7 @@ def test_targets_on_both_assemblies() -> None:
 def test_moves_are_those_of_the_worst_target() -> None:
     linkage = CRANK_ROCKER
     task, verdict = poses_of(linkage, np.array([0.3, 0.9, 1.5, 2.2]), angle_length=3.0)
-    slope = differences(linkage, verdict.theta2, verdict.assembly, 1e-5) * np.array([1, 1, 3])[:, None]
+    slope = sensitivity(linkage, verdict.theta2, verdict.assembly) * np.array([1, 1, 3])[:, None]
     found = robustness(linkage, task, verdict, Manufacturing(0.2))
     np.testing.assert_allclose(found.moves, np.sqrt((slope**2).sum(axis=1)).max(axis=0), rtol=1e-8)
     worst = max(
