@@ -9,7 +9,7 @@ from loaded_linkages import JACK, ROCKER, TURN, WEIGHT
 from scipy.integrate import quad
 
 from grashof import analysis
-from grashof.analysis import flywheel_speed, inverse_dynamics, motor_torque, size_flywheel, uniform_bars
+from grashof.analysis import flywheel_speed, inverse_dynamics, size_flywheel, solve_kinematics, uniform_bars
 from grashof.problems import AssemblyError, FourBar, InvertedSliderCrank, Linkage, ProblemError, SliderCrank
 from grashof.problems.values.arrays import FloatArray
 
@@ -21,7 +21,7 @@ def test_its_energy_is_the_work_between_slowest_and_fastest() -> None:
     wheel = size_flywheel(CRANK_ROCKER, BARS, 6.0, 0.02, WEIGHT)
 
     def surplus(theta2: float) -> float:
-        state = analysis.solve_kinematics(CRANK_ROCKER, theta2, 6.0)
+        state = solve_kinematics(CRANK_ROCKER, theta2, 6.0)
         return wheel.mean_torque - float(inverse_dynamics(state, BARS, WEIGHT).torque)
 
     work = quad(surplus, wheel.slowest, wheel.fastest, epsrel=1e-10)[0]
@@ -47,7 +47,7 @@ def test_energy_and_angles_near_a_change_point_with_a_load_that_jumps() -> None:
     wheel = size_flywheel(linkage, bars, speed, 0.05, loads)
 
     def torque(theta2: npt.ArrayLike) -> FloatArray:
-        return inverse_dynamics(analysis.solve_kinematics(linkage, theta2, speed), bars, loads).torque
+        return inverse_dynamics(solve_kinematics(linkage, theta2, speed), bars, loads).torque
 
     def work(start: float, end: float) -> float:
         points = np.sort(inside[(inside > start) & (inside < end)])
@@ -122,9 +122,9 @@ def test_a_heavy_wheel_really_turns_so() -> None:
 
 @pytest.mark.parametrize("omega2", [2.0, -2.0])
 def test_power_into_the_gear_comes_out_but_for_its_losses(omega2: float) -> None:
-    state = analysis.solve_kinematics(JACK, np.linspace(0, 6.28, 200), omega2)
+    state = solve_kinematics(JACK, np.linspace(0, 6.28, 200), omega2)
     torque = inverse_dynamics(state, uniform_bars(JACK, 300.0), WEIGHT).torque
-    motor = motor_torque(torque, omega2, 0.0, 25.0, 0.8) * 25 * omega2
+    motor = analysis.motor_torque(torque, omega2, 0.0, 25.0, 0.8) * 25 * omega2
     load = torque * omega2
     drives = load > 0
     assert drives.any()
@@ -132,19 +132,3 @@ def test_power_into_the_gear_comes_out_but_for_its_losses(omega2: float) -> None
     np.testing.assert_allclose(load[drives], 0.8 * motor[drives])
     np.testing.assert_allclose(motor[~drives], 0.8 * load[~drives])
     assert (motor >= load - 1e-9 * np.abs(load).max()).all()
-
-
-def test_the_rotor_takes_its_share() -> None:
-    """Its kinetic energy changes by the power that is left of the motor's."""
-    ratio, inertia, alpha2 = 30.0, 0.05, 4.0
-    time = np.linspace(0, 1, 101)
-    omega2 = 1 + alpha2 * time
-    torque = 50 + 10 * np.sin(7 * time)
-    motor = motor_torque(torque, omega2, alpha2, ratio, 1.0, inertia)
-    rate = np.gradient(inertia * (ratio * omega2) ** 2 / 2, time, edge_order=2)
-    np.testing.assert_allclose(motor * ratio * omega2 - torque * omega2, rate, rtol=1e-9)
-
-
-def test_without_gear_or_rotor_it_is_the_drive() -> None:
-    torque = np.array([3.0, -4.0, 0.0])
-    np.testing.assert_array_equal(motor_torque(torque, 1.0, 9.0, 1.0), torque)

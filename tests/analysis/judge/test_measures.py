@@ -13,7 +13,6 @@ from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
-from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (
     DynamicsSpec,
     Manufacturing,
@@ -130,23 +129,6 @@ def test_moves_are_differences() -> None:
     moved = solve_position(made[:, None], theta2).p - solve_position(linkage, theta2).p
     for name, ways in zip(("r1", "r2", "r3", "r4", "u", "v"), moved, strict=True):
         assert values[f"move_{name}"] == pytest.approx(np.hypot(*ways.T).max() / step, rel=1e-4)
-
-
-def test_quantities_that_the_problem_does_not_state_have_no_value(values: Values) -> None:
-    bare = Values(
-        values.linkage,
-        values.verdict,
-        Problem(task=values.problem.task, requirements=Requirements(exact=True)),
-    )
-    unknown = {key for key in bare if np.isnan(bare[key])}
-    needing = {key for key in MEASURES if QUANTITIES[key].needs.value not in ("nothing", "a closed path")}
-    closed = set() if values.problem.task.closed else {"hausdorff", "frechet"}
-    angles = (
-        set() if values.problem.task.has_angle.any() else {"body_angle", "angle_error_max", "angle_error_rms"}
-    )
-    lacking = {key for key in MEASURES if values.linkage.mechanism.word not in QUANTITIES[key].kinds}
-    swings = output_stroke(values.linkage).time_ratio  # none where the output link has no limit positions
-    assert unknown == needing | closed | angles | lacking | (set() if np.isfinite(swings) else {"time_ratio"})
 
 
 def test_known_values_are_pickled(monkeypatch: pytest.MonkeyPatch) -> None:

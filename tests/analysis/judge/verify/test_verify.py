@@ -99,15 +99,6 @@ def test_planted_linkages_have_no_defect(seed: int, poses: int) -> None:
     assert verdict.transmission_min_task >= verdict.transmission_min_cycle > 0
 
 
-@pytest.mark.parametrize("linkage", [CRANK_ROCKER, DOUBLE_CRANK])
-@pytest.mark.parametrize("assembly", [1, -1])
-def test_designs_of_these_tests_have_no_defect_of_their_own(linkage: FourBar, assembly: int) -> None:
-    verdict = judged(Requirements(), replace(linkage, assembly=assembly))
-    assert verdict.ok
-    assert (verdict.assembly == assembly).all()
-    np.testing.assert_allclose(np.degrees(verdict.theta2), DEGREES, rtol=1e-12)
-
-
 def test_a_wrong_position_is_not_exact() -> None:
     task = off_at_the_third((3e-4, 4e-4), angle_length=1e-3)
     defect = only(verify(CRANK_ROCKER, task, Requirements()), "exact")
