@@ -16,14 +16,7 @@ from grashof import analysis
 from grashof.analysis import AppliedForce, Body, Friction, Loads, Masses, inverse_dynamics, solve_kinematics
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.joints import joint_motion, joints_of, pins_of
-from grashof.problems import (
-    DynamicsSpec,
-    FourBar,
-    Linkage,
-    ProblemError,
-    SectionSpec,
-    StrengthSpec,
-)
+from grashof.problems import DynamicsSpec, FourBar, Linkage, ProblemError, SectionSpec, StrengthSpec
 
 DRIVER = (2.0, 0.7, -0.3)
 GRAVITY = (0.7, -9.81)

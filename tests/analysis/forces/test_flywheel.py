@@ -66,11 +66,6 @@ def test_energy_and_angles_near_a_change_point_with_a_load_that_jumps() -> None:
     assert np.ptp(energy) == pytest.approx(wheel.energy, rel=1e-4)
 
 
-def test_an_even_torque_needs_no_flywheel() -> None:
-    wheel = size_flywheel(CRANK_ROCKER, BARS, 1e-9, 0.02)
-    assert wheel.energy == pytest.approx(0, abs=1e-15)
-
-
 def test_bad_input_is_reported() -> None:
     with pytest.raises(AssemblyError, match="turn fully"):
         size_flywheel(ROCKER, BARS, 1.0, 0.1)

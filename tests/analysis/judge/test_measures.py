@@ -8,20 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grashof import problems
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
-from grashof.problems import (
-    DynamicsSpec,
-    Manufacturing,
-    PathTask,
-    Problem,
-    ProblemError,
-    Requirements,
-    TransmissionOver,
-)
+from grashof.problems import Manufacturing, Problem, ProblemError, Requirements, TransmissionOver
 from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
@@ -29,7 +22,7 @@ from grashof.problems.values.units import Unit
 SAMPLES = 20_001
 STATED: dict[str, Any] = {
     "length_unit": "m",
-    "dynamics": DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81)),
+    "dynamics": problems.DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81)),
     "manufacturing": Manufacturing(0.01),
     "requirements": Requirements(exact=False),
 }
@@ -41,7 +34,7 @@ def planted(seed: int, kind: str = "motion") -> Values:
     if kind == "closed":
         linkage = random_full_crank(rng)
         points = solve_position(linkage, np.linspace(0, 2 * np.pi, 12, endpoint=False)).p
-        task: Any = PathTask(points + 0.01 * rng.normal(size=points.shape), closed=True)
+        task: Any = problems.PathTask(points + 0.01 * rng.normal(size=points.shape), closed=True)
     else:
         task, linkage = planted_motion(rng, 4) if kind == "motion" else planted_path(rng, 7)
     problem = Problem(task=task, **STATED)

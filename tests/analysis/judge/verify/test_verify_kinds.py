@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grashof import problems
 from grashof.analysis import (
     GrashofClass,
     driver_ranges,
@@ -21,20 +22,11 @@ from grashof.analysis.judge.design import Design
 from grashof.analysis.judge.measures import PARTS, Values
 from grashof.analysis.judge.planted import RANDOM, planted_motion, planted_path
 from grashof.analysis.judge.tolerance import made_linkages, made_moves, robustness
-from grashof.problems import (
-    FourBar,
-    InvertedSliderCrank,
-    Manufacturing,
-    MotionTask,
-    PathTask,
-    Problem,
-    Requirements,
-    SliderCrank,
-)
+from grashof.problems import InvertedSliderCrank, Manufacturing, MotionTask, PathTask, Problem, SliderCrank
 from grashof.problems.values.requirements.quantities import Needs
 from grashof.problems.values.requirements.requirements import QUANTITIES
 
-ANY = Requirements(
+ANY = problems.Requirements(
     exact=True, rotatability="any", link_length=(0.0, 1e9), coupler_arms=(0.0, 1e9), link_ratio_max=1e6
 )
 SWINGING = [GrashofClass.NON_GRASHOF, GrashofClass.SLIDER_ROCKER, GrashofClass.INVERTED_SLIDER_ROCKER]
@@ -236,7 +228,7 @@ def test_a_design_has_the_dimensions_of_its_kind() -> None:
     inverted = Design.of(InvertedSliderCrank(o2=(0, 0), o4=(0, -3), r2=1), angles, signs)
     assert (inverted.r3, inverted.r4, inverted.slide_angle) == (None, None, None)
     assert (float(inverted.r1), float(inverted.offset)) == (3, 0)
-    four_bar = Design.of(FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3), angles, signs)
+    four_bar = Design.of(problems.FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3), angles, signs)
     assert (four_bar.offset, four_bar.slide_angle) == (None, None)
     assert {each.mechanism for each in (slider, inverted, four_bar)} == set(RANDOM)
 

@@ -1,4 +1,4 @@
-"""Slider kinds, driven or left to themselves: friction of slides, textbooks, rest and equilibrium."""
+"""Slider kinds: friction of slides, textbooks, rest and equilibrium; their bars."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,13 +8,14 @@ import pytest
 from loaded_linkages import TURN, WEIGHT
 from refusals import refusal
 
-from grashof import analysis
-from grashof.analysis import Body, Friction, Loads, inverse_dynamics, solve_kinematics, stated_masses
-from grashof.analysis.forces.bars import bars_of
+from grashof import analysis, problems
+from grashof.analysis import WEIGHTLESS, Body, Loads, inverse_dynamics, solve_kinematics, stated_masses
+from grashof.analysis.forces.bars import bars_of, longest_travel
 from grashof.analysis.forces.joints import joint_motion, slides_of
 from grashof.analysis.forces.loads import wrenches
 from grashof.analysis.numerics import collocation
-from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, ProblemError, SliderCrank
+from grashof.problems import DynamicsSpec, InvertedSliderCrank, ProblemError, SectionSpec, SliderCrank
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.load_specs import FrictionSpec, LoadSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
@@ -36,12 +37,12 @@ def test_friction_of_a_slide_is_as_stated(kind: type[Linkage], everything: Specs
         plain = inverse_dynamics(state, masses, WEIGHT)
         assert (plain.joint_moments == 0).all()
         rubbed = inverse_dynamics(
-            state, masses, replace(WEIGHT, friction=Friction(slide_viscous=2.0, slide_coulomb=0.4))
+            state, masses, replace(WEIGHT, friction=analysis.Friction(slide_viscous=2.0, slide_coulomb=0.4))
         )
         expected = -2.0 * speed - 0.4 * np.sign(speed)
         np.testing.assert_allclose(rubbed.joint_moments[slide], expected, rtol=1e-12)
         for length in (0.0, 0.3):
-            friction = Friction(slide_mu=0.05, slide_length=length)
+            friction = analysis.Friction(slide_mu=0.05, slide_length=length)
             found = inverse_dynamics(state, masses, replace(WEIGHT, friction=friction))
             pressing = np.abs(found.slide_force)
             if length:  # two ends of a guide, their forces added
@@ -56,12 +57,12 @@ def test_gas_on_the_piston_turns_the_crank_as_the_textbook_has_it() -> None:
     engine = SliderCrank((0, 0), 0.05, 0.2)
     theta = np.radians([10.0, 60.0, 120.0, 250.0])
     gas = Loads(forces=(analysis.AppliedForce(4, (0.0, 0.0), (-3000.0, 0.0)),))
-    found = inverse_dynamics(solve_kinematics(engine, theta, 100.0), analysis.WEIGHTLESS, gas)
+    found = inverse_dynamics(solve_kinematics(engine, theta, 100.0), WEIGHTLESS, gas)
     phi = np.arcsin(0.25 * np.sin(theta))
     np.testing.assert_allclose(-found.torque, 3000 * 0.05 * np.sin(theta + phi) / np.cos(phi), rtol=1e-12)
     np.testing.assert_allclose(found.slide_force, 3000 * -np.tan(phi) * -1, rtol=1e-12)
     beside = Loads(forces=(analysis.AppliedForce(4, (0.0, 0.01), (-3000.0, 0.0)),))
-    held = inverse_dynamics(solve_kinematics(engine, theta, 100.0), analysis.WEIGHTLESS, beside)
+    held = inverse_dynamics(solve_kinematics(engine, theta, 100.0), WEIGHTLESS, beside)
     np.testing.assert_allclose(held.torque, found.torque, rtol=1e-12)
     np.testing.assert_allclose(held.slide_moment, -30.0, rtol=1e-12)  # against 3000 N above B
 
@@ -89,22 +90,22 @@ def test_a_rod_that_swings_reaches_its_farthest_travel() -> None:
 
 
 def test_loads_that_a_kind_cannot_have_are_refused_in_one_line() -> None:
-    engine, bar = SliderCrank((0, 0), 1, 3), FourBar((0, 0), (4, 0), 1, 4, 3)
+    engine, bar = SliderCrank((0, 0), 1, 3), problems.FourBar((0, 0), (4, 0), 1, 4, 3)
     for linkage, loads, line in (
         (
             engine,
             Loads(torsion_springs=(analysis.TorsionSpring(analysis.Joint.O4, 1.0),)),
             "a torsion spring is at the slide",
         ),
-        (engine, Loads(friction=Friction(viscous=(0, 0, 0, 1))), "viscous friction in O4 is 1"),
+        (engine, Loads(friction=analysis.Friction(viscous=(0, 0, 0, 1))), "viscous friction in O4 is 1"),
         (
             bar,
-            Loads(friction=Friction(slide_mu=0.1)),
+            Loads(friction=analysis.Friction(slide_mu=0.1)),
             "slide_mu friction is 0.1; a four-bar has no slide",
         ),
-        (engine, Loads(friction=Friction(slide_mu=-0.1)), "slide_mu is -0.1"),
+        (engine, Loads(friction=analysis.Friction(slide_mu=-0.1)), "slide_mu is -0.1"),
     ):
-        message = refusal(inverse_dynamics, solve_kinematics(linkage, 1.0), analysis.WEIGHTLESS, loads)
+        message = refusal(inverse_dynamics, solve_kinematics(linkage, 1.0), WEIGHTLESS, loads)
         assert message.startswith(line)
         assert len(message.splitlines()) == 1
 
@@ -219,4 +220,80 @@ def test_a_balanced_inverted_slider_crank_does_not_shake(everything: Specs, made
 
 def test_a_slider_crank_is_not_balanced_by_weights_on_links_that_turn_about_the_ground() -> None:
     with pytest.raises(ProblemError, match=r"^a slider-crank has no link 4 that turns about the ground"):
-        analysis.balance_force(SliderCrank((0, 0), 1, 3), analysis.WEIGHTLESS)
+        analysis.balance_force(SliderCrank((0, 0), 1, 3), WEIGHTLESS)
+
+
+STEEL = problems.StrengthSpec(235e6, 210e9, pin_diameter=0.02)
+
+
+def test_a_rod_bends_between_crank_and_block() -> None:
+    """A moment on the block: from nothing at A the rod's moment rises to it at B, by the force at A."""
+    for assembly in (1, -1):
+        shaper = InvertedSliderCrank((0, 0), (0, -2), 1, coupler_point=(0.5, 0.0), assembly=assembly)
+        state = solve_kinematics(shaper, np.radians([20.0, 100.0, 200.0]), 2.0)
+        loads = Loads(moments=(analysis.AppliedMoment(4, 7.0),))
+        bar = analysis.section_forces(state, WEIGHTLESS, loads)[3]
+        travel = np.abs(state.slide.travel)
+        np.testing.assert_allclose(bar.length, travel, rtol=1e-14)
+        at = np.stack([travel / 2, travel * (1 - 1e-12)], axis=-1)
+        np.testing.assert_allclose(np.abs(bar.at(at).moment), [[3.5, 7.0]] * 3, rtol=1e-9)
+        structure = analysis.Structure(WEIGHTLESS, loads, SectionSpec(0.1, 0.05), STEEL)
+        stress = analysis.strength_at(state, structure).bars[3]["normal_stress"]
+        bending = 7.0 * 0.05 / (0.05 * 0.1**3 / 12)
+        assert (stress.value >= bending * (1 - 1e-12)).all()
+        np.testing.assert_allclose(stress.at, travel, rtol=1e-9)
+
+
+def test_an_engine_rod_is_pushed_by_gas_over_the_cosine() -> None:
+    engine = SliderCrank((0, 0), 0.05, 0.2)
+    gas = Loads(forces=(analysis.AppliedForce(4, (0.0, 0.0), (-3000.0, 0.0)),))
+    state = solve_kinematics(engine, np.radians([10.0, 60.0, 120.0]), 0.0)
+    structure = analysis.Structure(WEIGHTLESS, gas, SectionSpec(0.02, 0.01), STEEL)
+    found = analysis.strength_at(state, structure)
+    phi = np.arcsin(0.25 * np.sin(state.theta2))
+    np.testing.assert_allclose(found.bars[3]["thrust"].value, 3000 / np.cos(phi), rtol=1e-12)
+    assert list(found.bars) == [2, 3]
+    assert list(found.pins) == [analysis.Joint.O2, analysis.Joint.A, analysis.Joint.B]
+    assert list(analysis.strength_at(state, structure, links=[2]).bars) == [2]
+
+
+@pytest.mark.quick("0.0254-InvertedSliderCrank")
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("metre", [1.0, 1e-3, 0.0254])
+def test_strength_over_a_turn_is_that_of_a_dense_search(
+    kind: type[Linkage], metre: float, made: Maker
+) -> None:
+    linkage = made(kind, 2, margin=0.2)[1].scaled(1 / metre, np.zeros(2))
+    masses, weight = (
+        analysis.uniform_bars(linkage, 5.0 * metre, payload=1.0),
+        Loads(gravity=(0, -9.81 / metre)),
+    )
+    steel = problems.StrengthSpec(235e6, 210e9, pin_diameter=0.02 / metre)
+    structure = analysis.Structure(masses, weight, SectionSpec(0.05 / metre, 0.03 / metre), steel, metre)
+
+    def motion(theta2: FloatArray) -> analysis.Kinematics:
+        return solve_kinematics(linkage, theta2, 4.0)
+
+    found = analysis.strength_over(structure, motion, [analysis.driver_samples(linkage, 0.0, TURN)])
+    dense = analysis.strength_at(motion(np.linspace(0, TURN, 1001)), structure)
+    for link, measures in dense.bars.items():
+        for key, along in measures.items():
+            assert found.peak(key, f"link {link}").value == pytest.approx(along.value.max(), rel=2e-4)
+    for joint, pins in dense.pins.items():
+        assert found.peak("pin_force", joint.name).value == pytest.approx(pins["pin_force"].max(), rel=2e-4)
+    parts = {factor.part for factor in found.factors}
+    gone = {"O4"} if kind is SliderCrank else {"B"}
+    assert parts == {"link 2", "link 3", "O2", "A", "B", "O4"} - gone
+    if kind is InvertedSliderCrank:  # the rod buckles most easily where it is longest
+        limit = next(each for each in found.factors if each.key == "buckling" and each.part == "link 3")
+        long = float(longest_travel(linkage)) * metre
+        euler = np.pi**2 * 210e9 * 0.03 * 0.05**3 / 12 / long**2
+        crushing = 235e6 * 0.05 * 0.03
+        expected = euler if 2 * euler < crushing else crushing * (1 - crushing / (4 * euler))
+        assert limit.limit == pytest.approx(expected, rel=1e-9)
+
+
+def test_sliders_and_blocks_are_no_bars() -> None:
+    engine = SliderCrank((0, 0), 1, 3)
+    with pytest.raises(ProblemError, match=r"^link 4 of a slider-crank is not a bar"):
+        analysis.section_forces(solve_kinematics(engine, 1.0), analysis.uniform_bars(engine, 1.0), links=[4])
