@@ -10,13 +10,7 @@ import numpy as np
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
 from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.analysis.strength.along_bar import (
-    Along,
-    deflection,
-    greatest,
-    greatest_deflection,
-    greatest_of,
-)
+from grashof.analysis.strength.along_bar import Along, deflection, greatest, greatest_deflection, greatest_of
 from grashof.analysis.strength.section_forces import BarForces, section_forces
 from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems.values.arrays import FloatArray

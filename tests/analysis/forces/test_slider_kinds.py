@@ -52,6 +52,28 @@ def test_friction_of_a_slide_is_as_stated(kind: type[Linkage], everything: Specs
             np.testing.assert_allclose(found.joint_moments[slide], expected, rtol=1e-9, atol=1e-12)
 
 
+def test_norton_engine_with_lumped_masses() -> None:
+    """Norton, sec. 14.4 to 14.6: a rod of two point masses; series in r / l are right to their order."""
+    r, length, omega, at_a, at_b, piston = 2.6 * 0.0254, 10.4 * 0.0254, 340.0, 0.3, 0.2, 0.4
+    rod = Body(at_a, 0.0, (0.0, 0.0)) + Body(at_b, 0.0, (length, 0.0))
+    theta = np.linspace(0, TURN, 181)
+    state = solve_kinematics(SliderCrank((0, 0), r, length), theta, omega)
+    found = inverse_dynamics(state, analysis.Masses(Body(0.0), rod, Body(piston)))
+    mass, lam, force = at_b + piston, r / length, r * omega**2
+    pull, sine = mass * state.slide.acceleration, lam * np.sin(theta)
+    exact = {"torque": pull * state.slide.velocity / omega, "slide_force": pull * sine / np.sqrt(1 - sine**2)}
+    for name, value in exact.items():
+        np.testing.assert_allclose(getattr(found, name), value, rtol=0, atol=1e-12 * np.abs(value).max())
+    waves = 1.5 * lam * np.sin(3 * theta) + np.sin(2 * theta) - lam / 2 * np.sin(theta)
+    along = mass * force * (np.cos(theta) + lam * np.cos(2 * theta)) + at_a * force * np.cos(theta)
+    for value, series, order in (
+        (found.torque, mass / 2 * force * r * waves, lam**2),  # Norton, eqs. 14.12 and 14.14
+        (found.shaking_force[:, 0], along, lam**3),
+        (found.shaking_force[:, 1], at_a * force * np.sin(theta), 1e-9),
+    ):
+        np.testing.assert_allclose(value, series, rtol=0, atol=order * np.abs(series).max())
+
+
 def test_gas_on_the_piston_turns_the_crank_as_the_textbook_has_it() -> None:
     """F r sin(theta + phi) / cos(phi): exact (Norton, sec. 13.7; phi the rod's inclination)."""
     engine = SliderCrank((0, 0), 0.05, 0.2)

@@ -12,12 +12,7 @@ from loaded_linkages import JACK, ROCKER, WEIGHT, closed_dead_and_open
 
 from grashof import analysis
 from grashof.analysis import WEIGHTLESS, AppliedForce, Body, Loads, section_forces, solve_kinematics
-from grashof.analysis.strength.along_bar import (
-    deflection,
-    greatest,
-    greatest_deflection,
-    greatest_of,
-)
+from grashof.analysis.strength.along_bar import deflection, greatest, greatest_deflection, greatest_of
 from grashof.analysis.strength.section_forces import polynomial
 from grashof.analysis.strength.strength import von_mises
 from grashof.problems import FourBar, ProblemError
