@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_tasks import freed, perturbed
 
 from grashof.analysis import Design, Verdict, verify
 from grashof.analysis.judge.planted import planted_motion
@@ -20,17 +21,6 @@ def planted(seed: int, poses: int) -> tuple[MotionTask, FourBar]:
         task, linkage = planted_motion(rng, poses)
         if verify(linkage, task, EXACT).ok:
             return task, linkage
-
-
-def freed(task: MotionTask, places: list[int], angles: list[int], **rest: Any) -> MotionTask:
-    positions, turned = task.positions.copy(), task.angles.copy()
-    positions[places], turned[angles] = np.nan, np.nan
-    return MotionTask(positions, turned, **rest)
-
-
-def moved(task: MotionTask, rng: np.random.Generator, share: float, **rest: Any) -> MotionTask:
-    noise = rng.normal(0, share, (len(task), 3))
-    return MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2], **rest)
 
 
 @pytest.mark.quick("7-places0-angles0", "6-places1-angles1")
@@ -61,7 +51,7 @@ def test_square_and_errors_count_given_parts_by_weight() -> None:
     rng = np.random.default_rng(7)
     task, linkage = planted(0, 6)
     weights = np.array([1, 2, 0.5, 3, 1, 4.0])
-    free = freed(moved(task, rng, 0.01), [1], [3], weights=weights, angle_length=1.7 * task.size)
+    free = freed(perturbed(task, rng, 0.01), [1], [3], weights=weights, angle_length=1.7 * task.size)
     verdict = verify(linkage, free, LEAST)
     gap, turn = verdict.position_error, 1.7 * task.size * verdict.angle_error
     expected = sum(weights[k] * gap[k] ** 2 for k in (0, 2, 3, 4, 5))
