@@ -143,9 +143,8 @@ def free_response(
 
         return alpha2
 
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
+    with warnings.catch_warnings(action="ignore", category=DeadPositionWarning), np.errstate(all="ignore"):
         # A step that is tried may meet a dead position, before an event ends the motion there.
-        warnings.simplefilter("ignore", DeadPositionWarning)
         path, ending = _moved(rates, at, theta2, omega2, tolerance, _Rubbing.of(linkage, loads))
         end = path[-1].end
         reached = at if ending is Ending.TIME else at[at <= end]
