@@ -160,7 +160,7 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
 
 
 def outside_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
-    """The same of forces, moments and straight springs."""
+    """Power of forces, moments and straight springs of a state in such velocities, shape (...)."""
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in range(2, len(outside) + 1):
         power = power + outside[link].moment * virtual.angular(link)[1]
@@ -172,7 +172,7 @@ def outside_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> Float
 
 
 def joint_power(virtual: Kinematics, moments: FloatArray) -> FloatArray:
-    """The same of moments (J, ...) in the joints, as in `Dynamics`."""
+    """Power of moments (J, ...) in the joints, as in `Dynamics`, in such velocities, shape (...)."""
     power = np.zeros(virtual.shape)
     for joint in joints_of(virtual.linkage):
         if moments[joint].any():
