@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.loads import Loads, cross, turned
@@ -18,9 +17,9 @@ from grashof.analysis.mechanism.even_motion import even_motion
 from grashof.analysis.mechanism.extremes import extremes_of
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.analysis.mechanism.mobility import full_rotation
-from grashof.analysis.numerics.minimax import least_peak
+from grashof.analysis.numerics.minimax import least_peak, least_peak_at
 from grashof.analysis.numerics.peaks import Curve
-from grashof.problems import AssemblyError, Linkage, ProblemError, SolverError
+from grashof.problems import AssemblyError, Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
 from grashof.problems.values.errors import wrong_value
 
@@ -105,10 +104,10 @@ def balance_force(
     True
     """
     crank, output = _unbalanced(linkage, masses)
-    crank_weight = _counterweight(-crank, linkage.r2 if crank_radius is None else crank_radius)
+    crank_weight = counterweight(-crank, linkage.r2 if crank_radius is None else crank_radius)
     sizes = dyad_of(linkage)
     default = sizes.n if isinstance(sizes, Pins) else linkage.r2
-    output_weight = _counterweight(-output, default if output_radius is None else output_radius)
+    output_weight = counterweight(-output, default if output_radius is None else output_radius)
     return ForceBalance(
         crank_weight, output_weight, masses.with_body(2, crank_weight).with_body(4, output_weight)
     )
@@ -179,7 +178,7 @@ def balance_torque(
     if measure == "rms":
         moment = np.asarray(np.linalg.lstsq(effects, -before, rcond=None)[0], dtype=np.float64)
     elif measure == "peak":
-        moment = _least_peak(effects, before)
+        moment, _ = least_peak_at(before, effects)
     else:
         raise wrong_value("measure", measure, "'rms' or 'peak'")
     return _balanced(state, masses, loads, moment, radius)
@@ -263,7 +262,7 @@ def _effects(gravity: FloatArray, theta2: FloatArray) -> FloatArray:
 def _balanced(
     state: Kinematics, masses: Masses, loads: Loads, moment: FloatArray, radius: float
 ) -> TorqueBalance:
-    weight = _counterweight(moment[0] + 1j * moment[1], radius)
+    weight = counterweight(moment[0] + 1j * moment[1], radius)
     balanced = masses.with_body(2, weight)
     before, after = (inverse_dynamics(state, each, loads).torque for each in (masses, balanced))
     return TorqueBalance(weight, balanced, before, after)
@@ -295,24 +294,10 @@ def _least_peak_over_turn(linkage: Linkage, torque: Curve, effects: Curve) -> Fl
     return found.parameters
 
 
-def _least_peak(effects: FloatArray, torque: FloatArray) -> FloatArray:
-    """Moment m r with the least peak of |torque + effects m r|, by a linear programme."""
-    scale = float(np.abs(torque).max()) or 1.0
-    ones = np.ones((len(torque), 1))
-    rows = np.block([[effects, -ones], [-effects, -ones]])
-    sides = np.concatenate([-torque, torque]) / scale
-    found = scipy.optimize.linprog(
-        [0.0, 0.0, 1.0], A_ub=rows, b_ub=sides, bounds=[(None, None), (None, None), (0, None)]
-    )
-    if found.x is None:
-        raise SolverError(f"no counterweight for the least peak was found: {found.message}")
-    return np.asarray(found.x[:2] * scale)
-
-
-def _counterweight(moment: ComplexArray, radius: npt.ArrayLike) -> Body:
+def counterweight(moment: ComplexArray, radius: npt.ArrayLike) -> Body:
     """Point mass with a given moment (mass times place) at a given radius."""
-    radius = np.asarray(radius, dtype=np.float64)
+    radius, size = np.asarray(radius, dtype=np.float64), np.abs(moment)
     if not np.all(radius > 0):
         raise ProblemError(f"the counterweight's radius is {radius}; it must be greater than zero")
-    place = radius * np.exp(1j * np.angle(moment))
-    return Body(np.abs(moment) / radius, 0.0, np.stack([place.real, place.imag], axis=-1))
+    place = radius * np.divide(moment, size, out=np.ones(size.shape, dtype=complex), where=size > 0)
+    return Body(size / radius, 0.0, np.stack([place.real, place.imag], axis=-1))

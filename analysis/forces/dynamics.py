@@ -11,6 +11,7 @@ from grashof.analysis.forces.joint_forces import Frames, JointForces, Need, fram
 from grashof.analysis.forces.joints import Joint, joint_motion, joints_of
 from grashof.analysis.forces.loads import Loads, Wrench, known_joint_moments, wrenches
 from grashof.analysis.forces.mass import Body, Masses
+from grashof.analysis.forces.statics import joint_power, outside_power
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.analysis.mechanism.kinematics import Kinematics, solve_kinematics
 from grashof.problems.values.arrays import FloatArray
@@ -174,18 +175,29 @@ def virtual_work_torque(
     For a unit of virtual driver rotation, the drive works against inertia, less the work of all forces
     and moments (d'Alembert; Norton, *Design of Machinery*, sec. 11.10).
     """
-    per_turn = solve_kinematics(state.linkage, state.theta2)  # velocities for 1 rad/s
-    outside, gravity = wrenches(state, loads), loads.gravity_vector()
-    torque = np.zeros(state.shape)
+    unit = solve_kinematics(state.linkage, state.theta2)
+    inertia, still = equation_of_motion(unit, state, masses, loads, joint_moments)
+    return (still + inertia * state.alpha2)[()]
+
+
+def equation_of_motion(
+    unit: Kinematics, state: Kinematics, masses: Masses, loads: Loads, joint_moments: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Inertia felt by the driver, and the torque that keeps its speed, by virtual work, each (...).
+
+    `unit` is the position with the driver at a steady 1 rad/s; accelerations go with omega2^2.
+    """
+    gravity, square = loads.gravity_vector(), np.asarray(state.omega2**2)
+    inertia = np.zeros(state.shape)
+    still = -outside_power(unit, state, loads) - joint_power(unit, joint_moments)
     for link, body in masses.by_link(state.linkage).items():
-        rate, moving = per_turn.angular(link)[1], per_turn.origin(link).velocity
-        moved, push = per_turn.point(link, body.centre), state.point(link, body.centre).acceleration
-        inertia = np.asarray(body.mass) * ((push - gravity) * moved.velocity).sum(axis=-1)
-        torque = torque + inertia + body.inertia * state.angular(link)[2] * rate
-        torque = torque - (outside[link].force * moving).sum(axis=-1) - outside[link].moment * rate
-    for joint in joints_of(state.linkage):
-        torque = torque - joint_moments[joint] * joint_motion(per_turn, joint)[1]
-    return torque[()]
+        _, omega, alpha, _ = unit.angular(link)
+        centre = unit.point(link, body.centre)
+        inertia = inertia + body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
+        push = square[..., None] * centre.acceleration - gravity
+        still = still + body.mass * (push * centre.velocity).sum(axis=-1)
+        still = still + square * body.inertia * alpha * omega
+    return inertia, still
 
 
 def motor_torque(

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.analysis.forces.dynamics import inverse_dynamics
-from grashof.analysis.forces.joints import joint_motion, joints_of
+from grashof.analysis.forces.joints import joint_motion
 from grashof.analysis.forces.loads import Friction, Loads, spring_ends, torsion_moments
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.forces.statics import load_power
+from grashof.analysis.forces.statics import joint_power, load_power
 from grashof.analysis.mechanism.kinematics import Kinematics
 from grashof.problems.values.arrays import FloatArray
 
@@ -118,10 +118,7 @@ def powers(state: Kinematics, masses: Masses, loads: Loads | None = None) -> Pow
     lossless = tuple(replace(spring, damping=0.0) for spring in loads.springs)
     outside = replace(loads, friction=Friction(), torsion_springs=())
     given = load_power(state, state, outside) - load_power(state, state, Loads(springs=lossless))
-    rubbing = found.joint_moments - torsion_moments(state, loads)
-    lost = np.zeros(state.shape)
-    for joint in joints_of(state.linkage):
-        lost = lost + rubbing[joint] * joint_motion(state, joint)[1]
+    lost = joint_power(state, found.joint_moments - torsion_moments(state, loads))
     return Powers(found.power, given[()], lost[()])
 
 

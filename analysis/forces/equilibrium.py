@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
 
 from grashof.analysis.forces.free_response import generalised_inertia
 from grashof.analysis.forces.loads import Loads
@@ -22,7 +22,6 @@ _SAMPLES = 721
 _NOTHING = 1e-12  # share of the greatest power of the loads: no torque
 _WINDOW = 0.02  # rad, about an equilibrium, in which the torque is a polynomial
 _DEGREE = 10
-_NODES = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
 _SAME = 1e-9  # rad: roots closer than this are one
 Curve = Callable[[FloatArray], FloatArray]
 
@@ -148,7 +147,5 @@ def _roots(power: Curve, places: FloatArray, values: FloatArray) -> FloatArray:
 
 def _slope(power: Curve, root: float, low: float, high: float) -> float:
     """Rate of the power by the driver angle, from a polynomial about a root."""
-    first, last = max(low, root - _WINDOW), min(high, root + _WINDOW)
-    middle, half = (first + last) / 2, (last - first) / 2
-    terms = chebyshev.chebfit(_NODES, power(middle + half * _NODES), _DEGREE)
-    return float(chebyshev.chebval((root - middle) / half, chebyshev.chebder(terms)) / half)
+    window = max(low, root - _WINDOW), min(high, root + _WINDOW)
+    return float(Chebyshev.interpolate(power, _DEGREE, window).deriv()(root))

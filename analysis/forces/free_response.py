@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.dynamics import friction_and_springs
+from grashof.analysis.forces.dynamics import equation_of_motion, friction_and_springs
 from grashof.analysis.forces.energy import mechanical_energy
 from grashof.analysis.forces.joints import joint_motion, joints_of
-from grashof.analysis.forces.loads import Friction, Loads, torsion_moments
+from grashof.analysis.forces.loads import Loads
 from grashof.analysis.forces.mass import Masses
-from grashof.analysis.forces.statics import load_power
 from grashof.analysis.mechanism.kinematics import Kinematics, SlideMotion, Turning, solve_kinematics
 from grashof.analysis.numerics.collocation import Acceleration, Events, Panel, Path, integrate_motion
 from grashof.problems import AssemblyError, DeadPositionWarning, Linkage, ProblemError
@@ -136,14 +135,16 @@ def free_response(
     def rates(senses: FloatArray | None) -> Acceleration:
         def alpha2(now: FloatArray, angle: FloatArray, rate: FloatArray, guess: FloatArray) -> FloatArray:
             unit = solve_kinematics(linkage, angle)
-            inertia, still = _equation_of_motion(unit, rate, guess, senses, masses, loads)
+            steady = _scaled(unit, rate, np.zeros(rate.shape))
+            # Friction is that of joints that turn in `senses`, and of a driver with about this acceleration.
+            in_joints = friction_and_springs(_scaled(unit, rate, guess), masses, loads, senses)
+            inertia, still = equation_of_motion(unit, steady, masses, loads, in_joints)
             return (given(now, angle, rate) - still) / inertia
 
         return alpha2
 
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
+    with warnings.catch_warnings(action="ignore", category=DeadPositionWarning), np.errstate(all="ignore"):
         # A step that is tried may meet a dead position, before an event ends the motion there.
-        warnings.simplefilter("ignore", DeadPositionWarning)
         path, ending = _moved(rates, at, theta2, omega2, tolerance, _Rubbing.of(linkage, loads))
         end = path[-1].end
         reached = at if ending is Ending.TIME else at[at <= end]
@@ -247,38 +248,6 @@ def _sets_off(
         if sense * float(alpha[0]) > 0:
             return sense
     return 0
-
-
-def _equation_of_motion(
-    unit: Kinematics,
-    omega2: FloatArray,
-    guess: FloatArray,
-    senses: FloatArray | None,
-    masses: Masses,
-    loads: Loads,
-) -> tuple[FloatArray, FloatArray]:
-    """Inertia felt by the driver, and the torque that keeps its speed, by virtual work; shape (N,).
-
-    `unit` is the position with the driver at a steady 1 rad/s; accelerations go with omega2^2. Friction
-    is that of joints that turn in `senses`, and of a driver that has about the acceleration `guess`.
-    """
-    state = _scaled(unit, omega2, np.zeros(omega2.shape))
-    gravity = loads.gravity_vector()
-    inertia = np.zeros(omega2.shape)
-    still = -load_power(unit, state, replace(loads, friction=Friction()))
-    for link, body in masses.by_link(unit.linkage).items():
-        _, omega, alpha, _ = unit.angular(link)
-        centre = unit.point(link, body.centre)
-        inertia = inertia + body.mass * (centre.velocity**2).sum(axis=-1) + body.inertia * omega**2
-        push = (omega2**2)[:, None] * centre.acceleration - gravity
-        still = still + body.mass * (push * centre.velocity).sum(axis=-1)
-        still = still + omega2**2 * body.inertia * alpha * omega
-    rubbing = friction_and_springs(_scaled(unit, omega2, guess), masses, loads, senses)
-    rubbing = rubbing - torsion_moments(state, loads)
-    for joint in joints_of(unit.linkage):
-        if rubbing[joint].any():
-            still = still - rubbing[joint] * joint_motion(unit, joint)[1]
-    return inertia, still
 
 
 def _scaled(unit: Kinematics, omega2: FloatArray, alpha2: FloatArray) -> Kinematics:

@@ -34,11 +34,6 @@ def joints_of(linkage: Linkage) -> tuple[Joint, ...]:
     return tuple(map(Joint, range(len(linkage.mechanism.every_joint))))
 
 
-def joined(linkage: Linkage, joint: int) -> tuple[int, int]:
-    """The links that a joint joins; motions in it are those of the second relative to the first."""
-    return linkage.mechanism.every_joint[joint].links
-
-
 def slides_of(linkage: Linkage) -> tuple[Joint, ...]:
     """The joints that are slides."""
     return tuple(Joint(k) for k, joint in enumerate(linkage.mechanism.every_joint) if joint.slides)

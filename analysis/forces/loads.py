@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.forces.joints import Joint, joined, joint_motion, joints_of, slides_of
+from grashof.analysis.forces.joints import Joint, joint_motion, joints_of, slides_of
 from grashof.analysis.mechanism.kinematics import Kinematics, PointMotion
 from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import FloatArray
@@ -323,7 +323,7 @@ def torsion_moments(state: Kinematics, loads: Loads) -> FloatArray:
             names = ", ".join(each.name for each in joints_of(linkage))
             raise wrong_value("joint of a torsion spring", spring.joint.name, f"one of {names}")
         if spring.joint in slides_of(linkage):
-            links = joined(linkage, spring.joint)
+            links = linkage.mechanism.every_joint[spring.joint].links
             raise ProblemError(
                 f"a torsion spring is at the slide between links {links}, which do not turn "
                 "against each other; it must be at a pin"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from grashof.analysis.forces.balancing import counterweight
 from grashof.analysis.forces.dynamics import inverse_dynamics
 from grashof.analysis.forces.joints import slide_direction, slide_normal
 from grashof.analysis.forces.mass import Body, Masses
@@ -79,18 +80,11 @@ def balance_reciprocating(
     """
     _check_kind(linkage)
     share = number_within(share, 0.0, 1.0, "share")
-    distance = np.asarray(linkage.r2 if radius is None else radius, dtype=np.float64)
-    if not np.all(distance > 0):
-        raise wrong_value("radius", radius, "greater than zero")
     at_b = masses.coupler.mass * masses.coupler.centre[..., 0] / linkage.r3
     rotating, reciprocating = masses.coupler.mass - at_b, at_b + masses.output.mass
-    own = masses.crank.mass[..., None] * masses.crank.centre
-    arm = linkage.r2 * (rotating + share * reciprocating)
-    moment = -(own + np.stack([arm, np.zeros_like(arm)], axis=-1))
-    size = np.hypot(moment[..., 0], moment[..., 1])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        way = np.where(size[..., None] > 0, moment / size[..., None], np.array([1.0, 0.0]))
-    weight = Body(size / distance, 0.0, distance[..., None] * way)
+    own = masses.crank.mass * (masses.crank.centre @ np.array([1, 1j]))
+    moment = -(own + linkage.r2 * (rotating + share * reciprocating))
+    weight = counterweight(moment, linkage.r2 if radius is None else radius)
     return ReciprocatingBalance(
         weight, masses.with_body(2, weight), np.asarray(rotating), np.asarray(reciprocating)
     )

@@ -156,6 +156,11 @@ def virtual_power(virtual: Kinematics, state: Kinematics, masses: Masses, loads:
 
 def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
     """The same of forces, moments, springs and known friction alone, without weights."""
+    return outside_power(virtual, state, loads) + joint_power(virtual, known_joint_moments(state, loads))
+
+
+def outside_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArray:
+    """Power of forces, moments and straight springs of a state in such velocities, shape (...)."""
     outside, power = wrenches(state, loads), np.zeros(state.shape)
     for link in range(2, len(outside) + 1):
         power = power + outside[link].moment * virtual.angular(link)[1]
@@ -163,8 +168,13 @@ def load_power(virtual: Kinematics, state: Kinematics, loads: Loads) -> FloatArr
     for link in (row.number for row in kind.links[1:] if row.points[0] not in kind.ground):
         if outside[link].force.any():
             power = power + (outside[link].force * virtual.origin(link).velocity).sum(axis=-1)
-    moments = known_joint_moments(state, loads)
-    for joint in joints_of(state.linkage):
+    return power
+
+
+def joint_power(virtual: Kinematics, moments: FloatArray) -> FloatArray:
+    """Power of moments (J, ...) in the joints, as in `Dynamics`, in such velocities, shape (...)."""
+    power = np.zeros(virtual.shape)
+    for joint in joints_of(virtual.linkage):
         if moments[joint].any():
             power = power + moments[joint] * joint_motion(virtual, joint)[1]
     return power

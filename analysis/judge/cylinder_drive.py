@@ -92,10 +92,9 @@ def cylinder_force_peak(linkage: Linkage, problem: Problem, verdict: Verdict) ->
     def size(place: FloatArray) -> FloatArray:
         return np.abs(force(solve_kinematics(as_used(linkage, verdict), *law.at_place(place))))[None]
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
-        with suppress(BeyondLoadError):  # a defect by itself
-            return float(peaks(size, law.stretches(theta2))[0][0])
+    # A load that does not cover the travel is a defect by itself.
+    with suppress(BeyondLoadError), warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
+        return float(peaks(size, law.stretches(theta2))[0][0])
     return np.nan
 
 
@@ -144,11 +143,12 @@ def cylinder_forces(
     """
     theta2 = verdict.theta2 if theta2 is None else theta2
     force, law = _force_in(problem, verdict), driver_law(problem, *motion_ends(problem.task, verdict))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
-        with suppress(BeyondLoadError):
-            if force is not None:
-                return force(law.state(as_used(linkage, verdict), theta2))
+    if force is not None:
+        with (
+            suppress(BeyondLoadError),
+            warnings.catch_warnings(action="ignore", category=DeadPositionWarning),
+        ):
+            return force(law.state(as_used(linkage, verdict), theta2))
     return np.full(len(theta2), np.nan)
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from grashof.analysis.judge.dwell_output import least_band
+from grashof.analysis.judge.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
-from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import DwellTask, FunctionTask, Linkage, Requirements, StrokeTask, Task
@@ -28,7 +28,8 @@ class Met:
     """A linkage at the targets of a task, and its motion.
 
     It must be on one circuit, and branch, at `theta2` (K,), rad, with `assembly` (K,); `covered` if it can be
-    assembled over the entire range of the task. `figures` are further fields of the verdict.
+    assembled over the entire range of the task. `figures` are further fields of the verdict, `defects` those
+    against requirements of the kind of task alone.
     """
 
     targets: Targets
@@ -37,6 +38,7 @@ class Met:
     assembly: IntArray
     covered: bool = True
     figures: Mapping[str, Any] = field(default_factory=dict)
+    defects: tuple[Defect, ...] = ()
 
 
 def meet(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
@@ -101,12 +103,11 @@ def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     first -= TURN * np.ceil((first - np.pi) / TURN)
     theta2, assembly = np.array([first, first + sense * way]), np.full(2, int(linkage.assembly))
     motion = TaskMotion.ordered(theta2, sense).closed()
-    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly)
+    defects = tuple(_stroke_defects(linkage, task, wanted))
+    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, defects=defects)
 
 
-def _stroke_defects(
-    linkage: Linkage, task: Task, wanted: Requirements, _verdict: Verdict
-) -> Iterator[Defect]:
+def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
     """Misses of the swing (by `tolerance` in rad), stroke and time ratio (by that share of them)."""
     found = output_stroke(linkage)
     ratio = float(found.time_ratio)
@@ -130,68 +131,38 @@ def _stroke_defects(
             yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)
 
 
-def _standing_still(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
+def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements) -> Met:
     """The ends of the dwell of least band, and the turn that begins with it; anywhere where there is none."""
     sense = -1 if wanted.driver_sense == "cw" else 1
-    found = least_band(linkage, task.dwell or 0.0)
+    found = least_band(linkage, task.dwell)
     start = 0.0 if found is None else found.start if sense > 0 else found.end
     start -= TURN * np.ceil((start - np.pi) / TURN)
-    theta2, assembly = (
-        np.array([start, start + sense * (task.dwell or 0.0)]),
-        np.full(2, int(linkage.assembly)),
-    )
-    motion = TaskMotion.ordered(theta2, sense).closed()
-    return Met(
-        Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, figures={"dwell": found}
-    )
+    theta2, assembly = np.array([start, start + sense * task.dwell]), np.full(2, int(linkage.assembly))
+    motion, defects = TaskMotion.ordered(theta2, sense).closed(), tuple(_dwell_defects(found, task))
+    targets = Targets.of(linkage, task, theta2, assembly)
+    return Met(targets, motion, theta2, assembly, figures={"dwell": found}, defects=defects)
 
 
-def _dwell_defects(
-    _linkage: Linkage, task: DwellTask, _wanted: Requirements, verdict: Verdict
-) -> Iterator[Defect]:
-    """Misses of the swing or stroke, and of the band where the task limits it."""
-    found = verdict.dwell
+def _dwell_defects(found: DwellFigures | None, task: DwellTask) -> Iterator[Defect]:
+    """Misses of the swing or stroke, and a band that is too wide."""
     if found is None:
         yield Defect("exact", "the number of dwells over a full turn of the driver", 0, "1", 1.0)
         return
-    whole, unit = task.output_size, 1.0 if task.swing is None else float(np.degrees(1.0))
-    what = "the stroke" if task.swing is None else "the swing in deg"
-    scale = task.size if task.swing is None else 1.0
-    miss, within = abs(found.swing - whole), SWING_WITHIN * scale
-    if not miss <= within:
-        yield Defect(
-            "exact",
-            what,
-            found.swing * unit,
-            f"{whole * unit:.6g} within {within * unit:.2g}",
-            (miss - within) / scale,
-        )
+    turns = task.stroke is None
+    (deg, unit), scale = (" in deg", np.degrees(1.0)) if turns else ("", 1.0), 1.0 if turns else task.size
+    within = SWING_WITHIN * scale
+    miss = (abs(found.swing - task.output_size) - within) / scale
+    if not miss <= 0:
+        allowed = f"{task.output_size * unit:.6g} within {within * unit:.2g}"
+        yield Defect("exact", f"the {'swing' if turns else 'stroke'}{deg}", found.swing * unit, allowed, miss)
     if not found.band <= task.most_band:
-        key = "the output band in the dwell" + ("" if task.swing is None else " in deg")
-        yield Defect(
-            "exact",
-            key,
-            found.band * unit,
-            f"up to {task.most_band * unit:.6g}",
-            (found.band - task.most_band) / scale,
-        )
+        allowed, miss = f"up to {task.most_band * unit:.6g}", (found.band - task.most_band) / scale
+        yield Defect("exact", f"the output band in the dwell{deg}", found.band * unit, allowed, miss)
 
 
-def _no_defects(_linkage: Linkage, _task: Task, _wanted: Requirements, _verdict: Verdict) -> Iterable[Defect]:
-    return ()
-
-
-@dataclass(frozen=True, slots=True)
-class HowMet:
-    """How a kind of task is met, and the defects against its own requirements."""
-
-    met: Callable[[Linkage, Any, Requirements], Met]
-    defects: Callable[[Linkage, Any, Requirements, Verdict], Iterable[Defect]] = _no_defects
-
-
-HOW_MET: Mapping[type, HowMet] = {
-    Task: HowMet(_in_plane),
-    FunctionTask: HowMet(_as_function),
-    StrokeTask: HowMet(_between_limits, _stroke_defects),
-    DwellTask: HowMet(_standing_still, _dwell_defects),
+HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements], Met]] = {
+    Task: _in_plane,
+    FunctionTask: _as_function,
+    StrokeTask: _between_limits,
+    DwellTask: _standing_still,
 }

@@ -141,8 +141,7 @@ def over_task(
     if problem.dynamics is not None and np.isfinite(torque):
         law = driver_law(problem, *ends)
         curves = load_curves(linkage, problem.dynamics, metres(problem.length_unit), law)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeadPositionWarning)
+        with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
             mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
         rms = float(np.sqrt(mean))
     return OverTask(omega4, speed, acceleration, fit, torque, rms, force)
@@ -171,8 +170,7 @@ def task_peaks(
         theta2 = sampled(used, *ends)
         if joins(used, verdict, theta2):
             motions[k] = _Motion(used, driver_law(problem, *ends), theta2)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
+    with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
         for group in _groups(motions):
             some = [motions[k] for k in group]
             if not torque_alone:

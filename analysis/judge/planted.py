@@ -30,47 +30,42 @@ def random_full_crank(rng: np.random.Generator) -> FourBar:
     Lengths are log-uniform in 0.15 to 1 of a scale log-uniform in 1/e to e^2, the coupler point normal about
     A with 0.7 of it.
     """
-    scale = np.exp(rng.uniform(-1, 2))
-    while True:
-        r1, r2, r3, r4 = scale * np.exp(rng.uniform(np.log(0.15), 0, 4))
-        if r1 + r2 < r3 + r4 and abs(r1 - r2) > abs(r3 - r4):
-            break
-    o2, theta1, others = _placed(rng, scale)
-    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
-    return FourBar(o2, o4, r2, r3, r4, **others)
-
-
-def _placed(rng: np.random.Generator, scale: float) -> tuple[FloatArray, float, dict[str, Any]]:
-    """O2, the direction of the ground line or slide, and the other fields of all kinds."""
-    o2, direction = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
-    coupler_point, assembly = rng.normal(0, 0.7 * scale, 2), rng.choice([-1, 1])
-    body_angle = rng.uniform(-np.pi, np.pi)
-    return o2, direction, {"coupler_point": coupler_point, "assembly": assembly, "body_angle": body_angle}
+    (r1, *others), _, o2, theta1, rest = _turning(
+        rng, 4, lambda r, _: r[0] + r[1] < r[2] + r[3] and abs(r[0] - r[1]) > abs(r[2] - r[3])
+    )
+    return FourBar(o2, _ahead(o2, r1, theta1), *others, **rest)
 
 
 def random_slider_crank(rng: np.random.Generator) -> SliderCrank:
     """A random slider-crank whose driver turns fully; scale and places as `random_full_crank`."""
-    scale = np.exp(rng.uniform(-1, 2))
-    while True:
-        r2, r3 = scale * np.exp(rng.uniform(np.log(0.15), 0, 2))
-        offset = rng.uniform(-1, 1) * scale
-        if r2 + abs(offset) < r3:
-            break
-    o2, slide_angle, others = _placed(rng, scale)
-    return SliderCrank(o2, r2, r3, offset=offset, slide_angle=slide_angle, **others)
+    (r2, r3), offset, o2, slide_angle, rest = _turning(rng, 2, lambda r, e: r[0] + abs(e) < r[1])
+    return SliderCrank(o2, r2, r3, offset=offset, slide_angle=slide_angle, **rest)
 
 
 def random_inverted_slider_crank(rng: np.random.Generator) -> InvertedSliderCrank:
     """A random inverted slider-crank whose driver turns fully; scale and places as `random_full_crank`."""
+    (r1, r2), offset, o2, theta1, rest = _turning(rng, 2, lambda r, e: abs(e) < abs(r[0] - r[1]))
+    return InvertedSliderCrank(o2, _ahead(o2, r1, theta1), r2, offset=offset, **rest)
+
+
+def _turning(
+    rng: np.random.Generator, count: int, turns: Callable[[FloatArray, float], bool]
+) -> tuple[FloatArray, float, FloatArray, float, dict[str, Any]]:
+    """Lengths that let the driver turn, the offset (of kinds with two), O2, a direction, the other fields."""
     scale = np.exp(rng.uniform(-1, 2))
     while True:
-        r1, r2 = scale * np.exp(rng.uniform(np.log(0.15), 0, 2))
-        offset = rng.uniform(-1, 1) * scale
-        if abs(offset) < abs(r1 - r2):
+        lengths = scale * np.exp(rng.uniform(np.log(0.15), 0, count))
+        offset = rng.uniform(-1, 1) * scale if count == 2 else 0.0
+        if turns(lengths, offset):
             break
-    o2, theta1, others = _placed(rng, scale)
-    o4 = o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
-    return InvertedSliderCrank(o2, o4, r2, offset=offset, **others)
+    o2, direction = rng.normal(0, scale, 2), rng.uniform(-np.pi, np.pi)
+    coupler_point, assembly = rng.normal(0, 0.7 * scale, 2), rng.choice([-1, 1])
+    rest = {"coupler_point": coupler_point, "assembly": assembly, "body_angle": rng.uniform(-np.pi, np.pi)}
+    return lengths, offset, o2, direction, rest
+
+
+def _ahead(o2: FloatArray, r1: float, theta1: float) -> FloatArray:
+    return o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
 
 
 # By the word for the kind of linkage.

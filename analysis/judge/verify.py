@@ -79,8 +79,7 @@ def verify(
     """
     task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
-    how = row_of(HOW_MET, task)
-    met = how.met(linkage, task, wanted)
+    met = row_of(HOW_MET, task)(linkage, task, wanted)
     targets, motion = met.targets, met.motion
     circuits = circuit_index(linkage, met.theta2, met.assembly)
     branches = branch_index(linkage, met.theta2, met.assembly)
@@ -110,10 +109,10 @@ def verify(
         output_error=targets.output_error,
         **met.figures,
     )
-    drive = _drive(linkage, task, wanted, verdict, targets, motion, problem)
+    drive = _drive(linkage, task, wanted, verdict, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
-        *how.defects(linkage, task, wanted, verdict),
+        *met.defects,
         *_zones(targets, task),
         *_total_error(targets, task, most_square),
         *drive,
@@ -185,7 +184,6 @@ def _drive(
     task: Task,
     wanted: Requirements,
     verdict: Verdict,
-    targets: Targets,
     motion: TaskMotion,
     problem: Problem | None,
 ) -> list[Defect]:
@@ -194,28 +192,26 @@ def _drive(
     moved = cylinder_travel(linkage, task, verdict) if spec is not None else None
     through = moved is not None and not verdict.branch_ok  # a cylinder, through dead positions of link 2
     by_link2 = [] if through else [
-        *_same_branch(verdict.circuit_ok, verdict.branch_ok, int(linkage.assembly), targets, wanted),
-        *_order(motion, wanted),
+        *(_same_branch(verdict, int(linkage.assembly)) if wanted.same_branch else []),
+        *(_order(motion) if wanted.order else []),
     ]  # fmt: skip
     if spec is None:
         return by_link2
     return [*by_link2, *cylinder_defects(spec, verdict.cylinder, moved, task.size)]
 
 
-def _same_branch(
-    circuit_ok: bool, branch_ok: bool, declared: int, targets: Targets, wanted: Requirements
-) -> Iterator[Defect]:
-    used = int(targets.assembly[0])
-    if wanted.same_branch and not branch_ok:
-        what = "branches used (a dead position lies between)" if circuit_ok else "circuits used"
+def _same_branch(verdict: Verdict, declared: int) -> Iterator[Defect]:
+    used = int(verdict.assembly[0])
+    if not verdict.branch_ok:
+        what = "branches used (a dead position lies between)" if verdict.circuit_ok else "circuits used"
         yield Defect("same_branch", f"the number of {what}", 2, "1", 1.0)
-    elif wanted.same_branch and used != declared:
+    elif used != declared:
         allowed = f"{declared:+d}, the linkage's own"
         yield Defect("same_branch", "the assembly at the targets", used, allowed, 1.0)
 
 
-def _order(motion: TaskMotion, wanted: Requirements) -> Iterator[Defect]:
-    if not wanted.order or motion.in_order:
+def _order(motion: TaskMotion) -> Iterator[Defect]:
+    if motion.in_order:
         return
     turns = abs(motion.end - motion.start) / (2 * np.pi)
     if turns > 1:

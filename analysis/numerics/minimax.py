@@ -46,7 +46,7 @@ def least_peak(
     bound = -1.0
     for _ in range(_ROUNDS):
         before = bound
-        parameters, bound = _programme(base(places), effects(places))
+        parameters, bound = least_peak_at(base(places), effects(places))
 
         def left(t: FloatArray, chosen: FloatArray = parameters) -> FloatArray:
             return base(t) + effects(t) @ chosen
@@ -61,7 +61,7 @@ def least_peak(
     return best
 
 
-def _programme(base: FloatArray, effects: FloatArray) -> tuple[FloatArray, float]:
+def least_peak_at(base: FloatArray, effects: FloatArray) -> tuple[FloatArray, float]:
     """The parameters of the least peak at some places, and that peak."""
     scale, sizes = float(np.abs(base).max()) or 1.0, np.abs(effects).max(axis=0)
     sizes = np.where(sizes > 0, sizes, 1.0)

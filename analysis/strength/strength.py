@@ -8,15 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.analysis.forces.dynamics import Dynamics, inverse_dynamics
-from grashof.analysis.forces.joints import Joint, joined, pins_of
+from grashof.analysis.forces.joints import Joint, pins_of
 from grashof.analysis.mechanism.kinematics import Kinematics
-from grashof.analysis.strength.along_bar import (
-    Along,
-    deflection,
-    greatest,
-    greatest_deflection,
-    greatest_of,
-)
+from grashof.analysis.strength.along_bar import Along, deflection, greatest, greatest_deflection, greatest_of
 from grashof.analysis.strength.section_forces import BarForces, section_forces
 from grashof.analysis.strength.structure import MEASURES, Structure
 from grashof.problems.values.arrays import FloatArray
@@ -104,7 +98,7 @@ def pin_measures(
         joint: {"pin_force": force * structure.in_si("N")}
         | {
             key: force / area * structure.in_si("Pa")
-            for key, area in structure.pin_areas(joint, joined(linkage, joint)).items()
+            for key, area in structure.pin_areas(joint, linkage.mechanism.every_joint[joint].links).items()
         }
         for joint, force in forces.items()
     }

@@ -148,8 +148,7 @@ def strength_over(structure: Structure, motion: Motion, stretches: Sequence[Floa
     >>> found.worst_bar.part, round(found.worst.value, 2)
     ('link 2', 12.99)
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeadPositionWarning)
+    with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
         linkage = _closing(motion, stretches)
         lengths, pins = bar_lengths(linkage), pins_of(linkage)
         found = [peak for link in lengths for peak in _bar_peaks(structure, motion, stretches, link)]

@@ -8,14 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from grashof.analysis.curves.coupler_curve import (
-    PIECES,
-    Track,
-    between,
-    coupler_curve,
-    range_around,
-    tracks,
-)
+from grashof.analysis.curves.coupler_curve import PIECES, Track, between, coupler_curve, range_around, tracks
 from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses
 from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
 from grashof.analysis.mechanism.mobility import driver_ranges, rotatability

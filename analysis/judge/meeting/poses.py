@@ -53,7 +53,20 @@ def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
 
 def _valleys(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray, FloatArray]:
     """Driver angles, assemblies and misses in the lowest valleys of the miss of each pose, (K, N)."""
-    angle, signs = _scan(linkage, task)
+    ends = driver_ranges(linkage)
+    ranges = ends[np.isfinite(ends[:, 0])]
+    # Closer towards dead positions, where a linkage runs away from its driver.
+    around = np.concatenate([closer_at_ends(low, high, _SAMPLES) for low, high in ranges] or [np.zeros(1)])
+    miss = misses(linkage, task, around[:, None], np.array([1, -1])[:, None, None])
+    valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
+    lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
+    angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
+    width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
+    for look in (_BESIDE, *[9] * 11):
+        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, look)[:, None, None])
+        nearest = np.argmin(misses(linkage, task, tried, signs), axis=0)
+        angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
+        width /= 4
     angle, miss = _descend(linkage, task, angle, signs)
     return angle, signs, miss
 
@@ -86,25 +99,6 @@ def _descend(
             break
         angle, best = np.where(better, moved, angle), np.where(better, miss, best)
     return angle, best
-
-
-def _scan(linkage: Linkage, task: Task) -> tuple[FloatArray, IntArray]:
-    """Driver angles and assemblies in the lowest valleys of the miss over all driver angles, (K, N)."""
-    ends = driver_ranges(linkage)
-    ranges = ends[np.isfinite(ends[:, 0])]
-    # Closer towards dead positions, where a linkage runs away from its driver.
-    around = np.concatenate([closer_at_ends(low, high, _SAMPLES) for low, high in ranges] or [np.zeros(1)])
-    miss = misses(linkage, task, around[:, None], np.array([1, -1])[:, None, None])
-    valley = (miss <= np.roll(miss, 1, axis=1)) & (miss <= np.roll(miss, -1, axis=1))
-    lowest = np.argsort(np.where(valley, miss, np.inf).reshape(-1, len(task)), axis=0)[:_VALLEYS]
-    angle, signs = around[lowest % len(around)], np.where(lowest < len(around), 1, -1)
-    width = TURN / _SAMPLES * np.pi / 2  # no two samples lie farther apart
-    for look in (_BESIDE, *[9] * 11):
-        tried = _into_ranges(ends, angle + width * np.linspace(-1, 1, look)[:, None, None])
-        nearest = np.argmin(misses(linkage, task, tried, signs), axis=0)
-        angle = np.take_along_axis(tried, nearest[None], axis=0)[0]
-        width /= 4
-    return angle, signs
 
 
 def _into_ranges(ranges: FloatArray, theta2: FloatArray) -> FloatArray:

@@ -9,62 +9,56 @@ import pytest
 from grashof.analysis import rotatability
 from grashof.analysis.judge.planted import RANDOM
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.dynamics.load_specs import (
-    CounterweightSpec,
-    DamperSpec,
-    FrictionSpec,
-    LoadSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
+from grashof.problems.values.dynamics import load_specs as specs
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
 CARD = ((0, 0.3, -9), (90, 0.4, -20), (180, -0.1, -20), (250, 0, -11), (360, 0.3, -9))
 TRAVEL = ((-10, 1, -2), (-1, 3, 0), (0.5, -2, 1), (2, 0, 4), (10, 1, 1))
 ALIKE = (
-    LoadSpec(3, at=(0.2, 0.3), force=(1.0, 2.0), frame="link"),
-    LoadSpec(2, moment=-0.7),
-    LoadSpec(3, at=(0.1, 0), values=((0, 1, 2), (1, -1, 0), (5, 2, 2)), over="time"),
+    specs.LoadSpec(3, at=(0.2, 0.3), force=(1.0, 2.0), frame="link"),
+    specs.LoadSpec(2, moment=-0.7),
+    specs.LoadSpec(3, at=(0.1, 0), values=((0, 1, 2), (1, -1, 0), (5, 2, 2)), over="time"),
 )
-OVER_THETA4 = LoadSpec(4, values=((0, 1), (120, -1), (360, 1)), over="theta4")
+OVER_THETA4 = specs.LoadSpec(4, values=((0, 1), (120, -1), (360, 1)), over="theta4")
 OF_FOUR_BARS = DynamicsSpec(
     density=800.0,
     section=SectionSpec(0.05, 0.02),
     payload=1.0,
     speed_rpm=30,
     gravity=(0.5, -9.81),
-    loads=(LoadSpec(4, at=(-0.7, 0.1), values=CARD), *ALIKE, OVER_THETA4),
-    springs=(SpringSpec((Place(1, (0.2, 0.9)), Place(4, (0.3, 0.1))), 30.0, 0.4),),
-    dampers=(DamperSpec((Place(2, (0.2, 0.9)), Place(4, (0.3, 0.1))), 4.0),),
-    torsion_springs=(TorsionSpringSpec((3, 2), 2.0, 40.0), TorsionSpringSpec((1, 4), 1.0)),
-    counterweights=(CounterweightSpec(2, 3.0, (-0.4, 0.1)),),
-    friction=FrictionSpec(0.1, (0.01, 0.02, 0.01, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0)),
+    loads=(specs.LoadSpec(4, at=(-0.7, 0.1), values=CARD), *ALIKE, OVER_THETA4),
+    springs=(specs.SpringSpec((specs.Place(1, (0.2, 0.9)), specs.Place(4, (0.3, 0.1))), 30.0, 0.4),),
+    dampers=(specs.DamperSpec((specs.Place(2, (0.2, 0.9)), specs.Place(4, (0.3, 0.1))), 4.0),),
+    torsion_springs=(specs.TorsionSpringSpec((3, 2), 2.0, 40.0), specs.TorsionSpringSpec((1, 4), 1.0)),
+    counterweights=(specs.CounterweightSpec(2, 3.0, (-0.4, 0.1)),),
+    friction=specs.FrictionSpec(0.1, (0.01, 0.02, 0.01, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0)),
 )
 SLIDE = {"slide_mu": 0.05, "slide_length": 0.5, "slide_viscous": 0.7, "slide_force": 0.3}
 OF_SLIDERS = replace(
     OF_FOUR_BARS,
     loads=(
-        LoadSpec(4, at=(-0.2, 0.1), values=((0, 0.3, -9), (120, 0.4, -20), (250, 0, -11), (360, 0.3, -9))),
-        LoadSpec(4, at=(0.1, -0.3), values=TRAVEL, over="travel"),
-        LoadSpec(4, at=(0.1, 0.2), force=(2.0, -1.0), frame="link"),
-        LoadSpec(4, moment=0.9),
+        specs.LoadSpec(
+            4, at=(-0.2, 0.1), values=((0, 0.3, -9), (120, 0.4, -20), (250, 0, -11), (360, 0.3, -9))
+        ),
+        specs.LoadSpec(4, at=(0.1, -0.3), values=TRAVEL, over="travel"),
+        specs.LoadSpec(4, at=(0.1, 0.2), force=(2.0, -1.0), frame="link"),
+        specs.LoadSpec(4, moment=0.9),
         *ALIKE,
     ),
-    counterweights=(*OF_FOUR_BARS.counterweights, CounterweightSpec(4, 2.0, (0.1, 0.2))),
+    counterweights=(*OF_FOUR_BARS.counterweights, specs.CounterweightSpec(4, 2.0, (0.1, 0.2))),
 )
 EVERYTHING = {
     FourBar: OF_FOUR_BARS,
     SliderCrank: replace(
         OF_SLIDERS,
-        torsion_springs=(TorsionSpringSpec((3, 2), 2.0, 40.0), TorsionSpringSpec((3, 4), 1.0)),
-        friction=FrictionSpec(0.1, (0.01, 0.02, 0.01, 0), viscous=0.1, moment=(0, 0.1, 0, 0), **SLIDE),
+        torsion_springs=(specs.TorsionSpringSpec((3, 2), 2.0, 40.0), specs.TorsionSpringSpec((3, 4), 1.0)),
+        friction=specs.FrictionSpec(0.1, (0.01, 0.02, 0.01, 0), viscous=0.1, moment=(0, 0.1, 0, 0), **SLIDE),
     ),
     InvertedSliderCrank: replace(
         OF_SLIDERS,
         loads=(*OF_SLIDERS.loads, OVER_THETA4),
-        friction=FrictionSpec(0.1, (0.01, 0.02, 0, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0), **SLIDE),
+        friction=specs.FrictionSpec(0.1, (0.01, 0.02, 0, 0.03), viscous=0.1, moment=(0, 0.1, 0, 0), **SLIDE),
     ),
 }
 

@@ -20,12 +20,7 @@ from grashof.analysis import (
 )
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.dynamics.load_specs import (
-    CounterweightSpec,
-    Place,
-    SpringSpec,
-    TorsionSpringSpec,
-)
+from grashof.problems.values.dynamics import load_specs as specs
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
 
@@ -38,15 +33,15 @@ ENGINE = SliderCrank((0.2, -0.1), 0.35, 1.1, 0.15, 0.4, (0.5, 0.3))
 BACKWARDS = SliderCrank((0.2, -0.1), 0.35, 1.1, -0.15, 2.0, (0.5, 0.3), assembly=-1)
 SHAPER = InvertedSliderCrank((0.2, -0.1), (1.2, 0.3), 0.35, 0.2, (0.5, 0.3))
 WHITWORTH = InvertedSliderCrank((0, 0), (0.4, 0.1), 1.1, -0.2, (-0.4, 0.3), assembly=-1)
-IN_O2, IN_O4 = TorsionSpringSpec((1, 2), 1.5, 20.0), TorsionSpringSpec((1, 4), 0.7, 100.0)
+IN_O2, IN_O4 = specs.TorsionSpringSpec((1, 2), 1.5, 20.0), specs.TorsionSpringSpec((1, 4), 0.7, 100.0)
 SPEC = DynamicsSpec(
     density=700.0,
     section=SectionSpec(0.04, 0.03),
     payload=0.5,
     gravity=(0.3, -9.81),
-    springs=(SpringSpec((Place(1, (0.1, 0.9)), Place(4, (0.5, 0.1))), 40.0, 0.4),),
+    springs=(specs.SpringSpec((specs.Place(1, (0.1, 0.9)), specs.Place(4, (0.5, 0.1))), 40.0, 0.4),),
     torsion_springs=(IN_O2,),
-    counterweights=(CounterweightSpec(2, 0.6, (-0.2, 0.05)),),
+    counterweights=(specs.CounterweightSpec(2, 0.6, (-0.2, 0.05)),),
 )
 SLIDER = Body(0.9, 0.01, (0.1, 0.05))  # of slider or block: bars leave them without mass
 STEP = 2e-5  # s
@@ -73,7 +68,7 @@ def body(masses: Masses, link: int) -> str:
     )
 
 
-def hinge(name: str, spring: TorsionSpringSpec) -> str:
+def hinge(name: str, spring: specs.TorsionSpringSpec) -> str:
     free = float(np.radians(spring.free_angle_deg))
     return f'<joint name="{name}" axis="0 0 1" stiffness="{spring.stiffness}" springref="{free!r}"/>'
 

@@ -12,48 +12,11 @@ from body_coordinates import forces
 from body_plans import Array
 from random_linkages import GRID, KINDS, Moving, agree
 
-from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    Body,
-    Ending,
-    Friction,
-    Loads,
-    Masses,
-    Spring,
-    Structure,
-    TorsionSpring,
-    advantage,
-    balance_force,
-    balance_torque,
-    balance_turn,
-    energies,
-    equilibria,
-    free_response,
-    full_rotation,
-    given_masses,
-    holding,
-    inverse_dynamics,
-    powers,
-    section_forces,
-    solve_kinematics,
-    stated_masses,
-    strength_at,
-    system_centre,
-    system_of_equations,
-    uniform_bars,
-    virtual_work_torque,
-)
+from grashof import analysis
+from grashof.analysis import AppliedForce, Body, Friction, Loads, Masses, inverse_dynamics, solve_kinematics
 from grashof.analysis.forces.bars import bars_of
 from grashof.analysis.forces.joints import joint_motion, joints_of, pins_of
-from grashof.problems import (
-    DynamicsSpec,
-    FourBar,
-    Linkage,
-    ProblemError,
-    SectionSpec,
-    StrengthSpec,
-)
+from grashof.problems import DynamicsSpec, FourBar, Linkage, ProblemError, SectionSpec, StrengthSpec
 
 DRIVER = (2.0, 0.7, -0.3)
 GRAVITY = (0.7, -9.81)
@@ -76,7 +39,7 @@ class Case(Moving):
         self.loads = Loads(
             gravity=GRAVITY,
             forces=tuple(AppliedForce(link, at, force) for link, at, force, _ in self.acting),
-            moments=tuple(AppliedMoment(link, moment) for link, *_, moment in self.acting),
+            moments=tuple(analysis.AppliedMoment(link, moment) for link, *_, moment in self.acting),
         )
 
     def rubbing(self) -> Loads:
@@ -93,12 +56,15 @@ class Case(Moving):
                 AppliedForce(last, (0.3, 0.1), (1.0, -2.0), turning=True),
                 AppliedForce(3, (0.2, -0.4), lambda state: swaying * np.cos(2 * state.theta2)[..., None]),
             ),
-            moments=(*self.loads.moments, AppliedMoment(2, lambda state: np.sin(state.turning[-1].theta))),
-            springs=(
-                Spring(1, (0.2, 0.9), last, (0.3, 0.1), 3.0, 0.4, 0.7),
-                Spring(2, (1, 1), 3, (0, 1), 2.0),
+            moments=(
+                *self.loads.moments,
+                analysis.AppliedMoment(2, lambda state: np.sin(state.turning[-1].theta)),
             ),
-            torsion_springs=tuple(TorsionSpring(joint, 1.0 + joint, 0.3) for joint in pins),
+            springs=(
+                analysis.Spring(1, (0.2, 0.9), last, (0.3, 0.1), 3.0, 0.4, 0.7),
+                analysis.Spring(2, (1, 1), 3, (0, 1), 2.0),
+            ),
+            torsion_springs=tuple(analysis.TorsionSpring(joint, 1.0 + joint, 0.3) for joint in pins),
             friction=Friction(each, each, 0.001, **(slides if len(pins) < len(joints) else {})),
         )
 
@@ -122,7 +88,7 @@ def case(request: pytest.FixtureRequest) -> Case:
 def one_of(case: Case) -> tuple[Linkage, Masses]:
     """A single linkage that is clear of dead positions all the way, with the masses of bars."""
     k = int(case.clear.sum(axis=0).argmax())
-    return case.linkage[k], uniform_bars(case.linkage[k], 2.0, payload=0.5)
+    return case.linkage[k], analysis.uniform_bars(case.linkage[k], 2.0, payload=0.5)
 
 
 def test_joint_forces_and_torque(case: Case) -> None:
@@ -152,7 +118,7 @@ def test_the_shaking_force_is_that_of_the_centre_of_mass(case: Case) -> None:
     state, masses = case.state, case.masses
     found = inverse_dynamics(state, masses, replace(case.loads, friction=case.rubbing().friction))
     clear = case.clear & np.isfinite(found.torque)
-    centre, total = system_centre(masses, state), masses.total[..., None]
+    centre, total = analysis.system_centre(masses, state), masses.total[..., None]
     needed = total * (centre.acceleration - np.array(GRAVITY))
     turning = np.zeros(case.clear.shape)
     for link, body in masses.by_link(case.linkage).items():
@@ -175,9 +141,9 @@ def test_friction_and_springs_by_virtual_work_and_the_system_of_equations(case: 
     found = inverse_dynamics(case.state, case.masses, loads)
     clear = case.clear & np.isfinite(found.torque)  # pins may lock the linkage
     assert clear.sum() > 0.9 * case.clear.sum()
-    work = virtual_work_torque(case.state, case.masses, loads, found.joint_moments)
+    work = analysis.virtual_work_torque(case.state, case.masses, loads, found.joint_moments)
     agree(found.torque, work, clear)
-    system = system_of_equations(case.state, case.masses, loads)
+    system = analysis.system_of_equations(case.state, case.masses, loads)
     assert len(system.unknowns) == len(system.equations) == 3 * len(case.links)
     agree(system.solution[..., -1], found.torque, clear, 1e-10)
     names = list(system.unknowns)
@@ -200,10 +166,10 @@ def test_power_is_the_rate_of_energy(case: Case) -> None:
     for time, weight in zip(step * np.arange(-4, 5), weights / step, strict=True):
         turned = theta2 + omega * time + alpha * time**2 / 2
         moved = solve_kinematics(case.linkage, turned, omega + alpha * time, alpha)
-        stored = energies(moved, case.masses, loads)
+        stored = analysis.energies(moved, case.masses, loads)
         rate += weight * stored.total
     assert len(stored.kinetic) == len(case.links)
-    given = powers(solve_kinematics(case.linkage, theta2, omega, alpha), case.masses, loads)
+    given = analysis.powers(solve_kinematics(case.linkage, theta2, omega, alpha), case.masses, loads)
     total = given.drive + given.loads + given.friction
     clear = (np.abs(np.stack(case.state.margins)) > 0.2).all(axis=0) & case.clear & np.isfinite(total)
     # The energy of a torsion spring has a corner where it is wound by half a turn.
@@ -218,7 +184,7 @@ def test_power_is_the_rate_of_energy(case: Case) -> None:
 def test_the_holding_torque_is_the_torque_at_rest(case: Case) -> None:
     resting = solve_kinematics(case.linkage, case.state.theta2, 0.0)
     loads = replace(case.rubbing(), friction=Friction())
-    held = holding(case.linkage, case.state.theta2, case.masses, loads)
+    held = analysis.holding(case.linkage, case.state.theta2, case.masses, loads)
     alone = inverse_dynamics(resting, case.masses, loads).torque
     agree(held.torque, alone, case.clear, 1e-10)
     at_p = AppliedForce(
@@ -229,7 +195,7 @@ def test_the_holding_torque_is_the_torque_at_rest(case: Case) -> None:
     left = inverse_dynamics(resting, case.masses, replace(loads, forces=(*loads.forces, at_p))).torque
     moves = case.clear & (case.state.p.speed > 1e-2)
     agree(alone + left, alone, moves, 1e-10)
-    ratio = advantage(case.linkage, case.state.theta2)
+    ratio = analysis.advantage(case.linkage, case.state.theta2)
     unit, slide = solve_kinematics(case.linkage, case.state.theta2), case.state.slides[-1]
     is_slider = slide is not None and case.linkage.mechanism.slides[-1][0] == 1
     last = unit.slides[-1].velocity if is_slider and unit.slides[-1] else unit.turning[-1].omega
@@ -249,7 +215,7 @@ def test_frames_of_links_are_those_of_their_points(case: Case) -> None:
 
 def test_bars_are_in_balance_to_their_ends(case: Case) -> None:
     found = inverse_dynamics(case.state, case.masses, case.loads)
-    bars = section_forces(case.state, case.masses, case.loads, found)
+    bars = analysis.section_forces(case.state, case.masses, case.loads, found)
     assert list(bars) == [
         link.number
         for link in case.linkage.mechanism.links[1:]
@@ -266,8 +232,8 @@ def test_strength_of_every_bar_and_pin(case: Case) -> None:
     linkage, masses = one_of(case)
     state = solve_kinematics(linkage, case.state.theta2[case.clear[:, 0], 0][:3], *DRIVER)
     steel = StrengthSpec(235e6, 210e9, pin_diameter=0.01)
-    structure = Structure(masses, Loads(gravity=GRAVITY), SectionSpec(0.02, 0.01), steel)
-    found = strength_at(state, structure)
+    structure = analysis.Structure(masses, Loads(gravity=GRAVITY), SectionSpec(0.02, 0.01), steel)
+    found = analysis.strength_at(state, structure)
     dynamics = inverse_dynamics(state, masses, structure.loads)
     assert list(found.bars) == list(bars_of(linkage))
     assert list(found.pins) == list(pins_of(linkage))
@@ -280,11 +246,11 @@ def test_a_driver_let_go_keeps_its_energy_and_swings_about_an_equilibrium(case: 
     linkage, masses = one_of(case)
     k = int(case.clear.sum(axis=0).argmax())
     theta2, weight = float(case.state.theta2[case.clear[:, k], k][2]), Loads(gravity=(0, -9.81))
-    free = free_response(linkage, masses, [0.0, 0.1, 0.2], theta2, 0.5, loads=weight)
-    if free.ending is Ending.TIME:
-        kinetic = energies(free.state, masses).kinetic.sum(axis=0).max()
+    free = analysis.free_response(linkage, masses, [0.0, 0.1, 0.2], theta2, 0.5, loads=weight)
+    if free.ending is analysis.Ending.TIME:
+        kinetic = analysis.energies(free.state, masses).kinetic.sum(axis=0).max()
         assert np.ptp(free.energy) < 1e-7 * kinetic
-    found = equilibria(linkage, masses, weight, theta2 - 0.3, theta2 + 0.3)
+    found = analysis.equilibria(linkage, masses, weight, theta2 - 0.3, theta2 + 0.3)
     torque = inverse_dynamics(solve_kinematics(linkage, found.theta2, 0.0), masses, weight).torque
     peak = np.abs(inverse_dynamics(solve_kinematics(linkage, theta2, 0.0), masses, weight).torque) + 1
     np.testing.assert_allclose(torque, 0, atol=1e-7 * peak)
@@ -293,9 +259,11 @@ def test_a_driver_let_go_keeps_its_energy_and_swings_about_an_equilibrium(case: 
 def test_a_counterweight_on_the_crank_evens_the_torque_out(case: Case) -> None:
     linkage, masses = one_of(case)
     theta2, weight = np.linspace(0, 2 * np.pi, 240, endpoint=False), Loads(gravity=(0, -9.81))
-    turn = solve_kinematics(linkage, theta2 if full_rotation(linkage) else 0.3 * np.cos(theta2))
-    tried = [balance_torque(turn, masses, weight, 1.0)]
-    tried += [balance_turn(linkage, masses, 1.0, weight, 1.0)] if full_rotation(linkage) else []
+    turn = solve_kinematics(linkage, theta2 if analysis.full_rotation(linkage) else 0.3 * np.cos(theta2))
+    tried = [analysis.balance_torque(turn, masses, weight, 1.0)]
+    tried += (
+        [analysis.balance_turn(linkage, masses, 1.0, weight, 1.0)] if analysis.full_rotation(linkage) else []
+    )
 
     def mean_square(crank: Body) -> float:
         heavier = Masses(crank, *masses.bodies[1:])
@@ -309,7 +277,7 @@ def test_a_counterweight_on_the_crank_evens_the_torque_out(case: Case) -> None:
             assert mean_square(found.masses.crank + Body(0.01, 0.0, at)) > least
     if len(linkage.mechanism.dyads) > 1:
         with pytest.raises(ProblemError, match="has two loops, so counterweights on links 2 and 4 cannot"):
-            balance_force(linkage, masses)
+            analysis.balance_force(linkage, masses)
 
 
 def test_masses_and_friction_of_other_kinds_are_refused_for_a_six_bar() -> None:
@@ -318,7 +286,10 @@ def test_masses_and_friction_of_other_kinds_are_refused_for_a_six_bar() -> None:
     three = Masses(Body(1.0), Body(1.0), Body(1.0))
     for act, message in (
         (lambda: inverse_dynamics(state, three), "masses has 3 bodies; it must have 5 for a stephenson-3"),
-        (lambda: given_masses(linkage, (1, 2, 3), (1, 2, 3)), "must have five, for links 2, 3, 4, 5 and 6"),
+        (
+            lambda: analysis.given_masses(linkage, (1, 2, 3), (1, 2, 3)),
+            "must have five, for links 2, 3, 4, 5 and 6",
+        ),
         (
             lambda: inverse_dynamics(state, case.masses, Loads(friction=Friction((1, 2, 3, 4)))),
             "one or seven",
@@ -328,10 +299,15 @@ def test_masses_and_friction_of_other_kinds_are_refused_for_a_six_bar() -> None:
             "has no slide",
         ),
         (
-            lambda: strength_at(state, Structure(case.masses, Loads(), SectionSpec((1, 2, 3), (1, 2, 3)))),
+            lambda: analysis.strength_at(
+                state, analysis.Structure(case.masses, Loads(), SectionSpec((1, 2, 3), (1, 2, 3)))
+            ),
             "section.width has 3 entries; it must be a number",
         ),
-        (lambda: stated_masses(linkage, DynamicsSpec(masses=(1, 1, 1), inertias=(1, 1, 1))), "has 3 entries"),
+        (
+            lambda: analysis.stated_masses(linkage, DynamicsSpec(masses=(1, 1, 1), inertias=(1, 1, 1))),
+            "has 3 entries",
+        ),
     ):
         with pytest.raises(ProblemError, match=message):
             act()

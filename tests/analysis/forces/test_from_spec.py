@@ -18,14 +18,7 @@ from grashof.analysis import (
 from grashof.analysis.forces.from_spec import curve_through
 from grashof.analysis.forces.loads import wrenches
 from grashof.problems import DynamicsSpec, FourBar, InvertedSliderCrank, SliderCrank
-from grashof.problems.values.dynamics.load_specs import (
-    CounterweightSpec,
-    DamperSpec,
-    FrictionSpec,
-    LoadSpec,
-    Place,
-    SpringSpec,
-)
+from grashof.problems.values.dynamics import load_specs as specs
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.strength import SectionSpec
 from grashof.problems.values.linkages.linkage import Linkage
@@ -59,8 +52,8 @@ def test_the_torque_of_everything_at_once_is_virtual_work(
 
 
 def test_newtons_are_newtons_in_every_length_unit(everything: Specs, made: Maker) -> None:
-    def in_inches(place: Place) -> Place:
-        return Place(place.link, tuple(each / INCH for each in place.at))
+    def in_inches(place: specs.Place) -> specs.Place:
+        return specs.Place(place.link, tuple(each / INCH for each in place.at))
 
     spec = everything[FourBar]
     small = replace(
@@ -68,12 +61,16 @@ def test_newtons_are_newtons_in_every_length_unit(everything: Specs, made: Maker
         section=SectionSpec(0.05 / INCH, 0.02 / INCH),
         loads=tuple(replace(load, at=tuple(np.array(load.at) / INCH)) for load in spec.loads),
         springs=tuple(
-            SpringSpec(tuple(map(in_inches, each.between)), each.stiffness, each.free_length / INCH)
+            specs.SpringSpec(tuple(map(in_inches, each.between)), each.stiffness, each.free_length / INCH)
             for each in spec.springs
         ),
-        dampers=tuple(DamperSpec(tuple(map(in_inches, each.between)), each.damping) for each in spec.dampers),
-        counterweights=(CounterweightSpec(2, 3.0, (-0.4 / INCH, 0.1 / INCH)),),
-        friction=FrictionSpec(0.1, tuple(np.array([0.01, 0.02, 0.01, 0.03]) / INCH), 0.1, (0, 0.1, 0, 0)),
+        dampers=tuple(
+            specs.DamperSpec(tuple(map(in_inches, each.between)), each.damping) for each in spec.dampers
+        ),
+        counterweights=(specs.CounterweightSpec(2, 3.0, (-0.4 / INCH, 0.1 / INCH)),),
+        friction=specs.FrictionSpec(
+            0.1, tuple(np.array([0.01, 0.02, 0.01, 0.03]) / INCH), 0.1, (0, 0.1, 0, 0)
+        ),
     )
     theta2 = np.linspace(0, 6, 50)
     for linkage in made(FourBar, 5):
@@ -100,10 +97,10 @@ def test_bars_of_a_density_are_those_of_their_section(made: Maker) -> None:
 def test_loads_and_counterweights_act_where_they_are_stated(made: Maker) -> None:
     linkage = made(FourBar, 1)[0]
     turning, varying = (
-        LoadSpec(4, (1, 0), (3, 4), frame="link"),
-        LoadSpec(2, values=((0, 1), (90, 7), (360, 1))),
+        specs.LoadSpec(4, (1, 0), (3, 4), frame="link"),
+        specs.LoadSpec(2, values=((0, 1), (90, 7), (360, 1))),
     )
-    weight = CounterweightSpec(2, 3.0, (-0.4, 0.1))
+    weight = specs.CounterweightSpec(2, 3.0, (-0.4, 0.1))
     spec = DynamicsSpec(1e-12, loads=(turning, varying), counterweights=(weight,))
     felt = wrenches(solve_kinematics(linkage, np.pi / 2), stated_loads(spec, 1.0))
     assert felt[2].moment == pytest.approx(7)  # degrees

@@ -3,16 +3,8 @@
 import numpy as np
 import pytest
 
-from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    Friction,
-    Joint,
-    Loads,
-    Spring,
-    TorsionSpring,
-    solve_kinematics,
-)
+from grashof import analysis
+from grashof.analysis import AppliedForce, AppliedMoment, Friction, Loads, Spring, solve_kinematics
 from grashof.analysis.forces.joints import joint_motion, joints_of
 from grashof.analysis.forces.loads import (
     known_joint_moments,
@@ -57,7 +49,7 @@ def test_joint_motions_are_of_the_second_link_against_the_first() -> None:
 
 
 def test_torsion_springs_are_wound_the_short_way() -> None:
-    spring = TorsionSpring(Joint.O4, 2.0, 3.0)
+    spring = analysis.TorsionSpring(analysis.Joint.O4, 2.0, 3.0)
     np.testing.assert_allclose(spring.wound(np.array([3.1, -3.1, 2.9])), [0.1, 2 * np.pi - 6.1, -0.1])
     moments = known_joint_moments(STATE, Loads(torsion_springs=(spring,)))
     np.testing.assert_allclose(moments[3], -2 * spring.wound(STATE.theta4))

@@ -8,21 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grashof import problems
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
-from grashof.analysis.mechanism.stroke import output_stroke
-from grashof.problems import (
-    DynamicsSpec,
-    Manufacturing,
-    PathTask,
-    Problem,
-    ProblemError,
-    Requirements,
-    TransmissionOver,
-)
+from grashof.problems import Manufacturing, Problem, ProblemError, Requirements, TransmissionOver
 from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
@@ -30,7 +22,7 @@ from grashof.problems.values.units import Unit
 SAMPLES = 20_001
 STATED: dict[str, Any] = {
     "length_unit": "m",
-    "dynamics": DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81)),
+    "dynamics": problems.DynamicsSpec(mass_per_length=2.0, gravity=(0, -9.81)),
     "manufacturing": Manufacturing(0.01),
     "requirements": Requirements(exact=False),
 }
@@ -42,7 +34,7 @@ def planted(seed: int, kind: str = "motion") -> Values:
     if kind == "closed":
         linkage = random_full_crank(rng)
         points = solve_position(linkage, np.linspace(0, 2 * np.pi, 12, endpoint=False)).p
-        task: Any = PathTask(points + 0.01 * rng.normal(size=points.shape), closed=True)
+        task: Any = problems.PathTask(points + 0.01 * rng.normal(size=points.shape), closed=True)
     else:
         task, linkage = planted_motion(rng, 4) if kind == "motion" else planted_path(rng, 7)
     problem = Problem(task=task, **STATED)
@@ -130,23 +122,6 @@ def test_moves_are_differences() -> None:
     moved = solve_position(made[:, None], theta2).p - solve_position(linkage, theta2).p
     for name, ways in zip(("r1", "r2", "r3", "r4", "u", "v"), moved, strict=True):
         assert values[f"move_{name}"] == pytest.approx(np.hypot(*ways.T).max() / step, rel=1e-4)
-
-
-def test_quantities_that_the_problem_does_not_state_have_no_value(values: Values) -> None:
-    bare = Values(
-        values.linkage,
-        values.verdict,
-        Problem(task=values.problem.task, requirements=Requirements(exact=True)),
-    )
-    unknown = {key for key in bare if np.isnan(bare[key])}
-    needing = {key for key in MEASURES if QUANTITIES[key].needs.value not in ("nothing", "a closed path")}
-    closed = set() if values.problem.task.closed else {"hausdorff", "frechet"}
-    angles = (
-        set() if values.problem.task.has_angle.any() else {"body_angle", "angle_error_max", "angle_error_rms"}
-    )
-    lacking = {key for key in MEASURES if values.linkage.mechanism.word not in QUANTITIES[key].kinds}
-    swings = output_stroke(values.linkage).time_ratio  # none where the output link has no limit positions
-    assert unknown == needing | closed | angles | lacking | (set() if np.isfinite(swings) else {"time_ratio"})
 
 
 def test_known_values_are_pickled(monkeypatch: pytest.MonkeyPatch) -> None:

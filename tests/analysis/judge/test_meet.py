@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from changed_tasks import freed, perturbed
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.how_met import meet
@@ -12,19 +13,7 @@ from grashof.problems import FourBar, MotionTask, PathTask, Requirements
 
 LEAST = Requirements(exact=False)
 TURN = 2 * np.pi
-
-
-def freed(task: MotionTask, **rest: Any) -> MotionTask:
-    """Full poses, points and angles in turn."""
-    positions, angles = task.positions.copy(), task.angles.copy()
-    angles[1::3], positions[2::3] = np.nan, np.nan
-    return MotionTask(positions, angles, timing=task.timing, **rest)
-
-
-def moved(task: MotionTask, rng: np.random.Generator, share: float) -> MotionTask:
-    noise = rng.normal(0, share, (len(task), 3))
-    places, angles = task.positions + task.size * noise[:, :2], task.angles + noise[:, 2]
-    return MotionTask(places, angles, weights=rng.uniform(0.5, 2, len(task)), timing=task.timing)
+MIXED = slice(2, None, 3), slice(1, None, 3)  # full poses, points and angles in turn
 
 
 def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
@@ -40,7 +29,7 @@ def squares_at(linkage: FourBar, task: MotionTask, theta2: Any) -> Any:
 def test_planted_timed_poses_are_met_in_time(poses: int, mixed: bool) -> None:
     for seed in range(3):
         task, linkage = planted_motion(np.random.default_rng([poses, seed]), poses, timed=True)
-        task = freed(task) if mixed and poses > 2 else task
+        task = freed(task, *MIXED, timing=task.timing) if mixed and poses > 2 else task
         for order in (True, False):
             targets, motion = meet(linkage, task, Requirements(order=order))
             assert np.nanmax(targets.position_error) < 1e-9 * task.size
@@ -55,8 +44,8 @@ def test_no_other_first_angle_has_less_squares(mixed: bool) -> None:
     for seed in range(3):
         rng = np.random.default_rng([9, seed])
         task, linkage = planted_motion(rng, 7, timed=True)
-        task = moved(task, rng, 0.1)
-        task = freed(task, weights=task.weights) if mixed else task
+        task = perturbed(task, rng, 0.1, weights=rng.uniform(0.5, 2, 7), timing=task.timing)
+        task = freed(task, *MIXED, weights=task.weights, timing=task.timing) if mixed else task
         verdict = verify(linkage, task, LEAST)
         first = np.linspace(0, TURN, 4000)[:, None]
         around = [squares_at(linkage, task, first + sense * task.driver_turns).min() for sense in (1, -1)]

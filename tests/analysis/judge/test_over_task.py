@@ -7,23 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grashof.analysis import (
-    DriverLaw,
-    Kinematics,
-    Loads,
-    Verdict,
-    inverse_dynamics,
-    over_task,
-    solve_kinematics,
-    solve_position,
-    stated_loads,
-    stated_masses,
-    verify,
-)
+from grashof import analysis, load, synthesize
+from grashof.analysis import Loads, inverse_dynamics, over_task, solve_kinematics, stated_masses, verify
 from grashof.analysis.forces.joints import joints_of
 from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.over_task import motion_ends
-from grashof.analysis.judge.planted import planted_motion
+from grashof.analysis.judge.planted import planted_motion, planted_path
 from grashof.problems import (
     DynamicsSpec,
     FourBar,
@@ -33,7 +22,6 @@ from grashof.problems import (
     Problem,
     Requirements,
     SliderCrank,
-    load,
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.dynamics.load_specs import DamperSpec, FrictionSpec, LoadSpec, Place, SpringSpec
@@ -48,9 +36,9 @@ ANY = Requirements(rotatability="any")
 
 def judged(
     linkage: Linkage, theta2: Any, spec: DynamicsSpec = BARS, unit: str = "m", *, closed: bool = False
-) -> tuple[Problem, Verdict]:
+) -> tuple[Problem, analysis.Verdict]:
     """A task of points that the linkage passes at these driver angles, and the verdict on it."""
-    task = PathTask(solve_position(linkage, theta2).p, closed=closed)
+    task = PathTask(analysis.solve_position(linkage, theta2).p, closed=closed)
     word = linkage.mechanism.word
     problem = Problem(task=task, requirements=ANY, length_unit=unit, dynamics=spec, mechanism=word)
     return problem, verify(linkage, task, ANY)
@@ -109,7 +97,7 @@ def test_a_peak_beside_a_near_dead_position_is_met() -> None:
     found = over_task(linkage, problem, verdict)
     masses, loads = stated_masses(linkage, BARS), Loads(gravity=BARS.gravity)
 
-    def state(theta2: FloatArray) -> Kinematics:
+    def state(theta2: FloatArray) -> analysis.Kinematics:
         return solve_kinematics(linkage, theta2, BARS.omega2)
 
     curves: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -133,26 +121,6 @@ def test_the_driver_turns_at_one_radian_a_second_or_at_its_speed() -> None:
     assert driven.point_acceleration_max == pytest.approx(speed**2 * slow.point_acceleration_max, rel=1e-12)
     assert driven.coupler_fit_r2 == slow.coupler_fit_r2
     assert np.isnan([getattr(slow, name) for name in DYNAMICS]).all()
-
-
-@pytest.mark.parametrize(("unit", "units"), [("mm", 1000.0), ("in", 1 / 0.0254)])
-def test_torque_and_forces_do_not_depend_on_the_length_unit(unit: str, units: float) -> None:
-    """The same linkage in another unit: lengths, kg per length and kg length^2 change, N m and N do not."""
-    scaled = CRANK_ROCKER.scaled(units, np.zeros(2))
-    known = {"payload": 3.0, "speed_rpm": 25.0, "gravity": (1.0, -9.0)}
-    masses, inertias = {"masses": (1, 2, 3)}, np.array([0.1, 0.3, 0.2])
-    pairs: list[tuple[Any, Any]] = [
-        ({"mass_per_length": 2.0}, {"mass_per_length": 2.0 / units}),
-        (masses | {"inertias": tuple(inertias)}, masses | {"inertias": tuple(units**2 * inertias)}),
-    ]
-    for in_metres, in_units in pairs:
-        problem, verdict = judged(CRANK_ROCKER, [0.3, 1.0, 2.5], DynamicsSpec(**in_metres, **known))
-        expected = over_task(CRANK_ROCKER, problem, verdict)
-        found = over_task(scaled, *judged(scaled, [0.3, 1.0, 2.5], DynamicsSpec(**in_units, **known), unit))
-        for name in (*DYNAMICS, "omega4_max", "coupler_fit_r2"):
-            assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9), name
-        for name in ("point_speed_max", "point_acceleration_max"):
-            assert getattr(found, name) == pytest.approx(units * getattr(expected, name), rel=1e-9), name
 
 
 def test_the_motion_is_the_one_from_first_to_last_target() -> None:
@@ -224,14 +192,6 @@ def test_one_target_angle_is_no_motion_but_a_place() -> None:
     assert np.isnan(found.coupler_fit_r2)
 
 
-def test_a_payload_and_gravity_are_felt() -> None:
-    heavy = DynamicsSpec(1e-9, payload=5.0, gravity=(0, -9.81), speed_rpm=1e-3)
-    found = over_task(CRANK_ROCKER, *judged(CRANK_ROCKER, [0.3, 1.0, 2.5], heavy))
-    theta2 = np.linspace(0.3, 2.5, 20_001)
-    height = solve_kinematics(CRANK_ROCKER, theta2).p.velocity[:, 1]  # per radian of the driver
-    assert found.torque_peak == pytest.approx(5 * 9.81 * np.abs(height).max(), rel=1e-6)
-
-
 # Everything that acts, against dense samples in time
 
 ACTING = DynamicsSpec(
@@ -264,12 +224,12 @@ def test_peaks_and_means_are_those_of_dense_samples_in_time(motor: str, seed: in
     verdict = verify(linkage, task, problem.requirements)
     found = over_task(linkage, problem, verdict)
     start, rotation = float(verdict.theta2[0]), float(verdict.theta2[-1] - verdict.theta2[0])
-    law = DriverLaw(start, rotation, np.copysign(np.pi, rotation), spec.motor or MotorSpec())
+    law = analysis.DriverLaw(start, rotation, np.copysign(np.pi, rotation), spec.motor or MotorSpec())
     beside = (law.corners[:, None] + [-1e-9, 1e-9]).ravel()
     share = np.unique(np.concatenate([np.linspace(0, 1, 20_001), beside]))
     time = share[(share > 0) & (share < 1)] * law.duration  # at rest friction may be anything
     state = solve_kinematics(linkage, *law.at_time(time), assembly=verdict.assembly[0])
-    loads = stated_loads(spec, 1.0, lambda _: time)
+    loads = analysis.stated_loads(spec, 1.0, lambda _: time)
     dynamics = inverse_dynamics(state, stated_masses(linkage, spec), loads)
     rms = np.sqrt(np.trapezoid(dynamics.torque**2, time) / law.duration)
     force = max(dynamics.joint_force(joint).max() for joint in joints_of(linkage))
@@ -324,7 +284,7 @@ def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre:
     assert np.sign(end - start) == sense
     theta2 = np.linspace(start, end, 20_001)
     state = solve_kinematics(own, theta2, sense * spec.omega2)
-    dynamics = inverse_dynamics(state, stated_masses(own, spec, metre), stated_loads(spec, metre))
+    dynamics = inverse_dynamics(state, stated_masses(own, spec, metre), analysis.stated_loads(spec, metre))
     torque = dynamics.torque * metre**2
     force = max(float(dynamics.joint_force(joint).max()) for joint in joints_of(own)) * metre
     assert found.torque_peak == pytest.approx(np.abs(torque).max(), rel=1e-6)
@@ -334,3 +294,48 @@ def test_figures_are_those_of_dense_samples(linkage: Linkage, sense: int, metre:
     if metre != 1:  # the same machine in another unit
         in_metres = over_task(linkage, *judged(linkage, at, SPEC))
         assert found.torque_peak == pytest.approx(in_metres.torque_peak, rel=1e-8)
+
+
+SLIDING = "slider-crank", "inverted-slider-crank"
+
+
+def loaded(problem: Problem, low: float, high: float) -> Problem:
+    load = LoadSpec(4, at=(0.1, 0), values=[(low, 1, 0), (high, 2, 0)], over="travel")
+    return replace(problem, length_unit="m", dynamics=DynamicsSpec(loads=[load]))
+
+
+@pytest.mark.slow
+@pytest.mark.quick("inverted-slider-crank")
+@pytest.mark.parametrize("mechanism", SLIDING)
+def test_rows_that_end_too_early_are_a_defect(mechanism: str) -> None:
+    for seed in range(8):
+        task, linkage = planted_path(np.random.default_rng(seed), points=5, mechanism=mechanism)
+        plain = Problem(task=task, mechanism=mechanism)
+        verdict = verify(linkage, task, plain.requirements)
+        dense = solve_kinematics(linkage, np.linspace(*motion_ends(task, verdict), 200_001)).slide
+        assert dense is not None
+        low, high = float(dense.travel.min()), float(dense.travel.max())
+        spare = 1e-6 * task.size
+        for problem, found in (
+            (loaded(plain, low - spare, high + spare), []),
+            (loaded(plain, low + spare, high + spare), [low]),
+            (loaded(plain, low - spare, high - spare), [high]),
+        ):
+            judged = verify(linkage, task, problem.requirements, problem=problem)
+            defects = [one for one in judged.defects if one.requirement == "loads"]
+            assert [one.found for one in defects] == pytest.approx(found, abs=1e-7 * task.size)
+            assert found or np.isfinite(Values(linkage, judged, problem)["torque_peak"])
+
+
+@pytest.mark.quick("inverted-slider-crank")
+@pytest.mark.slow
+@pytest.mark.parametrize("mechanism", SLIDING)
+def test_a_search_lists_designs_whose_loads_are_known(mechanism: str) -> None:
+    task = PathTask([[0, 0], [60, 90], [180, 140], [300, 90], [340, 0]])
+    problem = loaded(Problem(task=task, mechanism=mechanism), -1000.0, 1000.0)
+    result = synthesize(problem, starts=8, enough=8)
+    assert len(result)
+    assert not any(np.isnan(each.values["torque_peak"]) for each in result.candidates)
+    short = synthesize(loaded(problem, -1.0, 1.0), starts=4, enough=4)
+    assert len(short) == 0
+    assert "misses loads: the travel of the slide under loads[0]" in short.note

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import numpy.typing as npt
 import pytest
+from changed_tasks import freed, perturbed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,18 +29,11 @@ FULL = st.integers(2, 8).map(lambda poses: ["full"] * poses)
 PARTS = FULL | st.lists(st.sampled_from(["full", "place", "turned"]), min_size=3, max_size=6)
 
 
-def freed(task: MotionTask, parts: Parts) -> MotionTask:
+def with_parts(task: MotionTask, parts: Parts) -> MotionTask:
     """The task with the other parts left free; the first pose keeps its position."""
     parts = ["place" if k == 0 and part == "turned" else part for k, part in enumerate(parts)]
-    positions, angles = task.positions.copy(), task.angles.copy()
-    positions[[part == "turned" for part in parts]] = np.nan
-    angles[[part == "place" for part in parts]] = np.nan
-    return MotionTask(positions, angles, angle_length=task.angle_length)
-
-
-def perturbed(task: MotionTask, rng: np.random.Generator, share: float) -> MotionTask:
-    noise = rng.normal(0, share, (len(task), 3))
-    return MotionTask(task.positions + task.size * noise[:, :2], task.angles + noise[:, 2])
+    missing = ([part == free for part in parts] for free in ("turned", "place"))
+    return freed(task, *missing, angle_length=task.angle_length)
 
 
 def apart(
@@ -78,7 +72,7 @@ def assert_no_angle_of_a_scan_is_nearer(close_loop: Brute, linkage: FourBar, tas
 @settings(max_examples=15)
 def test_exact_parts_are_met_to_rounding(seed: int, parts: Parts) -> None:
     full, linkage = planted_motion(np.random.default_rng(seed), len(parts))
-    task = freed(full, parts)
+    task = with_parts(full, parts)
     found = nearest_to_poses(linkage, task)
     reach = linkage.lengths.max() + np.abs(full.positions).max()
     assert np.nanmax(found.position_error) <= 1e-12 * reach
@@ -95,7 +89,7 @@ def test_no_driver_angle_of_a_scan_comes_nearer(
 ) -> None:
     rng = np.random.default_rng(seed)
     exact, linkage = planted_motion(rng, len(parts))
-    assert_no_angle_of_a_scan_is_nearer(close_loop, linkage, freed(perturbed(exact, rng, share), parts))
+    assert_no_angle_of_a_scan_is_nearer(close_loop, linkage, with_parts(perturbed(exact, rng, share), parts))
 
 
 @pytest.mark.slow
@@ -110,7 +104,7 @@ def test_no_driver_angle_of_a_scan_comes_nearer_for_any_class(
     rng = np.random.default_rng(data.draw(SEEDS))
     centre, reach = (linkage.o2 + linkage.o4) / 2, float(linkage.lengths.sum())
     places = centre + reach * rng.normal(0, 0.5, (len(parts), 2))
-    task = freed(MotionTask(places, rng.uniform(-np.pi, np.pi, len(parts))), parts)
+    task = with_parts(MotionTask(places, rng.uniform(-np.pi, np.pi, len(parts))), parts)
     assert_no_angle_of_a_scan_is_nearer(close_loop, linkage, task)
 
 
@@ -120,7 +114,7 @@ def test_errors_are_those_of_the_angles(close_loop: Brute, seed: int, parts: Par
     """Of those that are found, and of any others on either assembly."""
     rng = np.random.default_rng(seed)
     exact, linkage = planted_motion(rng, len(parts))
-    task = freed(perturbed(exact, rng, 0.02), parts)
+    task = with_parts(perturbed(exact, rng, 0.02), parts)
     theta2, assembly = rng.uniform(-4, 4, len(parts)), rng.choice([-1, 1], len(parts))
     for found in (nearest_to_poses(linkage, task), Targets.of(linkage, task, theta2, assembly)):
         gap, turned = apart(close_loop, linkage, task, found.theta2, found.assembly)

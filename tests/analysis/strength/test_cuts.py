@@ -9,26 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    Body,
-    Dynamics,
-    Friction,
-    GrashofClass,
-    Joint,
-    Kinematics,
-    Loads,
-    Masses,
-    Spring,
-    TorsionSpring,
-    driver_ranges,
-    inverse_dynamics,
-    section_forces,
-    solve_kinematics,
-    triangular_plate,
-    uniform_bar,
-)
+from grashof import analysis
+from grashof.analysis import AppliedForce, Body, Dynamics, GrashofClass, Kinematics, Loads, Masses, Spring
 from grashof.analysis.forces.loads import placed_loads
 from grashof.analysis.mechanism.first_loop import FOUR_BAR_CLASSES
 from grashof.problems import FourBar
@@ -153,16 +135,16 @@ def random_loads(rng: np.random.Generator, linkage: FourBar, pins: bool) -> Load
             AppliedForce(3, (0.0, 0.0), pair()),  # on the very joint
         ),
         moments=(
-            *(AppliedMoment(link, float(rng.normal())) for link in LINKS),
-            AppliedMoment(int(rng.integers(2, 5)), lambda state: np.sin(state.theta4), at=at()),
+            *(analysis.AppliedMoment(link, float(rng.normal())) for link in LINKS),
+            analysis.AppliedMoment(int(rng.integers(2, 5)), lambda state: np.sin(state.theta4), at=at()),
         ),
         springs=(
             Spring(1, at(), int(rng.integers(2, 5)), at(), 3.0, 0.3 * size, 0.5),
             Spring(2, at(), 3, at(), 1.0, 0.1),
             Spring(4, at(), 3, at(), 1.0, 0.1, 0.2),
         ),
-        torsion_springs=tuple(TorsionSpring(Joint(k), 2.0, 0.3) for k in range(4)),
-        friction=Friction(
+        torsion_springs=tuple(analysis.TorsionSpring(analysis.Joint(k), 2.0, 0.3) for k in range(4)),
+        friction=analysis.Friction(
             rng.random(4), rng.random(4), 0.003 * float(linkage.lengths.min()) if pins else 0.0
         ),
     )  # fmt: skip
@@ -173,12 +155,14 @@ def random_masses(rng: np.random.Generator, linkage: FourBar) -> Masses:
     size = float(linkage.lengths.mean())
     links = []
     for link in LINKS:
-        body = uniform_bar(getattr(linkage, f"r{link}"), 1.0 + rng.random(), 0.2 * size * rng.random())
+        body = analysis.uniform_bar(
+            getattr(linkage, f"r{link}"), 1.0 + rng.random(), 0.2 * size * rng.random()
+        )
         for _ in range(int(rng.integers(0, 4))):
             inertia = size**2 * rng.choice([0.0, 0.01, 1.0, 30.0]) * rng.random()
             body = body + Body(rng.random() * rng.choice([0.0, 1.0, 5.0]), inertia, size * rng.normal(size=2))
         links.append(body)
-    plate = triangular_plate(linkage.r3, linkage.coupler_point, 0.3 / size)
+    plate = analysis.triangular_plate(linkage.r3, linkage.coupler_point, 0.3 / size)
     return Masses(links[0], links[1] + plate, links[2]).with_payload(2.0, linkage.coupler_point)
 
 
@@ -190,13 +174,13 @@ def random_masses(rng: np.random.Generator, linkage: FourBar) -> Masses:
 def test_every_cut_is_in_equilibrium(four_bars: Drawer, kind: GrashofClass, data: st.DataObject) -> None:
     linkage = data.draw(four_bars(kind))
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
-    low, high = driver_ranges(linkage)[0]
+    low, high = analysis.driver_ranges(linkage)[0]
     theta2 = low + (high - low) * rng.uniform(0.02, 0.98, 4)
-    state = solve_kinematics(linkage, theta2, rng.normal(), rng.normal())
+    state = analysis.solve_kinematics(linkage, theta2, rng.normal(), rng.normal())
     masses, loads = random_masses(rng, linkage), random_loads(rng, linkage, pins=bool(rng.integers(2)))
-    found = inverse_dynamics(state, masses, loads)
+    found = analysis.inverse_dynamics(state, masses, loads)
     clear = np.isfinite(found.torque)  # pins may lock the linkage
-    for link, bar in section_forces(state, masses, loads, found).items():
+    for link, bar in analysis.section_forces(state, masses, loads, found).items():
         first, last = bar.stations[0, 0], bar.stations[0, -1]
         cuts = np.concatenate([rng.uniform(first, last, 6), [first + 1e-6 * last, last * (1 - 1e-6)]])
         values = np.stack(bar.at(cuts))[:, clear]
@@ -220,9 +204,9 @@ def test_the_far_end_closes_close_to_dead_positions(smallest_mu: float) -> None:
         r4 = rng.uniform(2.0, 4.0)
         diagonal = np.sqrt(r3**2 + r4**2 - 2 * r3 * r4 * np.cos(smallest_mu))
         linkage = FourBar(o2=(0, 0), o4=(r2 + diagonal, 0), r2=r2, r3=r3, r4=r4, coupler_point=(1, 1))
-        state = solve_kinematics(linkage, [0.0, 1e-4, 0.1], -2.0)
+        state = analysis.solve_kinematics(linkage, [0.0, 1e-4, 0.1], -2.0)
         masses, loads = random_masses(rng, linkage), random_loads(rng, linkage, pins=False)
-        for bar in section_forces(state, masses, loads).values():
+        for bar in analysis.section_forces(state, masses, loads).values():
             cuts = np.linspace(bar.stations[0, 0], bar.stations[0, -1], 40)
             for value, rest, along in zip(bar.at(cuts), bar.rest, (1, 1, np.ptp(cuts)), strict=True):
                 peak = np.maximum(

@@ -8,62 +8,48 @@ import numpy.typing as npt
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from loaded_linkages import JACK, ROCKER, WEIGHT, closed_dead_and_open
 
-from grashof.analysis import (
-    AppliedForce,
-    AppliedMoment,
-    BarForces,
-    Body,
-    Loads,
-    Masses,
-    driver_ranges,
-    section_forces,
-    solve_kinematics,
-    uniform_bar,
-    uniform_bars,
-)
-from grashof.analysis.strength.along_bar import (
-    deflection,
-    greatest,
-    greatest_deflection,
-    greatest_of,
-)
+from grashof import analysis
+from grashof.analysis import WEIGHTLESS, AppliedForce, Body, Loads, section_forces, solve_kinematics
+from grashof.analysis.strength.along_bar import deflection, greatest, greatest_deflection, greatest_of
 from grashof.analysis.strength.section_forces import polynomial
 from grashof.analysis.strength.strength import von_mises
-from grashof.problems import DeadPositionWarning, FourBar, ProblemError
+from grashof.problems import FourBar, ProblemError
 
 Floats = npt.NDArray[np.float64]
 LINKS = (2, 3, 4)
-NO_MASS = Masses(Body(0), Body(0), Body(0))
 # O2A and O4B are vertical, AB is horizontal at a driver angle of 90 deg: a portal.
 PORTAL = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1)
 STIFFNESS = 70.0
 
 
-def portal(loads: Loads, coupler: Body | None = None) -> BarForces:
+def portal(loads: Loads, coupler: Body | None = None) -> analysis.BarForces:
     """The coupler of a portal at rest: a level beam on two supports, four long."""
     state = solve_kinematics(PORTAL, np.pi / 2, 0.0)
-    return section_forces(state, Masses(Body(0), coupler or Body(0), Body(0)), loads)[3]
+    return section_forces(state, analysis.Masses(Body(0), coupler or Body(0), Body(0)), loads)[3]
 
 
-def random_bars() -> BarForces:
+def random_bars() -> analysis.BarForces:
     """A bar with loads of all kinds on it and beyond its joints, in 30 positions."""
     rng = np.random.default_rng(11)
     linkage = FourBar(o2=(0, 0), o4=(4, 1), r2=1, r3=4, r4=3)
     state = solve_kinematics(linkage, np.linspace(0, 6.2, 30), 2.0, 1.0)
-    masses = Masses(Body(0), uniform_bar(4.0, 3.0) + Body(2.0, 0.5, (1.0, 0.3)), uniform_bar(3.0, 2.0))
+    masses = analysis.Masses(
+        Body(0), analysis.uniform_bar(4.0, 3.0) + Body(2.0, 0.5, (1.0, 0.3)), analysis.uniform_bar(3.0, 2.0)
+    )
     forces = tuple(AppliedForce(3, (float(u), 0.1), 20 * rng.normal(size=2)) for u in (-1.5, 0.7, 2.2, 5.0))
-    moments = (AppliedMoment(3, 20.0, at=(3.0, 0.0)),)
+    moments = (analysis.AppliedMoment(3, 20.0, at=(3.0, 0.0)),)
     return section_forces(state, masses, Loads(gravity=(1, -9.8), forces=forces, moments=moments))[3]
 
 
-def values(bar: BarForces, terms: Floats, count: int = 2001) -> Floats:
+def values(bar: analysis.BarForces, terms: Floats, count: int = 2001) -> Floats:
     """Of polynomials at many places of every span, shape (..., spans, count)."""
     return polynomial(terms, bar.spans[..., None] * np.linspace(0, 1, count))
 
 
 def test_a_bar_under_its_weight_sags_as_in_the_books() -> None:
-    bar = portal(Loads(gravity=(0, -10)), uniform_bar(4.0, 3.0))
+    bar = portal(Loads(gravity=(0, -10)), analysis.uniform_bar(4.0, 3.0))
     u = np.linspace(0, 4, 9)
     found, load = bar.at(u), 30.0
     np.testing.assert_allclose(found.moment, load * u * (4 - u) / 2, atol=1e-12)
@@ -174,28 +160,10 @@ def test_loads_at_one_place_are_not_seen_one_by_one() -> None:
     np.testing.assert_allclose(bar.at([0.0, 4.0], before=True).shear, [3, -3])
 
 
-@pytest.mark.parametrize("speed", [2.0, -2.0])
-def test_a_rotating_bar_is_pulled_by_its_own_inertia(speed: float) -> None:
-    linkage = FourBar(o2=(1, 2), o4=(5, 2), r2=1.5, r3=4, r4=3)
-    masses = Masses(uniform_bar(1.5, 2.0), Body(0), Body(0))
-    state = solve_kinematics(linkage, np.linspace(0, 6, 7), speed, 0.7)
-    bar = section_forces(state, masses)[2]
-    u = np.linspace(0, 1.5, 7)
-    found, mass, gone = bar.at(u), 3.0, 1.5 - u
-    pull = 2.0 * speed**2 * (1.5**2 - u**2) / 2
-    np.testing.assert_allclose(found.normal, np.broadcast_to(pull, (7, 7)), atol=1e-12)
-    np.testing.assert_allclose(found.normal[:, 0], mass * speed**2 * 1.5 / 2)
-    # The tangential inertia of what lies beyond the cut bends it back.
-    np.testing.assert_allclose(
-        found.moment, np.broadcast_to(-2.0 * 0.7 * (gone**3 / 3 + u * gone**2 / 2), (7, 7)), atol=1e-12
-    )
-
-
 def test_a_walking_beam_bends_over_its_saddle() -> None:
-    jack = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762)
-    state = solve_kinematics(jack, np.linspace(0, 6, 13), 0.0)
+    state = solve_kinematics(JACK, np.linspace(0, 6, 13), 0.0)
     loads = Loads(forces=(AppliedForce(4, (-4.572, 0), (0.0, -20000.0)),))
-    bar = section_forces(state, NO_MASS, loads)[4]
+    bar = section_forces(state, WEIGHTLESS, loads)[4]
     np.testing.assert_allclose(bar.stations[:, [0, -1]], [[-4.572, 3.048762]] * 13)
     saddle = -20000 * 4.572 * np.cos(state.theta4)
     np.testing.assert_allclose(bar.at([0.0]).moment[:, 0], saddle)
@@ -204,45 +172,22 @@ def test_a_walking_beam_bends_over_its_saddle() -> None:
     np.testing.assert_allclose(bar.at([-4.572, -1]).shear, -20000 * np.cos(state.theta4)[:, None] * [1, 1])
 
 
-def test_a_body_of_the_full_beam_is_that_beam() -> None:
-    """From B over O4 to the horsehead, stated by mass, centre and inertia alone."""
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=2)
-    beam = uniform_bar(6.0, 2.0)
-    beam = Body(beam.mass, beam.inertia, (2.0 - 3.0, 0.0))
-    state = solve_kinematics(linkage, np.linspace(0, 6, 7), 0.0)
-    bar = section_forces(state, Masses(Body(0), Body(0), beam), Loads(gravity=(0, -10)))[4]
-    hogging = -20 * 4**2 / 2 * np.cos(state.theta4)
-    np.testing.assert_allclose(bar.at([0.0]).moment[:, 0], hogging, atol=1e-12)
-    assert bar.stations[0, 0] == pytest.approx(-4)
-
-
-def test_wide_bars_turn_their_sections() -> None:
-    """The rotary inertia of a Rayleigh beam is a couple m w^2 / 12 alpha, spread evenly."""
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1.5, r3=4, r4=3)
-    state = solve_kinematics(linkage, 1.0, 0.0, 3.0)
-    slender, wide = (
-        section_forces(state, Masses(uniform_bar(1.5, 2.0, width), Body(0), Body(0)))[2]
-        for width in (0.0, 0.5)
-    )
-    u = np.linspace(0, 1.5, 4)
-    couple = 3.0 * 0.5**2 / 12 * 3.0 * (1.5 - u) / 1.5
-    np.testing.assert_allclose(wide.at(u).moment - slender.at(u).moment, -couple, atol=1e-12)
-    np.testing.assert_allclose(wide.at(u).shear, slender.at(u).shear, atol=1e-12)
-
-
 def test_a_load_beside_a_bar_acts_through_an_arm_at_its_foot() -> None:
     linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1, coupler_point=(1.0, 2.0))
     state = solve_kinematics(linkage, np.pi / 2, 0.0)
     pushed = Loads(forces=(AppliedForce(3, (1.0, 2.0), (30.0, -7.0)),))
-    bar = section_forces(state, NO_MASS, pushed)[3]
+    bar = section_forces(state, WEIGHTLESS, pushed)[3]
     after, before = bar.at([1.0]), bar.at([1.0], before=True)
     jump = [float(new[0] - old[0]) for new, old in zip(after, before, strict=True)]
     np.testing.assert_allclose(jump, [-30, -7, 2.0 * 30], atol=1e-12)
     # The payload is a point there, too; a moment on the coupler enters at P, or where it says.
-    weighted = section_forces(state, NO_MASS.with_payload(0.7, (1.0, 2.0)), Loads(gravity=(0, -10)))[3]
+    weighted = section_forces(state, WEIGHTLESS.with_payload(0.7, (1.0, 2.0)), Loads(gravity=(0, -10)))[3]
     assert float(weighted.at([1.0]).shear[0] - weighted.at([1.0], before=True).shear[0]) == pytest.approx(-7)
-    for moment, place in ((AppliedMoment(3, 5.0), 1.0), (AppliedMoment(3, 5.0, at=(3.0, 9.0)), 3.0)):
-        turned = section_forces(state, NO_MASS, Loads(moments=(moment,)))[3]
+    for moment, place in (
+        (analysis.AppliedMoment(3, 5.0), 1.0),
+        (analysis.AppliedMoment(3, 5.0, at=(3.0, 9.0)), 3.0),
+    ):
+        turned = section_forces(state, WEIGHTLESS, Loads(moments=(moment,)))[3]
         before, after = turned.at([place], before=True), turned.at([place])
         assert float(after.moment[0] - before.moment[0]) == pytest.approx(-5)
 
@@ -254,43 +199,16 @@ def test_the_bar_reaches_as_far_as_loads_lie_on_it(
     at: tuple[float, float], ends: tuple[float, float]
 ) -> None:
     state = solve_kinematics(PORTAL, 1.0, 0.0)
-    bar = section_forces(state, NO_MASS, Loads(forces=(AppliedForce(3, at, (1.0, 2.0)),)))[3]
+    bar = section_forces(state, WEIGHTLESS, Loads(forces=(AppliedForce(3, at, (1.0, 2.0)),)))[3]
     np.testing.assert_allclose(bar.stations[[0, -1]], ends)
     assert np.isnan(bar.at([ends[0] - 0.1, ends[1] + 0.1]).moment).all()
-    # Between the joints it is as if the force with its moment acted on a joint.
-    joint = 4.0 if at[0] > 0 else 0.0
-    turning = (at[0] - joint) * 2.0 - at[1] * 1.0
-    there = AppliedForce(3, (joint, 0), (1.0, 2.0), turning=True), AppliedMoment(3, turning, at=(joint, 0))
-    here = AppliedForce(3, at, (1.0, 2.0), turning=True)
-    one, other = (
-        section_forces(state, NO_MASS, loads)[3].at([0.1, 2.0, 3.9])
-        for loads in (Loads(forces=(here,)), Loads(forces=there[:1], moments=there[1:]))
-    )
-    for value, expected in zip(one, other, strict=True):
-        np.testing.assert_allclose(value, expected, atol=1e-12)
-
-
-def test_a_beam_with_a_crank_weight_is_balanced_over_its_shaft() -> None:
-    linkage = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=3)
-    masses = Masses(uniform_bar(1.0, 4.0) + Body(2.0, 0.0, (-1.0, 0.0)), Body(0), Body(0))
-    state = solve_kinematics(linkage, np.linspace(0, 6, 7), 3.0)
-    bar = section_forces(state, masses, Loads(gravity=(0, -10)))[2]
-    # The weight's pull and bending on its side, the arm's on the other.
-    level = np.cos(state.theta2)
-    np.testing.assert_allclose(bar.at([-0.5]).moment[:, 0], -2.0 * 10 * 0.5 * level, atol=1e-12)
-    pull = 2.0 * 9 + 2.0 * 10 * np.sin(state.theta2)
-    np.testing.assert_allclose(bar.at([-0.5]).normal[:, 0], pull, atol=1e-12)
-    np.testing.assert_allclose(bar.at([0.0]).moment[:, 0], -4.0 * 10 / 2 * level, atol=1e-12)
 
 
 def test_dead_positions_have_no_finite_section_forces() -> None:
-    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
-    end = driver_ranges(rocker)[0, 1]
-    with pytest.warns(DeadPositionWarning):
-        state = solve_kinematics(rocker, [0.0, end, 3.0])
+    state = closed_dead_and_open()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        bars = section_forces(state, uniform_bars(rocker, 2.0), Loads(gravity=(0, -9.81)))
+        bars = section_forces(state, analysis.uniform_bars(ROCKER, 2.0), WEIGHT)
     for link in LINKS:
         finite = np.isfinite(bars[link].at([0.5]).moment[:, 0])
         np.testing.assert_array_equal(finite, [True, False, False])
@@ -299,7 +217,7 @@ def test_dead_positions_have_no_finite_section_forces() -> None:
 def test_loads_on_links_that_there_are_not_are_refused() -> None:
     state = solve_kinematics(PORTAL, 1.0)
     with pytest.raises(ProblemError, match="link is 1"):
-        section_forces(state, NO_MASS, Loads(forces=(AppliedForce(1, (0, 0), (1, 1)),)))
+        section_forces(state, WEIGHTLESS, Loads(forces=(AppliedForce(1, (0, 0), (1, 1)),)))
 
 
 SIZE = st.floats(0, 1e9) | st.just(0.0) | st.floats(1e-12, 1)

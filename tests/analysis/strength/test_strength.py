@@ -7,47 +7,24 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from hypothesis import strategies as st
+from loaded_linkages import JACK, ROCKER, TURN, WEIGHT
 
-from grashof.analysis import (
-    BAR_MEASURES,
-    PIN_MEASURES,
-    AppliedForce,
-    AppliedMoment,
-    Body,
-    Friction,
-    GrashofClass,
-    Joint,
-    Kinematics,
-    Loads,
-    Masses,
-    StrengthSummary,
-    Structure,
-    driver_ranges,
-    driver_samples,
-    full_rotation,
-    section_forces,
-    solve_kinematics,
-    strength_at,
-    strength_over,
-    uniform_bars,
-)
+from grashof import analysis
+from grashof.analysis import WEIGHTLESS, AppliedForce, Joint, Loads, Structure, solve_kinematics, strength_at
 from grashof.analysis.strength.strength import von_mises
 from grashof.problems import AssemblyError, FourBar, ProblemError, SectionSpec, StrengthSpec
 from grashof.problems.values.dynamics.dynamics_spec import metres
 
 Floats = npt.NDArray[np.float64]
-Drawer = Callable[[GrashofClass], st.SearchStrategy[FourBar]]
-TURN = 2 * np.pi
-NO_MASS = Masses(Body(0), Body(0), Body(0))
+Drawer = Callable[[analysis.GrashofClass], st.SearchStrategy[FourBar]]
 STEEL = StrengthSpec(235e6, 210e9, pin_diameter=0.01)
-JACK = FourBar(o2=(0, 1.5), o4=(4, 4.5), r2=1.1938, r3=3.7719, r4=3.048762, coupler_point=(1.7, 0.7))
 WELL = AppliedForce(4, (-4.572, 0), (0.0, -20000.0))
 
 
-def over_all(structure: Structure, linkage: FourBar, omega2: float = 2.0) -> StrengthSummary:
-    low, high = (0.0, TURN) if full_rotation(linkage) else driver_ranges(linkage)[0]
-    motion = [driver_samples(linkage, low, high)]
-    return strength_over(structure, lambda theta2: solve_kinematics(linkage, theta2, omega2), motion)
+def over_all(structure: Structure, linkage: FourBar, omega2: float = 2.0) -> analysis.StrengthSummary:
+    low, high = (0.0, TURN) if analysis.full_rotation(linkage) else analysis.driver_ranges(linkage)[0]
+    motion = [analysis.driver_samples(linkage, low, high)]
+    return analysis.strength_over(structure, lambda theta2: solve_kinematics(linkage, theta2, omega2), motion)
 
 
 @pytest.mark.parametrize("unit", ["m", "mm", "in"])
@@ -58,7 +35,7 @@ def test_a_press_by_hand(unit: str) -> None:
     pushed = Loads(forces=(AppliedForce(4, (2.5 / metre, 0), (-1000 / metre, 0)),))
     section = SectionSpec(width=0.04 / metre, height=0.02 / metre)
     steel = StrengthSpec(235e6, 210e9, pin_diameter=0.01 / metre)
-    structure = Structure(NO_MASS, pushed, section, steel, metre)
+    structure = Structure(WEIGHTLESS, pushed, section, steel, metre)
     found = strength_at(solve_kinematics(linkage, np.pi / 2, 0.0), structure)
     area, inertia, inertia_across = 0.04 * 0.02, 0.02 * 0.04**3 / 12, 0.04 * 0.02**3 / 12
     expected = {
@@ -98,7 +75,7 @@ def test_a_press_by_hand(unit: str) -> None:
 
 def test_a_bar_that_is_only_pulled_is_not_bent_by_rounding() -> None:
     state = solve_kinematics(JACK, np.linspace(0, TURN, 100), 0.0)
-    structure = Structure(NO_MASS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2), STEEL)
+    structure = Structure(WEIGHTLESS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2), STEEL)
     pitman = strength_at(state, structure).bars[3]
     for key in ("compression", "thrust", "shear", "moment", "shear_stress", "deflection"):
         np.testing.assert_array_equal(pitman[key].value, 0)
@@ -110,7 +87,7 @@ def test_pins_of_their_own_and_the_thinner_link() -> None:
     strength = StrengthSpec(
         235e6, pin_diameter=[0.01, 0.02, 0.03, 0.04], pin_thickness=[0.1, 0.2, 0.3], double_shear=True
     )
-    structure = Structure(NO_MASS, Loads(), SectionSpec(1, 1), strength)
+    structure = Structure(WEIGHTLESS, Loads(), SectionSpec(1, 1), strength)
     areas = [structure.pin_areas(Joint(k)) for k in range(4)]
     sheared = [2 * np.pi * d**2 / 4 for d in (0.01, 0.02, 0.03, 0.04)]
     np.testing.assert_allclose([each["pin_shear"] for each in areas], sheared)
@@ -119,9 +96,11 @@ def test_pins_of_their_own_and_the_thinner_link() -> None:
 
 def test_unknown_measures_are_left_out() -> None:
     state = solve_kinematics(JACK, np.linspace(0, 6, 5), 2.0)
-    bars = uniform_bars(JACK, 312.0)
+    bars = analysis.uniform_bars(JACK, 312.0)
     tube = SectionSpec(area=0.04, inertia=1e-4, extreme_fibre=0.1)
-    keys, pins = ([measure.key for measure in each] for each in (BAR_MEASURES, PIN_MEASURES))
+    keys, pins = (
+        [measure.key for measure in each] for each in (analysis.BAR_MEASURES, analysis.PIN_MEASURES)
+    )
     for section, strength, last, pin in (
         (None, None, "moment", "pin_force"),
         (tube, None, "stress", "pin_force"),
@@ -141,20 +120,20 @@ def test_unknown_measures_are_left_out() -> None:
 
 def test_slender_bars_buckle_as_euler_says() -> None:
     section = SectionSpec(width=[0.04, 0.05, 0.06], height=0.02)
-    structure = Structure(NO_MASS, Loads(), section, STEEL)
+    structure = Structure(WEIGHTLESS, Loads(), section, STEEL)
     loads = structure.buckling_loads(3, 5.0)
     assert loads["buckling"] == pytest.approx(np.pi**2 * 210e9 * (0.02 * 0.05**3 / 12) / 25)
     assert loads["buckling_across"] == pytest.approx(np.pi**2 * 210e9 * (0.05 * 0.02**3 / 12) / 25)
     tube = SectionSpec(area=1e-3, inertia=1e-8, extreme_fibre=0.01)
     for strength, keys in ((StrengthSpec(1e8, 1e9), ["buckling"]), (StrengthSpec(1e8), [])):
-        assert list(Structure(NO_MASS, Loads(), tube, strength).buckling_loads(2, 1.0)) == keys
+        assert list(Structure(WEIGHTLESS, Loads(), tube, strength).buckling_loads(2, 1.0)) == keys
 
 
 @pytest.mark.parametrize("metre", [1.0, 1e-3])
 def test_stocky_bars_buckle_as_johnson_says(metre: float) -> None:
     """Shigley, eqs. 4-45 and 4-46: with slenderness l / k up to sqrt(2 pi^2 E / Sy)."""
     width, modulus, strength = 0.05, 210e9, 235e6
-    structure = Structure(NO_MASS, Loads(), SectionSpec(width / metre, width / metre), STEEL, metre)
+    structure = Structure(WEIGHTLESS, Loads(), SectionSpec(width / metre, width / metre), STEEL, metre)
     gyration, area = width / np.sqrt(12), width**2
     limit = np.sqrt(2 * np.pi**2 * modulus / strength)
     slenderness = np.array([0.01, 20, 80, limit * 0.999, limit * 1.001, 200])
@@ -172,7 +151,7 @@ def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
     state = solve_kinematics(linkage, np.pi / 2, 0.0)
     push, hold = (AppliedForce(2, (u, 0), (n, 0.0), turning=True) for u, n in ((3.0, -80.0), (2.0, 80.0)))
     for forces, thrust in (((push,), 80), ((push, hold), 0)):
-        crank = strength_at(state, Structure(NO_MASS, Loads(forces=forces))).bars[2]
+        crank = strength_at(state, Structure(WEIGHTLESS, Loads(forces=forces))).bars[2]
         assert float(crank["compression"].value) == pytest.approx(80)
         assert float(crank["thrust"].value) == pytest.approx(thrust, abs=1e-9)
 
@@ -180,7 +159,7 @@ def test_an_overhang_in_compression_does_not_buckle_the_bar() -> None:
 def test_shear_counts_close_to_the_joint_of_a_deep_bar() -> None:
     portal = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=4, r4=1)
     loads = Loads(forces=(AppliedForce(3, (0.02, 0), (0.0, -800.0)),))
-    structure = Structure(NO_MASS, loads, SectionSpec(width=1.0, height=0.1))
+    structure = Structure(WEIGHTLESS, loads, SectionSpec(width=1.0, height=0.1))
     found = strength_at(solve_kinematics(portal, np.pi / 2, 0.0), structure).bars[3]
     force = 800 * (4 - 0.02) / 4
     assert float(found["shear_stress"].value) == pytest.approx(1.5 * force / 0.1)
@@ -196,7 +175,7 @@ def dense(
     state = solve_kinematics(linkage, theta2, omega2)
     found = {}
     assert structure.section is not None
-    for link, bar in section_forces(state, structure.masses, structure.loads).items():
+    for link, bar in analysis.section_forces(state, structure.masses, structure.loads).items():
         cuts = np.linspace(bar.stations[0, 0], bar.stations[0, -1], 101)
         cuts = np.unique(np.concatenate([cuts, bar.stations[0]]))
         own = structure.section.of(link)
@@ -234,10 +213,10 @@ def test_peaks_are_those_of_a_dense_search(seed: int) -> None:
             AppliedForce(4, (-2 * size, 0.2 * size), 300 * rng.normal(size=2) / metre),
             AppliedForce(3, (1.0 * size, 2.0 * size), 300 * rng.normal(size=2) / metre),
         ),
-        moments=(AppliedMoment(4, 100.0 / metre**2),),
-        friction=Friction(viscous=1.0 / metre**2),
+        moments=(analysis.AppliedMoment(4, 100.0 / metre**2),),
+        friction=analysis.Friction(viscous=1.0 / metre**2),
     )
-    masses = uniform_bars(linkage, 20.0 * metre, payload=5.0)
+    masses = analysis.uniform_bars(linkage, 20.0 * metre, payload=5.0)
     stubby = rng.random() < 0.5  # where shear counts
     section = SectionSpec(width=(0.8 if stubby else 0.05) * size, height=0.05 * size)
     structure = Structure(masses, loads, section, StrengthSpec(235e6, 210e9), metre)
@@ -259,7 +238,7 @@ def test_peaks_are_those_of_a_dense_search(seed: int) -> None:
 
 def test_peaks_are_stationary_to_rounding() -> None:
     """The moment of the jack's beam over its saddle is greatest where the beam is level."""
-    structure = Structure(NO_MASS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2))
+    structure = Structure(WEIGHTLESS, Loads(forces=(WELL,)), SectionSpec(0.2, 0.2))
     peak = over_all(structure, JACK).peak("moment", "link 4")
     assert peak.value == pytest.approx(20000 * 4.572, rel=1e-14)
     assert peak.at == pytest.approx(0, abs=1e-12)
@@ -269,7 +248,7 @@ def test_peaks_are_stationary_to_rounding() -> None:
 def test_safety_factors_are_limits_over_peaks() -> None:
     strength = replace(STEEL, pin_diameter=0.1)
     loads = Loads(gravity=(0, -9.81), forces=(WELL,))
-    structure = Structure(uniform_bars(JACK, 312.0), loads, SectionSpec(0.2, 0.2), strength)
+    structure = Structure(analysis.uniform_bars(JACK, 312.0), loads, SectionSpec(0.2, 0.2), strength)
     summary = over_all(structure, JACK, TURN / 3)
     by_part = {(factor.key, factor.part): factor for factor in summary.factors}
     assert len(by_part) == len(summary.factors) == 3 * 3 + 4 * 2
@@ -288,7 +267,7 @@ def test_safety_factors_are_limits_over_peaks() -> None:
 def test_the_worst_bar_is_found_without_sections_too() -> None:
     thin = SectionSpec(width=[0.02, 0.2, 0.2], height=0.2)
     for section, *worst in ((None, "link 4", "moment"), (thin, "link 2", "stress")):
-        summary = over_all(Structure(NO_MASS, Loads(forces=(WELL,)), section), JACK)
+        summary = over_all(Structure(WEIGHTLESS, Loads(forces=(WELL,)), section), JACK)
         assert [summary.worst_bar.part, summary.worst_bar.key] == worst
         assert (summary.worst, summary.factors) == (None, ())
 
@@ -305,43 +284,43 @@ def test_the_worst_bar_is_found_without_sections_too() -> None:
 )
 @pytest.mark.parametrize("omega2", [2.0, -2.0, 0.0])
 def test_dead_positions_are_infinite(linkage: FourBar, omega2: float) -> None:
-    weight = Loads(gravity=(0, -9.81))
-    structure = Structure(uniform_bars(linkage, 2.0), weight, SectionSpec(0.1, 0.1), STEEL)
+    structure = Structure(analysis.uniform_bars(linkage, 2.0), WEIGHT, SectionSpec(0.1, 0.1), STEEL)
     summary = over_all(structure, linkage, omega2)
     for peak in summary.peaks:
         assert peak.value == np.inf
         assert np.isnan(peak.at)
     assert {factor.value for factor in summary.factors} == {0.0}
     # Short of them all is finite.
-    low, high = driver_ranges(linkage)[0]
+    low, high = analysis.driver_ranges(linkage)[0]
     inside = [np.linspace(low + 0.1, min(high, low + 3) - 0.2, 50)]
-    found = strength_over(structure, lambda theta2: solve_kinematics(linkage, theta2, omega2), inside)
+    found = analysis.strength_over(
+        structure, lambda theta2: solve_kinematics(linkage, theta2, omega2), inside
+    )
     assert all(np.isfinite(peak.value) for peak in found.peaks)
 
 
 def test_a_linkage_without_loads_bears_nothing() -> None:
-    found = over_all(Structure(NO_MASS, Loads(), SectionSpec(0.1, 0.1), STEEL), JACK)
+    found = over_all(Structure(WEIGHTLESS, Loads(), SectionSpec(0.1, 0.1), STEEL), JACK)
     assert {peak.value for peak in found.peaks} == {0.0}
     assert {factor.value for factor in found.factors} == {np.inf}
     assert found.worst is not None
 
 
 def test_a_motion_that_cannot_close_is_refused() -> None:
-    rocker = FourBar(o2=(0, 0), o4=(4, 0), r2=2, r3=2, r4=3)
-    structure, motion = Structure(NO_MASS, Loads()), [np.linspace(0, 3, 50)]
+    structure, motion = Structure(WEIGHTLESS, Loads()), [np.linspace(0, 3, 50)]
     with pytest.raises(AssemblyError, match="cannot close at driver angle"):
-        strength_over(structure, lambda theta2: solve_kinematics(rocker, theta2), motion)
+        analysis.strength_over(structure, lambda theta2: solve_kinematics(ROCKER, theta2), motion)
 
 
 def test_a_motion_over_time_may_be_uneven() -> None:
     """A crank that starts and stops: its own inertia bends it most where it speeds up most."""
-    bars = Masses(uniform_bars(JACK, 5.0).crank, Body(0), Body(0))
+    bars = analysis.Masses(analysis.uniform_bars(JACK, 5.0).crank, analysis.Body(0), analysis.Body(0))
 
-    def motion(time: Floats) -> Kinematics:
+    def motion(time: Floats) -> analysis.Kinematics:
         phase = TURN * time
         return solve_kinematics(JACK, time - np.sin(phase) / TURN, 1 - np.cos(phase), TURN * np.sin(phase))
 
-    found = strength_over(Structure(bars, Loads()), motion, [np.linspace(0, 1, 200)])
+    found = analysis.strength_over(Structure(bars, Loads()), motion, [np.linspace(0, 1, 200)])
     moment = found.peak("moment", "link 2")
     assert moment.value == pytest.approx(5 * 1.1938**3 / 3 * TURN, rel=1e-12)
     assert moment.place in (pytest.approx(0.25), pytest.approx(0.75))
