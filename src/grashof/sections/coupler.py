@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.study.samples import Columns, components, curves, over_driver, table, track, tracks
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
-from grashof.study.turn import degrees, turn_extremes, varies
+from grashof.study.turn import extreme_facts, turn_extremes
 
 _SHOWN = 2.0  # times the sum of the link lengths: distance from A up to which the pole is drawn
 _NOTES = (
@@ -154,7 +154,4 @@ def _jerk_facts(study: LinkageStudy) -> Iterator[Fact]:
     if not study.sweep.turns:  # without limit towards dead positions
         return
     found = turn_extremes(study, lambda state: np.hypot(*state.p.jerk.T))
-    yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
-    label = "jerk of P, largest: theta2"
-    if varies(found):
-        yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")
+    yield from extreme_facts("p_jerk", "jerk of P", found, f"{study.spec.unit}/s3", ends=("largest",))
