@@ -17,7 +17,7 @@ def test_all_verified(proven: Result, capsys: pytest.CaptureFixture[str]) -> Non
     line = enclosure_line(proven)
     assert line == (
         f"Closure and transmission angle of {len(proven)} designs verified by intervals of the driver angle, "
-        "over their whole motion."
+        "over their full motion."
     )
     assert line in search_page(proven, {"versions": {"grashof": "0"}, "settings": {}})
     print_table(proven)

@@ -35,14 +35,10 @@ def coupler_plane(study: LinkageStudy) -> Section:
     frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, study.chosen), {"diameter": "inflection_diameter"}
-    named = {name: place[None] for name, place in frame.items()}
-    of_fixed, of_moving = (
-        "fixed centrode: I13 in the frame",
-        "moving centrode: I13 in the coupler, u along AB",
-    )
+    title, other = "fixed centrode: I13 in the frame", "moving centrode: I13 in the coupler, u along AB"
     plots = (
-        Plot("fixed-centrode", of_fixed, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
-        Plot("moving-centrode", of_moving, unit, {"I13": shown[1]}, points=named, angles=theta2),
+        Plot("fixed-centrode", title, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
+        Plot("moving-centrode", other, unit, {"I13": shown[1]}, points=frame, angles=theta2),
         _circle_plot(study, circles),
         curves(columns, "inflection-diameter", "diameter of the inflection circle", unit, diameter),
     )
@@ -62,10 +58,10 @@ def _plane_columns(study: LinkageStudy, state: Kinematics) -> Columns:
 
 
 def _in_coupler(linkage: Linkage, name: str) -> FloatArray:
-    """A point of link 3 in its frame, shape (2,)."""
+    """A point of link 3 in its frame, shape (1, 2)."""
     if name in ("a", "b"):
-        return np.array([0.0 if name == "a" else linkage.columns["r3"], 0.0], dtype=np.float64)
-    return np.asarray(getattr(linkage, "coupler_point" if name == "p" else name))
+        return np.array([[0.0 if name == "a" else linkage.columns["r3"], 0.0]], dtype=np.float64)
+    return np.reshape(getattr(linkage, "coupler_point" if name == "p" else name), (1, 2))
 
 
 def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
@@ -108,9 +104,8 @@ def _arc(pole: FloatArray, centre: FloatArray, a: FloatArray, reach: float) -> F
     if not (np.isfinite(radius) and radius > 0):
         return np.full((1, 2), np.nan)
     turn = np.linspace(np.arccos(min(1.0, span / (2 * radius))), np.pi / 2, 91)
-    turn = (
-        np.concatenate([-turn[::-1], [np.nan], turn]) if turn[0] > 0 else np.concatenate([-turn[:0:-1], turn])
-    )
+    other = [*-turn[::-1], np.nan] if turn[0] > 0 else -turn[:0:-1]
+    turn = np.concatenate([other, turn])
     angle = np.arctan2(*(centre - pole)[::-1]) + turn
     arc = pole + 2 * radius * np.cos(turn)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     near = np.hypot(*(arc - a).T) <= reach
@@ -129,9 +124,8 @@ def hodographs(study: LinkageStudy) -> Section:
         curves(columns, "angular-jerk", "angular jerk", "rad/s³", of_links),
     )
     kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
-    return Section(
-        "hodographs", "Hodographs and jerk", tuple(_jerk_facts(study)), {"jerk": table(kept)}, plots
-    )
+    facts, title = tuple(_jerk_facts(study)), "Hodographs and jerk"
+    return Section("hodographs", title, facts, {"jerk": table(kept)}, plots)
 
 
 def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:

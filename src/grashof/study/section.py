@@ -37,7 +37,7 @@ class Fact:
     aside: bool = False
 
 
-def angle_fact(key: str, label: str, angle: float) -> Fact:
+def angle_fact(key: str, label: str, angle: float | FloatArray) -> Fact:
     """A fact about an angle, rad, which is stated in deg; `_deg` is appended to the key."""
     return Fact(f"{key}_deg", label, float(np.degrees(angle)), "deg")
 

@@ -140,7 +140,7 @@ def enclosure_line(result: Result) -> str:
     many = counted(shown, "design") if not undecided else f"{shown} of {counted(len(named), 'design')}"
     rest = f"; undecided: {_by_reason(undecided)}" if undecided else ""
     shown_of = f"Closure and transmission angle of {many} verified by intervals of the driver angle"
-    return f"{shown_of}, over their whole motion{rest}."
+    return f"{shown_of}, over their full motion{rest}."
 
 
 def _by_reason(missing: dict[str, str]) -> str:

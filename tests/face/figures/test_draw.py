@@ -199,7 +199,7 @@ def test_an_open_path_shows_the_part_used() -> None:
     axes = drawn(linkage, problem)
     labels = [str(line.get_label()) for line in axes.lines]
     assert "path of P, first to last target" in labels
-    assert "path of P, whole turn" in labels
+    assert "path of P, full turn" in labels
 
 
 @pytest.mark.study

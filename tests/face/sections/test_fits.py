@@ -62,7 +62,7 @@ def test_coefficients_give_the_polynomials_again(sections: Any) -> None:
 
 def test_a_linkage_alone_is_fitted_over_all_that_it_does(sections: Any) -> None:
     assert (
-        "13 points over the whole turn, from theta2 = 0 to 360"
+        "13 points over the full turn, from theta2 = 0 to 360"
         in sections("pumpjack", sections=ONLY)["fits"].notes[0]
     )
     swinging = sections(SWINGING, sections=ONLY)["fits"]
