@@ -20,12 +20,10 @@ _NAMED = 2  # designs of each reason, by their ids
 
 def proof_line(result: Result) -> str:
     """Statement of the proof of a list, rounded to the safe side; empty without a proof."""
-    proof = result.proof
-    if proof is None:
+    if result.proof is None:
         return ""
-    rank = _rank(result, proof)
-    known = f"number {rank} has" if rank else ""
-    return _line(proof, known)
+    rank = _rank(result, result.proof)
+    return _line(result.proof, f"number {rank} has" if rank else "")
 
 
 def bound_line(proof: Proof, at_least: float | None = None) -> str:
@@ -68,12 +66,10 @@ def _line(proof: Proof, known: str) -> str:
 def _all_line(proof: Proof, known: str) -> str:
     """Statement for five poses or pairs, whose linkages are all known."""
     dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
+    has, none = f"; {known} the most, {_down(proof.lower)} deg" if known else "", "no other linkage of these"
     if proof.claim is Claim.NONE:
-        return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."
-    has = f"; {known} the most, {_down(proof.lower)} deg" if known else ""
-    return (
-        f"Proven: {dyads} {meet} the targets within the limits, and no other linkage of these does it{has}."
-    )
+        has, none = "", "none of their linkages"
+    return f"Proven: {dyads} {meet} the targets within the limits, and {none} does it{has}."
 
 
 def _regions(proof: Proof) -> str:
