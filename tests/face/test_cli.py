@@ -16,14 +16,10 @@ import pytest
 
 from grashof.problems import Problem, linkage_catalogue, linkage_text, problem_text
 
-Grashof = Callable[..., Any]
+Grashof, Refused = Callable[..., Any], Callable[..., str]
 
 BAD = {
-    "one pose": (
-        "poses = [[5, 4, 0], [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]",
-        "poses = [[5, 4, 0]]",
-        "two or more",
-    ),
+    "one pose": (", [3.5, 4, -5], [2, 3, -5], [1, 0, 0]]", "]", "two or more"),
     "not a number": ("[3.5, 4, -5]", "[nan, 4, -5]", "finite"),
     "two numbers": ("[3.5, 4, -5]", "[3.5, 4]", "motion.poses[1]"),
     "repeated poses": ("[1, 0, 0]]", "[5, 4, 0]]", "equal"),
@@ -45,25 +41,25 @@ BAD = {
 }
 
 
+DASK = [pytest.mark.extra, pytest.mark.skipif(find_spec("distributed") is None, reason="needs Dask")]
+
+
 @pytest.mark.parametrize("case", BAD)
-def test_bad_input_is_one_line_and_writes_nothing(grashof: Grashof, tmp_path: Path, case: str) -> None:
+def test_bad_input_is_one_line_and_writes_nothing(refused: Refused, tmp_path: Path, case: str) -> None:
     old, new, said = BAD[case]
     text = problem_text("luggage")
     assert old in text
     (tmp_path / "mine.toml").write_text(text.replace(old, new), encoding="utf-8")
-    done = grashof("solve", "mine.toml")
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
+    line = refused("solve", "mine.toml")
+    assert said in line
+    assert refused("check", "mine.toml") == line
     assert [path.name for path in tmp_path.iterdir()] == ["mine.toml"]
 
 
-def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
-    for name in ("nowhere.toml", "lugage"):
-        done = grashof("solve", name)
-        assert done.exit_code == 2
-        assert name in done.stderr
-    assert "did you mean luggage?" in grashof("solve", "lugage").stderr
+def test_missing_file_and_misspelt_name(refused: Refused) -> None:
+    assert "nowhere.toml" in refused("solve", "nowhere.toml")
+    assert "did you mean luggage?" in refused("solve", "lugage")
+    assert "did you mean pumpjack?" in refused("linkages", "pumpjak")
 
 
 @pytest.mark.parametrize(
@@ -79,22 +75,13 @@ def test_missing_file_and_misspelt_name(grashof: Grashof) -> None:
         ("solve", "PROBLEM"),
         ("solv luggage", "solve"),
         (f"solve luggage --out {'x' * 300}", "File name too long"),
-        pytest.param(
-            "solve luggage --scheduler x",
-            "--scheduler x: missing port number",
-            marks=[
-                pytest.mark.extra,
-                pytest.mark.skipif(find_spec("distributed") is None, reason="needs Dask"),
-            ],
-        ),
+        pytest.param("solve luggage --scheduler x", "--scheduler x: missing port number", marks=DASK),
     ],
 )
-def test_bad_usage_is_one_line(grashof: Grashof, tmp_path: Path, arguments: str, said: str) -> None:
-    done = grashof(*arguments.split())
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.startswith("grashof: ")
-    assert done.stderr.count("\n") == 1
+def test_bad_usage_is_one_line(refused: Refused, tmp_path: Path, arguments: str, said: str) -> None:
+    line = refused(*arguments.split())
+    assert said in line
+    assert line.startswith("grashof: ")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -107,13 +94,8 @@ def test_help_is_no_error(grashof: Grashof) -> None:
 def test_check_and_problems(grashof: Grashof, tmp_path: Path) -> None:
     done = grashof("check", "luggage")
     assert done.exit_code == 0
-    for said in (
-        "4 poses",
-        "5.65685 m",
-        "angle over the task: from 15 deg",
-        "link length: 0.3 to 8 m",
-        "full-crank",
-    ):
+    limits = ("angle over the task: from 15 deg", "link length: 0.3 to 8 m", "full-crank")
+    for said in ("4 poses", "5.65685 m", *limits):
         assert said in done.stdout
     assert "luggage" in grashof("problems").stdout
     text = grashof("problems", "luggage").stdout
@@ -126,20 +108,7 @@ def test_linkages_of_the_catalogue(grashof: Grashof) -> None:
     listed = grashof("linkages").stdout.splitlines()
     assert tuple(line.split()[0] for line in listed) == linkage_catalogue()
     assert grashof("linkages", "pumpjack").stdout == linkage_text("pumpjack")
-    assert "did you mean pumpjack?" in grashof("linkages", "pumpjak").stderr
     assert grashof("check", "nothing").exit_code == 2
-
-
-@pytest.mark.parametrize("case", ["half a position", "equal poses", "repeated poses"])
-def test_check_and_solve_refuse_the_same(grashof: Grashof, tmp_path: Path, case: str) -> None:
-    old, new, said = BAD[case]
-    (tmp_path / "mine.toml").write_text(problem_text("luggage").replace(old, new), encoding="utf-8")
-    done = grashof("check", "mine.toml")
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
-    assert done.stdout == ""
-    assert done.stderr == grashof("solve", "mine.toml").stderr
 
 
 def test_the_version(grashof: Grashof) -> None:
@@ -147,11 +116,11 @@ def test_the_version(grashof: Grashof) -> None:
     assert (done.exit_code, done.stdout) == (0, f"grashof {version('grashof')}\n")
 
 
-def test_control_characters_of_names_do_not_reach_the_terminal(grashof: Grashof, tmp_path: Path) -> None:
+def test_control_characters_of_names_do_not_reach_the_terminal(
+    grashof: Grashof, refused: Refused, tmp_path: Path
+) -> None:
     path = tmp_path / "red\x1b[31m.toml"
-    done = grashof("check", path)
-    assert done.exit_code == 2
-    assert "red?[31m.toml: there is no such file" in done.stderr
+    assert "red?[31m.toml: there is no such file" in refused("check", path)
     path.write_text(problem_text("luggage"), encoding="utf-8")
     assert grashof("check", path).stdout.startswith("red?[31m: Luggage")
 

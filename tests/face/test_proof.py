@@ -108,11 +108,10 @@ def test_prove_decides_alone(grashof: Grashof, arguments: tuple[str, ...], said:
         (("no-such-problem",), "no-such-problem"),
     ],
 )
-def test_prove_refuses_bad_input_in_a_line(grashof: Grashof, arguments: tuple[str, ...], said: str) -> None:
-    done = grashof("prove", *arguments)
-    assert done.exit_code == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
+def test_prove_refuses_bad_input_in_a_line(
+    refused: Callable[..., str], arguments: tuple[str, ...], said: str
+) -> None:
+    assert said in refused("prove", *arguments)
 
 
 def a_proof(**parts: Any) -> Proof:

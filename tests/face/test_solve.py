@@ -90,10 +90,8 @@ def test_second_run_replaces_only_its_own_files(
     assert grashof("solve", "luggage", "--out", out, *QUICK).exit_code == 0
     (out / "notes.txt").write_text("mine")
     (out / "design-99.png").write_text("mine too")
-    assert (
-        grashof("solve", "luggage", "--out", out, "--top", "3", "--starts", "8", "--drawings", "1").exit_code
-        == 0
-    )
+    fewer = ("--top", "3", "--starts", "8", "--drawings", "1")
+    assert grashof("solve", "luggage", "--out", out, *fewer).exit_code == 0
     names = {path.name for path in out.iterdir()}
     assert {"notes.txt", "design-99.png", "design-01.png"} <= names
     assert "design-02.png" not in names
@@ -114,13 +112,10 @@ def test_an_impossible_problem_names_the_obstacle(grashof: Grashof, tmp_path: Pa
     assert not (tmp_path / "impossible-designs" / "candidates.csv").exists()
 
 
-def test_output_folder_that_cannot_be_written(grashof: Grashof, tmp_path: Path) -> None:
+def test_output_folder_that_cannot_be_written(refused: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file")
     for out in (tmp_path / "taken", tmp_path / "taken" / "below"):
-        done = grashof("solve", "luggage", "--out", out)
-        assert done.exit_code == 2
-        assert str(out) in done.stderr
-        assert done.stderr.count("\n") == 1
+        assert str(out) in refused("solve", "luggage", "--out", out)
     assert (tmp_path / "taken").read_text() == "a file"
 
 
@@ -140,12 +135,9 @@ def test_a_tilde_is_a_name(
     assert not {path.name for path in home.rglob("*")} & names
 
 
-def test_foreign_files_are_refused_before_solving(grashof: Grashof, tmp_path: Path) -> None:
+def test_foreign_files_are_refused_before_solving(refused: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "run.json").write_text('{"files": ["thesis.txt"]}')
-    done = grashof("solve", "luggage", "--out", ".")
-    assert done.exit_code == 2
-    assert done.stderr.count("\n") == 1
-    assert "run.json" in done.stderr
+    assert "run.json" in refused("solve", "luggage", "--out", ".")
     assert [path.name for path in tmp_path.iterdir()] == ["run.json"]
 
 

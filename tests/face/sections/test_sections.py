@@ -222,7 +222,9 @@ def test_what_is_refused(sections: Any, spec: LinkageSpec, asked: dict[str, Any]
 
 
 @pytest.mark.study
-def test_names_on_the_command_line(grashof: Any, tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_on_the_command_line(
+    grashof: Any, refused: Any, tmp_path: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("grashof.figures.files.save", lambda _, paths: [path.touch() for path in paths])
     asked = ("--all", "--seconds", "1", "--at", " 0, -90 ", "--fit-from-deg", "0", "--fit-to-deg", "90")
     done = grashof("analyse", "pumpjack", *asked)
@@ -242,13 +244,7 @@ def test_names_on_the_command_line(grashof: Any, tmp_path: Any, monkeypatch: pyt
     assert written == names - left
     for wrong, message in (
         (("--at", "0;90"), "--at is '0;90'; it must be numbers with commas between them, such as 0,90,180"),
-        (
-            ("--with", "fit"),
-            "sections is 'fit'; it must be some of newton-raphson, differences, fits, equations",
-        ),
+        (("--with", "fit"), "sections is 'fit'; it must be some of newton-raphson, differences, fits, equ"),
         (("--seconds", "1e9"), "seconds is 1000000000 and step 0.05; that is more than 20000 rows"),
     ):
-        refused = grashof("analyse", "pumpjack", *wrong)
-        assert refused.exit_code == 2
-        assert message in refused.stderr
-        assert refused.stderr.count("\n") == 1
+        assert message in refused("analyse", "pumpjack", *wrong)
