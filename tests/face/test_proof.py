@@ -1,4 +1,4 @@
-"""Proofs in the terminal, on the page, in notebooks and in run.json; `grashof prove`."""
+"""Proofs and enclosures in the terminal, on the page, in notebooks and run.json; `grashof prove`."""
 
 from __future__ import annotations
 
@@ -12,14 +12,16 @@ import numpy as np
 import pytest
 
 from grashof import synthesize
+from grashof.analysis.judge.verdict import Enclosure
 from grashof.notebook import html
 from grashof.output.run_files import write_run
+from grashof.output.terminal import print_table
 from grashof.page.search import search_page
 from grashof.problems import Problem, load
 from grashof.synth import Claim, Proof, Result
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import proof_of
-from grashof.wording.proof import bound_line, is_decided, proof_line
+from grashof.wording.proof import bound_line, enclosure_line, enclosure_record, is_decided, proof_line
 
 Grashof = Callable[..., Any]
 
@@ -176,3 +178,37 @@ def test_a_best_that_equals_its_bound_is_reported_as_one_of_families() -> None:
     )
     line = f"Proven: no {shaper} meets these requirements with more than 90.00 deg; a design has 90.00 deg."
     assert bound_line(proof) == line
+
+
+def test_a_list_that_is_verified_by_intervals(proven: Result, capsys: pytest.CaptureFixture[str]) -> None:
+    line = enclosure_line(proven)
+    assert line == (
+        f"Closure and transmission angle of {len(proven)} designs verified by intervals of the driver angle, "
+        "over their full motion."
+    )
+    assert line in search_page(proven, {"versions": {"grashof": "0"}, "settings": {}})
+    print_table(proven)
+    assert "intervals" not in capsys.readouterr().out
+    record = enclosure_record(proven)
+    assert record is not None
+    assert (record["designs"], record["undecided"], record["contradicted"]) == (len(proven), {}, {})
+    assert record["intervals"] == sum(each.values.enclosure.intervals for each in proven.candidates)
+    empty = replace(proven, candidates=())
+    assert (enclosure_line(empty), enclosure_record(empty)) == ("", None)
+
+
+@pytest.mark.parametrize("contradicts", [False, True])
+def test_an_undecided_design_is_named(
+    proven: Result, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, contradicts: bool
+) -> None:
+    undecided = Enclosure(False, (0.1, 0.2), 7, "the box of A", contradicts)
+    monkeypatch.setattr(proven.best.values, "enclosure", undecided)
+    line, first = enclosure_line(proven), proven.best.id
+    assert f"{first} (the box of A)" in line
+    assert ("contradict the judge" in line) == contradicts
+    assert (f"{len(proven) - 1} of {len(proven)} designs" in line) != contradicts
+    print_table(proven)
+    assert line in capsys.readouterr().out
+    record = enclosure_record(proven)
+    assert record is not None
+    assert record["contradicted" if contradicts else "undecided"] == {first: "the box of A"}

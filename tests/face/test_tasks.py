@@ -19,18 +19,10 @@ from grashof.figures import plot_task
 from grashof.figures.files import draw_design
 from grashof.figures.parts import BODY, COUPLER, DRIVER
 from grashof.output.run_files import write_run
-from grashof.problems import (
-    FourBar,
-    MotionTask,
-    Problem,
-    Requirements,
-    catalogue,
-    load_linkage_spec,
-)
+from grashof.problems import FourBar, MotionTask, Problem, Requirements, catalogue, load_linkage_spec
 from grashof.sections.output import function_section
 from grashof.study.asked import Asked
 from grashof.study.study import LinkageStudy
-from grashof.synth import Result
 
 Grashof = Callable[..., Any]
 EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
@@ -196,22 +188,16 @@ def test_errors_of_free_parts_are_null(
     assert (tmp_path / "free-designs/design-01.png").exists()
 
 
-def free() -> Result:
+def test_the_body_is_drawn_where_the_design_has_it() -> None:
     poses = [[0, 0, 0], {"x": 2, "y": 1}, {"angle": 30}, [6, 2, 45]]
     task = MotionTask.from_degrees(poses, body=[[0, 0], [1, 0], [1, 0.5]])
-    return synthesize(Problem(task=task), enough=1, starts=32)
-
-
-def test_the_body_is_drawn_where_the_design_has_it() -> None:
-    result = free()
+    result = synthesize(Problem(task=task), enough=1, starts=32)
     figure = draw_design(result.problem, result.best, 1)
     bodies = [patch for patch in figure.axes[0].patches if to_hex(patch.get_edgecolor()) == BODY]
     assert [body.get_linestyle() for body in bodies] == ["solid", "dashed", "dashed", "solid"]
     linkage, placed = result.best.linkage, np.array([body.get_xy()[0] for body in bodies])
     np.testing.assert_allclose(placed[[0, 1, 3]], result.problem.task.positions[[0, 1, 3]], atol=1e-9)
-    a = linkage.o2 + linkage.r2 * np.array(
-        [np.cos(result.best.verdict.theta2[2]), np.sin(result.best.verdict.theta2[2])]
-    )
+    a = solve_position(linkage, result.best.verdict.theta2[2]).a
     assert np.hypot(*(placed[2] - a)) == pytest.approx(np.hypot(*linkage.coupler_point))
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from grashof.problems import DynamicsSpec, FourBar, LinkageSpec, load_linkage_spec
 from grashof.survey import LinkageReport, Section
@@ -23,6 +24,11 @@ def loaded(spec: LinkageSpec, **dynamics: Any) -> LinkageSpec:
 
 def facts(section: Section | LinkageReport) -> dict[str, Any]:
     return {fact.key: fact.value for fact in section.facts}
+
+
+def extremes(report: LinkageReport) -> pd.DataFrame:
+    """The table of extremes by the keys of its quantities."""
+    return report.tables["extremes"].set_index("quantity")
 
 
 def in_inches(linkage: FourBar) -> FourBar:
