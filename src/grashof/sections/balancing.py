@@ -152,10 +152,8 @@ def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:
         for link in (2, 4):
             if row[f"mass_{link}"] > 0:
                 label, name = f"counterweight on link {link} for {aim}", f"balance_{key}_{link}"
-                product, angle = (
-                    row[f"mass_times_radius_{link}"],
-                    np.arctan2(row[f"v_{link}"], row[f"u_{link}"]),
-                )
+                product = row[f"mass_times_radius_{link}"]
+                angle = np.arctan2(row[f"v_{link}"], row[f"u_{link}"])
                 yield Fact(f"{name}_mass_radius", f"{label}: mass times radius", product, f"kg {unit}")
                 yield angle_fact(f"{name}_angle", f"{label}: direction from the link", angle)
         for column, label, per in (

@@ -95,8 +95,8 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
     if np.isfinite(lost) and 0 < lost <= put_in * (1 + _CERTAIN) and error.max() < _CERTAIN * put_in:
         work = lost * law.duration * study.metre**2
         yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
-        left = left if (left := 1 - lost / put_in) > _CERTAIN else 0.0
-        yield Fact("efficiency", "efficiency: work put in that friction leaves", left)
+        label, left = "efficiency: work put in that friction leaves", 1 - lost / put_in
+        yield Fact("efficiency", label, left if left > _CERTAIN else 0.0)
 
 
 def motor(study: LinkageStudy) -> Section | None:

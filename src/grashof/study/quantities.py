@@ -126,18 +126,16 @@ def _vector(
     keys: tuple[str, str], labels: tuple[str, str], unit: str, of: Curve, factor: float = 1.0
 ) -> list[Quantity]:
     """Components and size of a vector, with the keys and labels of both."""
+    components = [
+        Quantity(f"{keys[0]}_{axis}", f"{labels[0]}, {axis}", unit, _component(of, axis, factor))
+        for axis in "xy"
+    ]
 
     def size(state: Kinematics) -> FloatArray:
         vector = of(state)
         return np.hypot(vector[..., 0], vector[..., 1]) * factor
 
-    return [
-        *(
-            Quantity(f"{keys[0]}_{axis}", f"{labels[0]}, {axis}", unit, _component(of, axis, factor))
-            for axis in "xy"
-        ),
-        Quantity(keys[1], labels[1], unit, size, never_negative=True),
-    ]
+    return [*components, Quantity(keys[1], labels[1], unit, size, never_negative=True)]
 
 
 def _part_of(solve: Callable[[Kinematics], object], name: str) -> Curve:

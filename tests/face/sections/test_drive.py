@@ -47,9 +47,9 @@ def test_the_energy_table_adds_up(sections: Any) -> None:
     rate = np.fft.ifft(1j * number * spread).real * 20 * np.pi / 30
     np.testing.assert_allclose(table["drive_power"].to_numpy()[:-1], rate, atol=1e-6)
     heavy = DynamicsSpec(300.0, speed_rpm=20, gravity=(0, -9.8))
-    metres, inches = (
-        sections(spec)["energies"].tables["energies"] for spec in in_both_units(JACK.linkage, heavy)
-    )
+    both = [sections(spec)["energies"] for spec in in_both_units(JACK.linkage, heavy)]
+    assert facts(both[1]) == pytest.approx(facts(both[0]), rel=1e-7)
+    metres, inches = (each.tables["energies"] for each in both)
     np.testing.assert_allclose(inches["energy"], metres["energy"], rtol=1e-9)
     np.testing.assert_allclose(inches["drive_power"], metres["drive_power"], rtol=1e-9, atol=1e-6)
 

@@ -128,6 +128,16 @@ def test_a_swinging_driver_that_starts_and_stops_ends_where_it_stops(sections: A
     assert "the history ends after" in section.notes[0]
 
 
+def test_each_range_is_swept_by_a_law_of_its_own(sections: Any) -> None:
+    """A cycloid is twice as fast as its mean, 120 deg/s, in the middle of a range."""
+    study = sections(replace(TWO_RANGES, length_unit="m", dynamics=CYCLOID)).study
+    for low, high in study.sweep.ranges:
+        theta2 = np.array([low, (low + high) / 2, high])
+        np.testing.assert_allclose(study.sweep.state(theta2[1:2]).omega2, 2 * 2 * np.pi / 3)
+        duration = np.degrees(high - low) / 120
+        np.testing.assert_allclose(study.sweep.time(theta2), [0, duration / 2, duration], atol=1e-6)
+
+
 @pytest.mark.slow
 def test_loads_over_time_begin_anew_with_each_turn(sections: Any) -> None:
     push = LoadSpec(link=4, at=(1.0, 0.0), over="time", values=((0, 100, 0), (1.5, 900, 0), (3, 100, 0)))
