@@ -160,14 +160,8 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
     dots = solve_position(subject.linkage, np.concatenate(tens)).p
     ax = new_axes(ax)
     parts.draw_path(ax, subject, subject.scene)
-    look: dict[str, Any] = {
-        "linestyle": "none",
-        "marker": "o",
-        "markersize": 3.5,
-        "color": parts.PATH,
-        "zorder": 3,
-    }
-    ax.plot(*dots.T, label="every 10 deg of the driver", **look)
+    look: dict[str, Any] = {"marker": "o", "markersize": 3.5, "color": parts.PATH, "zorder": 3}
+    ax.plot(*dots.T, linestyle="none", label="every 10 deg of the driver", **look)
     parts.draw_task(ax, subject)
     plane(ax, subject.spec.length_unit)
     ax.legend(loc="best", fontsize="small")

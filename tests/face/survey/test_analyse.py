@@ -271,7 +271,7 @@ def test_a_driver_at_rest() -> None:
 
 @pytest.mark.slow
 def test_one_angle_is_counted_alike_everywhere() -> None:
-    """Where a rocker turns back about 0 or 180 deg, the ends of its dwell, and its extremes."""
+    """Where a rocker turns back about 180 deg, the ends of its dwell, and its extremes."""
 
     def rocker(turned: float) -> LinkageReport:
         o4 = 5 * np.array([np.cos(turned), np.sin(turned)])
@@ -279,8 +279,7 @@ def test_one_angle_is_counted_alike_everywhere() -> None:
         return report_on(LinkageSpec(linkage, "rocker"), Asked(dwell_deg=2.0))
 
     low, high = extremes(rocker(0.0)).loc["theta4_deg", ["min", "max"]]
-    middle = np.radians(low + high) / 2
-    for turned in (-middle, 0.0, np.pi - middle):
+    for turned in (0.0, np.pi - np.radians(low + high) / 2):
         report = rocker(turned)
         low, high = extremes(report).loc["theta4_deg", ["min", "max"]]
         found = {key: value for part in (report, *report.sections) for key, value in facts(part).items()}
