@@ -168,7 +168,8 @@ def draw_curves(
 ) -> AxesArray:
     """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
-    theta2, joints = by_range(table, "theta2_deg"), forces_of(sweep.spec.linkage.mechanism)
+    theta2 = by_range(table, "theta2_deg")
+    joints = forces_of(sweep.spec.linkage.mechanism)
     for axes, (label, every) in zip(rows, panels, strict=True):
         names = {name: joints.get(name, words) for name, words in every.items() if name in table}
         drawn = {name: by_range(table, name) for name in names}

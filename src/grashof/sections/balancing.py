@@ -103,7 +103,8 @@ def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Balanced, str]:
         balanced = "the rotating and half of the reciprocating masses"
         note = f"the counterweight at r2 balances {balanced}; {same}"
         return _Balanced(half.masses, {2: half.crank_weight}), note
-    full, place = balance_force(linkage, masses), "r4" if plain(kind) else "r2"
+    full = balance_force(linkage, masses)
+    place = "r4" if plain(kind) else "r2"
     note = f"counterweights are points at r2 from O2 and {place} from O4; {same}"
     return _Balanced(full.masses, {2: full.crank_weight, 4: full.output_weight}), note
 
@@ -151,7 +152,8 @@ def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:
         aim, key = row["aim"], _KEYS[row["aim"]]
         for link in (2, 4):
             if row[f"mass_{link}"] > 0:
-                label, name = f"counterweight on link {link} for {aim}", f"balance_{key}_{link}"
+                label = f"counterweight on link {link} for {aim}"
+                name = f"balance_{key}_{link}"
                 product = row[f"mass_times_radius_{link}"]
                 angle = np.arctan2(row[f"v_{link}"], row[f"u_{link}"])
                 yield Fact(f"{name}_mass_radius", f"{label}: mass times radius", product, f"kg {unit}")

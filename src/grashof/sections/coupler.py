@@ -35,10 +35,11 @@ def coupler_plane(study: LinkageStudy) -> Section:
     frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, study.chosen), {"diameter": "inflection_diameter"}
-    title, other = "fixed centrode: I13 in the frame", "moving centrode: I13 in the coupler, u along AB"
+    of_fixed = "fixed centrode: I13 in the frame"
+    of_moving = "moving centrode: I13 in the coupler, u along AB"
     plots = (
-        Plot("fixed-centrode", title, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
-        Plot("moving-centrode", other, unit, {"I13": shown[1]}, points=frame, angles=theta2),
+        Plot("fixed-centrode", of_fixed, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
+        Plot("moving-centrode", of_moving, unit, {"I13": shown[1]}, points=frame, angles=theta2),
         _circle_plot(study, circles),
         curves(columns, "inflection-diameter", "diameter of the inflection circle", unit, diameter),
     )
@@ -124,8 +125,8 @@ def hodographs(study: LinkageStudy) -> Section:
         curves(columns, "angular-jerk", "angular jerk", "rad/s³", of_links),
     )
     kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
-    facts, title = tuple(_jerk_facts(study)), "Hodographs and jerk"
-    return Section("hodographs", title, facts, {"jerk": table(kept)}, plots)
+    facts = tuple(_jerk_facts(study))
+    return Section("hodographs", "Hodographs and jerk", facts, {"jerk": table(kept)}, plots)
 
 
 def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:

@@ -95,7 +95,8 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
     if np.isfinite(lost) and 0 < lost <= put_in * (1 + _CERTAIN) and error.max() < _CERTAIN * put_in:
         work = lost * law.duration * study.metre**2
         yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
-        label, left = "efficiency: work put in that friction leaves", 1 - lost / put_in
+        left = 1 - lost / put_in
+        label = "efficiency: work put in that friction leaves"
         yield Fact("efficiency", label, left if left > _CERTAIN else 0.0)
 
 
@@ -108,7 +109,8 @@ def motor(study: LinkageStudy) -> Section | None:
     columns = over_driver(study, lambda state: _motor_columns(state, masses, loads, spec, study.metre**2))
     places, angles = columns["motor_rpm"], columns["theta2_deg"]
     against_speed = {"torque": line(columns["motor_torque"])}
-    title, over = "torque of the motor against its speed", "speed of the motor (rpm)"
+    title = "torque of the motor against its speed"
+    over = "speed of the motor (rpm)"
     inertia = {"inertia": "inertia_kg_m2"}
     plots = (
         Plot("motor-torque-speed", title, "N m", against_speed, places, over, angles=angles),
@@ -125,14 +127,16 @@ def motor(study: LinkageStudy) -> Section | None:
 
 
 def _motor_columns(state: Kinematics, masses: Masses, loads: Loads, spec: MotorSpec, joule: float) -> Columns:
-    ratio, none = spec.gear_ratio, np.zeros(state.shape)
+    ratio = spec.gear_ratio
     torque = inverse_dynamics(state, masses, loads).torque * joule
     torque = motor_torque(torque, state.omega2, state.alpha2, ratio, spec.gear_efficiency, spec.inertia)
+    speed = ratio * state.omega2 + np.zeros(state.shape)
+    inertia = generalised_inertia(state.linkage, state.theta2, masses) * joule / ratio**2
     return {
-        "motor_rpm": ratio * state.omega2 * _RPM + none,
+        "motor_rpm": speed * _RPM,
         "motor_torque": torque,
-        "motor_power": torque * (ratio * state.omega2),
-        "inertia_kg_m2": generalised_inertia(state.linkage, state.theta2, masses) * joule / ratio**2 + none,
+        "motor_power": torque * speed,
+        "inertia_kg_m2": inertia + np.zeros(state.shape),
     }
 
 

@@ -132,7 +132,8 @@ def _plots(study: LinkageStudy, path: FittedPath, found: list[PathFit]) -> Itera
     ):
         of_kind = [fit for fit in found if (fit.of, fit.newton) == (of, newton)]
         series = {"path": path.path} | {f"degree {fit.degree}": _near(path, fit.line) for fit in of_kind}
-        title, points = f"path of {path.label}: {what}", {"points fitted": path.points}
+        title = f"path of {path.label}: {what}"
+        points = {"points fitted": path.points}
         yield Plot(f"{KEY}-{key}-{path.key}", title, study.spec.unit, series, points=points)
 
 

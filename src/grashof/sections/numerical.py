@@ -45,10 +45,11 @@ def newton_raphson(study: LinkageStudy) -> Section | None:
     }  # fmt: skip
     apart = np.abs(off).max(axis=0)
     same = apart < _OTHER
-    furthest, label = float(apart[same].max(initial=0.0)), "largest difference from the closed form"
+    furthest = float(apart[same].max(initial=0.0))
+    label = "Newton-Raphson: largest difference from the closed form"
     facts = (
         Fact("newton_steps_max", "Newton-Raphson: most steps", int(np.nanmax(steps)) if known.any() else 0),
-        Fact("newton_difference_max_deg", f"Newton-Raphson: {label}", furthest, "deg"),
+        Fact("newton_difference_max_deg", label, furthest, "deg"),
     )
     lines = {"theta3": _unwrapped(solved[0]), "theta4": _unwrapped(solved[1])}
     plots = (
@@ -86,25 +87,18 @@ class Rate:
     @property
     def columns(self) -> dict[str, FloatArray]:
         """Columns of a table."""
-        endings = {"exact": ""} | {f"order {order}": f"order_{order}" for order in self.by_order}
-        parts = {(self.key, axis, endings[way]): values for (axis, way), values in self._parts.items()}
-        return {"_".join(filter(None, part)): values for part, values in parts.items()}
+        found = _components(self.exact, self.key, f"{self.key}_{{axis}}")
+        for order, values in self.by_order.items():
+            found |= _components(values, f"{self.key}_order_{order}", f"{self.key}_{{axis}}_order_{order}")
+        return found
 
     @property
     def lines(self) -> dict[str, FloatArray]:
         """Lines of a plot by their labels."""
-        return {", ".join(filter(None, part)): values for part, values in self._parts.items()}
-
-    @property
-    def _parts(self) -> dict[tuple[str, str], FloatArray]:
-        """Values (N,) by the axis, "" of scalars, and the way in which they are found."""
-        ways = {"exact": self.exact} | {f"order {order}": each for order, each in self.by_order.items()}
-        axes = ("",) if self.exact.ndim == 1 else ("x", "y")
-        return {
-            (axis, way): each
-            for way, values in ways.items()
-            for axis, each in zip(axes, np.atleast_2d(values.T), strict=True)
-        }
+        found = _components(self.exact, "exact", "{axis}, exact")
+        for order, values in self.by_order.items():
+            found |= _components(values, f"order {order}", f"{{axis}}, order {order}")
+        return found
 
     def deviation(self, order: int) -> FloatArray:
         """Distance from the exact values, shape (N,); NaN where one is missing."""
@@ -180,7 +174,8 @@ def _rate(
     places: list[FloatArray],
     exact: list[FloatArray],
 ) -> Rate:
-    pairs, by_order = list(zip(parts, places, strict=True)), dict[int, FloatArray]()
+    pairs = list(zip(parts, places, strict=True))
+    by_order = dict[int, FloatArray]()
     for order in ORDERS:
         by_order[order] = _joined(parts, [_by_time(*pair, derivative, order) for pair in pairs])
     return Rate(*named, derivative, _joined(parts, exact), by_order)
@@ -207,12 +202,20 @@ def _deviations(samples: Samples, rates: list[Rate]) -> pd.DataFrame:
     """The largest deviation of each rate by differences, its place, and its share of the peak."""
     rows = []
     for rate, order in product(rates, ORDERS):
-        off, size = rate.deviation(order), _size(rate.exact)
+        off = rate.deviation(order)
         worst = int(np.argmax(np.where(np.isfinite(off), off, -1.0)))
-        largest, peak = float(off[worst]), float(np.max(size[np.isfinite(size)], initial=0.0))
-        named = {"quantity": rate.label, "unit": rate.unit, "derivative": rate.derivative, "order": order}
-        deviation = {"largest": largest, "share": largest / peak if peak > 0 else 0.0}
-        rows.append(named | deviation | {key: float(each[worst]) for key, each in samples.columns.items()})
+        largest = float(off[worst])
+        size = _size(rate.exact)
+        peak = float(np.max(size[np.isfinite(size)], initial=0.0))
+        row: dict[str, object] = {
+            "quantity": rate.label,
+            "unit": rate.unit,
+            "derivative": rate.derivative,
+            "order": order,
+            "largest": largest,
+            "share": largest / peak if peak > 0 else 0.0,
+        }
+        rows.append(row | {key: float(values[worst]) for key, values in samples.columns.items()})
     return pd.DataFrame(rows)
 
 
@@ -222,6 +225,13 @@ def _deviation_facts(deviations: pd.DataFrame) -> Iterator[Fact]:
             rows = deviations[(deviations["derivative"] == derivative) & (deviations["order"] == order)]
             label = f"{name} by central differences of order {order}: largest error, as a share of the peak"
             yield Fact(f"differences_{name}_order_{order}", label, float(rows["share"].max()))
+
+
+def _components(values: FloatArray, name: str, name_of_axis: str) -> dict[str, FloatArray]:
+    """Scalars (N,) by their name, or vectors (N, 2) by components."""
+    if values.ndim == 1:
+        return {name: values}
+    return {name_of_axis.format(axis=axis): values[:, index] for index, axis in enumerate("xy")}
 
 
 def _size(values: FloatArray) -> FloatArray:

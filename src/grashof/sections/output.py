@@ -43,7 +43,8 @@ def function_section(study: LinkageStudy) -> Section | None:
     if curves is None:
         return None
     at_pairs = function_curves(study.linkage, task, verdict, at=task.driver_turns)
-    places, shown = np.degrees(curves.turned), task.counted_in.shown
+    places = np.degrees(curves.turned)
+    shown = task.counted_in.shown
     unit = task.counted_in.of(problem.length_unit)
     output = {"wanted": shown * curves.wanted, "generated": shown * curves.generated}
     plots = tuple(

@@ -27,7 +27,8 @@ def over_time(study: LinkageStudy) -> Section | None:
         Fact("history_seconds", "history over time", float(history.time[-1]), "s"),
         Fact("history_turns", "history over time: turns of the driver", turns),
     )
-    tables, plots = {"over-time": samples.table(columns)}, _plots(study, samples, columns)
+    tables = {"over-time": samples.table(columns)}
+    plots = _plots(study, samples, columns)
     notes: tuple[str, ...] = ()
     if not history.complete:
         end = f"the history ends after {history.time[-1]:.6g} s"

@@ -51,7 +51,8 @@ def pumping_unit(study: LinkageStudy) -> Section | None:
     if study.spec.dynamics is not None and study.sweep.speed_rpm * given.sense * given.side > 0:
         notes.append(f"this view turns the crank {given.crank}; speed_rpm turns it the other way")
     table = pd.DataFrame(rods.columns(np.radians(_ROWS))).replace([np.inf, -np.inf], np.nan)
-    facts, plots = (*rods.motion_facts(), *rods.torque_facts()), tuple(_plots(columns, study.spec.unit))
+    facts = (*rods.motion_facts(), *rods.torque_facts())
+    plots = tuple(_plots(columns, study.spec.unit))
     return Section("pumping-unit", "Pumping unit", facts, {"pumping-unit": table}, plots, tuple(notes))
 
 

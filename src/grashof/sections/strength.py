@@ -76,8 +76,13 @@ def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
 def _worst_table(found: Iterable[StrengthPeak | SafetyFactor], label: str, value: str) -> pd.DataFrame:
     """A row for each, with these headings for its label and value."""
     rows = [
-        {"part": each.part, label: each.label, value: each.value}
-        | {"theta2_deg": _degrees(each.place), "at": each.at}
+        {
+            "part": each.part,
+            label: each.label,
+            value: each.value,
+            "theta2_deg": _degrees(each.place),
+            "at": each.at,
+        }
         for each in found
     ]
     return pd.DataFrame(rows).replace([np.inf, -np.inf], np.nan)

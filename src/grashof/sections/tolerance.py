@@ -30,7 +30,8 @@ def tolerance(study: LinkageStudy) -> Section | None:
     each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
     plots = _plots(columns, "p", "move of P", unit, each)
     if output_turns(study.linkage.mechanism):
-        theta, what = f"theta{study.output}", f"turn of link {study.output}"
+        theta = f"theta{study.output}"
+        what = f"turn of link {study.output}"
         turns = {dimension: f"{theta}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
         plots += _plots(columns, theta, what, "deg", turns)
     facts = (Fact("tolerance", "each dimension is off by", off, unit), *_facts(study, off))

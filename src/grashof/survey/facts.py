@@ -89,7 +89,8 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
     for index, (name, words) in enumerate(LIMIT_POSITIONS[kind.dyads[0].kind].items()):
         if np.isfinite(stroke.theta4[index]):
-            key, label = f"toggle_{name}_theta", f"{moved} turns back, {words}: theta"
+            key = f"toggle_{name}_theta"
+            label = f"{moved} turns back, {words}: theta"
             yield angle_fact(f"{key}2", f"{label}2", stroke.theta2[index])
             if 4 in turning(kind):
                 angle = _counted(float(np.degrees(stroke.theta4[index])), extremes, "theta4_deg")
@@ -103,11 +104,9 @@ def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
     found, moved = study.limit_positions(), kind.links[-1]
     if np.isfinite(found[0].time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", found[0].time_ratio)
-    theta, theta2, values = (
-        f"theta{moved.number}",
-        *(np.concatenate([getattr(each, name) for each in found]).tolist() for name in ("theta2", "value")),
-    )
-    for number, (at, value) in enumerate(zip(theta2, values, strict=True), start=1):
+    theta = f"theta{moved.number}"
+    theta2, values = (np.concatenate([getattr(each, name) for each in found]) for name in ("theta2", "value"))
+    for number, (at, value) in enumerate(zip(theta2.tolist(), values.tolist(), strict=True), start=1):
         key, label = f"turns_back_{number}", f"{moved.name} turns back, {number}"
         yield Fact(f"{key}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
         if output_turns(kind):

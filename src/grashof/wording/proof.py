@@ -66,10 +66,12 @@ def _line(proof: Proof, known: str) -> str:
 def _all_line(proof: Proof, known: str) -> str:
     """Statement for five poses or pairs, whose linkages are all known."""
     dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
-    has, none = f"; {known} the most, {_down(proof.lower)} deg" if known else "", "no other linkage of these"
     if proof.claim is Claim.NONE:
-        has, none = "", "none of their linkages"
-    return f"Proven: {dyads} {meet} the targets within the limits, and {none} does it{has}."
+        return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."
+    has = f"; {known} the most, {_down(proof.lower)} deg" if known else ""
+    return (
+        f"Proven: {dyads} {meet} the targets within the limits, and no other linkage of these does it{has}."
+    )
 
 
 def _regions(proof: Proof) -> str:
