@@ -38,6 +38,18 @@ def grashof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Grashof:
     return lambda *arguments: runner.invoke(app, [str(argument) for argument in arguments])
 
 
+@pytest.fixture
+def refused(grashof: Grashof) -> Callable[..., str]:
+    """The line on stderr, and the only one, with which the command refuses its arguments."""
+
+    def line(*arguments: Any) -> str:
+        done = grashof(*arguments)
+        assert (done.exit_code, done.stderr.count("\n")) == (2, 1), done.output
+        return str(done.stderr)
+
+    return line
+
+
 @pytest.fixture(scope="session")
 def few() -> Result:
     """Eight designs for the luggage problem, each a family of its own and none of them doubted; no proof."""

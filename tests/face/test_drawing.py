@@ -22,10 +22,10 @@ def test_a_copy_draws_the_same(few: Result, monkeypatch: pytest.MonkeyPatch) -> 
     given = few.problem, few.candidates[:2]
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: False)
     with drawer(2) as here_too:
-        here = list(here_too.begin(*given))
+        here = list(here_too(*given))
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
     with drawer(2) as ready:
-        beside = list(ready.begin(*given))
+        beside = list(ready(*given))
     assert beside == here
     assert [set(files) for files in here] == [set(FORMATS)] * 2
     assert here[0] != here[1]
@@ -39,7 +39,7 @@ def test_drawings_of_a_lost_copy_are_made_here(few: Result, monkeypatch: pytest.
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
     monkeypatch.setattr(grashof_drawing, "_draw", none)
     with drawer(2) as ready:
-        drawn = ready.begin(few.problem, few.candidates[:2])
+        drawn = ready(few.problem, few.candidates[:2])
         assert [set(files) for files in drawn] == [set(FORMATS)] * 2
 
 
@@ -50,14 +50,14 @@ def test_designs_that_cannot_be_sent_are_drawn_here(few: Result, monkeypatch: py
     for field in fields(few.problem):
         object.__setattr__(unnamed, field.name, getattr(few.problem, field.name))
     with drawer(1) as ready:
-        assert [set(files) for files in ready.begin(unnamed, few.candidates[:1])] == [set(FORMATS)]
+        assert [set(files) for files in ready(unnamed, few.candidates[:1])] == [set(FORMATS)]
 
 
 def test_nothing_to_draw_makes_no_copy(few: Result, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grashof_drawing, "_may_be_copied", lambda: True)
     with drawer(0) as ready:
         assert active_children() == []
-        assert list(ready.begin(few.problem, ())) == []
+        assert list(ready(few.problem, ())) == []
     with drawer(3) as ready:  # and one that was ready for nothing ends
         assert len(active_children()) == 1
     assert active_children() == []
@@ -71,7 +71,7 @@ def test_a_copy_ends_with_its_list(few: Result, monkeypatch: pytest.MonkeyPatch)
 
     with drawer(3) as ready:
         assert len(active_children()) == 1
-        first(ready.begin(few.problem, few.candidates[:3]))
+        first(ready(few.problem, few.candidates[:3]))
     assert active_children() == []
 
 

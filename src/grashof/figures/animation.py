@@ -17,18 +17,8 @@ from matplotlib.text import Annotation, Text
 
 from grashof.analysis import Position, solve_position
 from grashof.analysis.curves.coupler_curve import smooth_polygon
+from grashof.figures import parts
 from grashof.figures.linkage import figure_of, new_axes, plane
-from grashof.figures.parts import (
-    BODY,
-    GROUND,
-    PATH,
-    body_outline,
-    draw_ground,
-    draw_scene,
-    draw_task,
-    missing_glyphs_unwarned,
-    name_points,
-)
 from grashof.figures.shapes import Drawn, Placement, Shape, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem, ProblemError
@@ -113,7 +103,7 @@ def save_animation(animation: FuncAnimation, path: str | os.PathLike[str]) -> No
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".writing-") as folder:
         fresh = Path(folder) / path.name
         try:
-            with missing_glyphs_unwarned():
+            with parts.missing_glyphs_unwarned():
                 animation.save(fresh, writer=_WRITERS[path.suffix.lower()], dpi=100)
         except subprocess.CalledProcessError as error:
             raise OSError(f"{path}: ffmpeg ended with code {error.returncode}") from None
@@ -173,26 +163,27 @@ class _Moving:
         shapes = list(shapes_of(subject, scene, self._placements[0], named=False))
         if carried:
             self._placements = [each | body for each, body in zip(self._placements, carried, strict=True)]
-            shapes.append(Shape(tuple(carried[0]), {"color": BODY, "alpha": 0.7, "zorder": 3.5}, filled=True))
+            look = {"color": parts.BODY, "alpha": 0.7, "zorder": 3.5}
+            shapes.append(Shape(tuple(carried[0]), look, filled=True))
         self._names: dict[str, Annotation] = {}
         self._captions: list[str] = []
         self._clock: Text | None = None
         frames = len(state.p)
         self._drawn = np.searchsorted(turns, np.arange(frames) / frames, side="right")
         self._shapes = Drawn(axes, shapes, self._placements[0])
-        axes.plot(*path.T, color=PATH, linewidth=0.8, linestyle=":", zorder=2)
-        (self._trace,) = axes.plot([], [], color=PATH, linewidth=1.8, zorder=3)
+        axes.plot(*path.T, color=parts.PATH, linewidth=0.8, linestyle=":", zorder=2)
+        (self._trace,) = axes.plot([], [], color=parts.PATH, linewidth=1.8, zorder=3)
         if subject.problem is not None:
-            draw_scene(axes, subject.problem)
-            draw_task(axes, subject)
-        draw_ground(axes, scene)
+            parts.draw_scene(axes, subject.problem)
+            parts.draw_task(axes, subject)
+        parts.draw_ground(axes, scene)
         plane(axes, subject.spec.length_unit)
         axes.update_datalim(np.concatenate([[*each.values()] for each in self._placements] + [path]))
-        name_points(axes, {name.upper(): place for name, place in scene.ground.items()})
+        parts.name_points(axes, {name.upper(): place for name, place in scene.ground.items()})
 
     def annotate(self, axes: Axes, subject: Subject, state: Position) -> None:
         """Name the moving points, and show driver angle and time."""
-        look: dict[str, Any] = {"textcoords": "offset points", "color": GROUND, "zorder": 8}
+        look: dict[str, Any] = {"textcoords": "offset points", "color": parts.GROUND, "zorder": 8}
         self._names = {
             name: axes.annotate(name.upper(), tuple(self._placements[0][name]), (6, 6), **look)
             for name in subject.linkage.mechanism.moving
@@ -229,9 +220,10 @@ def _carried(subject: Subject, state: Position) -> list[Placement]:
         return []
     task = subject.problem.task
     angles = state.theta3 + subject.linkage.body_angle
-    found = (body_outline(task, place, float(angle)) for place, angle in zip(state.p, angles, strict=True))
+    poses = zip(state.p, angles.tolist(), strict=True)
+    found = [parts.body_outline(task, place, angle) for place, angle in poses]
     return [
-        {f"corner{number}": corner for number, corner in enumerate(corners)}
-        for corners in found
-        if corners is not None
+        {f"corner{number}": corner for number, corner in enumerate(each)}
+        for each in found
+        if each is not None
     ]

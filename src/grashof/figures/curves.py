@@ -169,30 +169,25 @@ def draw_curves(
     """Draw columns of an analysis over the driver angle, each panel into one of the axes."""
     rows = _rows(len(panels), ax)
     theta2 = by_range(table, "theta2_deg")
+    joints = forces_of(sweep.spec.linkage.mechanism)
     for axes, (label, every) in zip(rows, panels, strict=True):
-        names = {name: _name(sweep, name, words) for name, words in every.items() if name in table}
+        names = {name: joints.get(name, words) for name, words in every.items() if name in table}
         drawn = {name: by_range(table, name) for name in names}
         for (colour, dash), (name, values) in zip(_PENS, drawn.items(), strict=False):
             axes.plot(theta2, values, color=colour, linestyle=dash, linewidth=1.5, label=names[name])
         if not sweep.turns and not label.startswith("angle"):
-            _bound(axes, np.concatenate(list(drawn.values())))
+            values = np.concatenate(list(drawn.values()))
+            sizes = np.abs(values[np.isfinite(values)])
+            limit = _PEAK * float(np.median(sizes)) if sizes.size else 0.0
+            if sizes.max(initial=0.0) > limit > 0:
+                cut(axes, values, limit)
         axes.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
         axes.set_ylabel(label.format(unit=sweep.spec.unit), parse_math=False)
-        if sweep.turns:
-            axes.set_xlim(0, 360)
-            axes.set_xticks(np.arange(0, 361, 45))
-        for angle in [] if sweep.turns else {end for each in sweep.ranges for end in each}:
-            axes.axvline(np.degrees(angle), color=GROUND, linestyle=":", linewidth=0.9)
+        dead = mark_driver(axes, theta2, turns=sweep.turns)
         if len(names) > 1:
             axes.legend(loc="best", fontsize="small")
-    dead = "" if sweep.turns else "; dotted: dead positions"
     rows[-1].set_xlabel(f"driver angle theta2 (deg), driver at {sweep.speed_rpm:.4g} rpm{dead}")
     return rows
-
-
-def _name(sweep: Sweep, column: str, words: str) -> str:
-    """Name of a column; for a joint force the joint, or the slide that the kind has in its place."""
-    return forces_of(sweep.spec.linkage.mechanism).get(column, words)
 
 
 def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
@@ -208,13 +203,26 @@ def _rows(count: int, ax: Axes | Iterable[Axes] | None) -> AxesArray:
     return rows
 
 
-def _bound(ax: Axes, values: FloatArray) -> None:
-    """Cut off values that grow without bound towards a dead position."""
+def cut(ax: Axes, values: FloatArray, most: float) -> None:
+    """Show values up to a size, and zero."""
     known = values[np.isfinite(values)]
-    limit = _PEAK * float(np.median(np.abs(known))) if known.size else 0.0
-    if limit > 0 and np.abs(known).max() > limit:
-        low = max(float(known.min()) * 1.05, -limit)
-        ax.set_ylim(min(low, -0.02 * limit), min(float(known.max()) * 1.05, limit))
+    low, high = max(float(known.min()) * 1.05, -most), min(float(known.max()) * 1.05, most)
+    ax.set_ylim(min(low, -0.02 * most), max(high, 0.02 * most))
+
+
+def mark_driver(ax: Axes, places: FloatArray, *, turns: bool) -> str:
+    """Mark full turns by ticks, or dead positions, where NaN separates ranges, by lines with these words."""
+    if turns:
+        low, high = float(places.min()), float(places.max())
+        ax.set_xlim(low, high)
+        step = 45 * max(1, round((high - low) / 360))
+        ax.set_xticks(np.arange(np.ceil(low / step - 1e-9), high / step + 1e-9) * step)
+        return ""
+    known = np.isfinite(np.concatenate([[np.nan], places, [np.nan]]))
+    ends = known[1:-1] & ~(known[:-2] & known[2:])
+    for angle in np.unique(places[ends]):
+        ax.axvline(angle, color=GROUND, linestyle=":", linewidth=0.9)
+    return "; dotted: dead positions"
 
 
 def plot_function(task: Task, candidate: Candidate, *, ax: Sequence[Axes]) -> None:

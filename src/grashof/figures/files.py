@@ -145,14 +145,10 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     if problem.task.has_output.any():
         worst = problem.task.shown(verdict.structural_error_max, problem.length_unit)
         fit = f", structural error {worst}"
+    ok = verdict.circuit_ok and verdict.branch_ok
+    defect = "" if ok else f", {'branch' if verdict.circuit_ok else 'circuit'} defect"
     return (
         f"{shortened(problem.title or problem.name)}: design {rank} ({candidate.id}), "
-        f"{verdict.grashof_class}{fit}{_defect(candidate)}\n"
+        f"{verdict.grashof_class}{fit}{defect}\n"
         f"{lengths}{unit};  worst transmission angle {', '.join(over)}"
     )
-
-
-def _defect(candidate: Candidate) -> str:
-    if not candidate.verdict.circuit_ok:
-        return ", circuit defect"
-    return "" if candidate.verdict.branch_ok else ", branch defect"

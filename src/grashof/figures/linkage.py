@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 from matplotlib import colormaps
@@ -9,23 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from grashof.analysis import Position, solve_position
+from grashof.figures import parts
 from grashof.figures.curves import plot_wanted
-from grashof.figures.parts import (
-    COUPLER,
-    GROUND,
-    KEPT_OUT,
-    PATH,
-    apart,
-    draw_ground,
-    draw_path,
-    draw_scene,
-    draw_sense,
-    draw_targets,
-    draw_task,
-    in_points,
-    name_points,
-    targets_shown,
-)
 from grashof.figures.shapes import Drawn, placements, shapes_of
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import AssemblyError, Problem, ProblemError
@@ -82,20 +69,20 @@ def plot_linkage(
     positions = placements(subject, scene, state)
     ax = new_axes(ax)
     if subject.problem is not None:
-        draw_scene(ax, subject.problem)
-    draw_path(ax, subject, scene)
+        parts.draw_scene(ax, subject.problem)
+    parts.draw_path(ax, subject, scene)
     shades = np.linspace(0.3, 1, len(positions)) if len(positions) > 1 else [1.0]
     for placement, shade in zip(positions, shades, strict=True):
         Drawn(ax, shapes_of(subject, scene, placement, named=placement is positions[-1]), placement, shade)
-    draw_task(ax, subject)
-    draw_ground(ax, scene)
-    draw_sense(ax, subject)
+    parts.draw_task(ax, subject)
+    parts.draw_ground(ax, scene)
+    parts.draw_sense(ax, subject)
     plane(ax, subject.spec.length_unit)
     names: dict[tuple[float, ...], str] = {}
     for name in subject.linkage.mechanism.points:
         place = positions[-1][name]
         names.setdefault(tuple(place), name.upper())  # P may coincide with a joint
-    name_points(ax, {name: np.array(place) for place, name in names.items()})
+    parts.name_points(ax, {name: np.array(place) for place, name in names.items()})
     last = "target" if subject.problem is not None and theta2 is None else "position"
     heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
@@ -127,8 +114,8 @@ def plot_task(problem: Problem, *, ax: Axes | None = None) -> Axes:
     if task.has_output.any():
         plot_wanted(ax, task, problem.length_unit)
         return ax
-    draw_scene(ax, problem)
-    draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
+    parts.draw_scene(ax, problem)
+    parts.draw_targets(ax, task, np.full((len(task), 2), np.nan), np.full(len(task), np.nan))
     plane(ax, problem.length_unit)
     if ax.get_legend_handles_labels()[0]:
         ax.legend(loc="best", fontsize="small")
@@ -172,12 +159,10 @@ def plot_coupler_curve(linkage: Linkage, problem: Problem | None = None, *, ax: 
     tens = [step * np.arange(np.ceil(low / step), np.ceil(high / step)) for low, high in subject.sweep.ranges]
     dots = solve_position(subject.linkage, np.concatenate(tens)).p
     ax = new_axes(ax)
-    draw_path(ax, subject, subject.scene)
-    ax.plot(
-        *dots.T, linestyle="none", marker="o", markersize=3.5, color=PATH, label="every 10 deg of the driver",
-        zorder=3,
-    )  # fmt: skip
-    draw_task(ax, subject)
+    parts.draw_path(ax, subject, subject.scene)
+    look: dict[str, Any] = {"marker": "o", "markersize": 3.5, "color": parts.PATH, "zorder": 3}
+    ax.plot(*dots.T, linestyle="none", label="every 10 deg of the driver", **look)
+    parts.draw_task(ax, subject)
     plane(ax, subject.spec.length_unit)
     ax.legend(loc="best", fontsize="small")
     return ax
@@ -219,23 +204,23 @@ def plot_design_space(
     error = "structural_error_max" if problem.task.has_output.any() else "error"
     third = "torque_peak" if problem.dynamics is not None else error
     if third == "error" and problem.requirements.is_exact(problem.task):
-        ax.scatter(x_values, y_values, color=COUPLER, label="design", zorder=3)
+        ax.scatter(x_values, y_values, color=parts.COUPLER, label="design", zorder=3)
     else:
         values, label = _values_of(result, third)
         known = np.where(np.isfinite(values), values, np.nan)
-        scale = colormaps["viridis"].with_extremes(bad=KEPT_OUT)
+        scale = colormaps["viridis"].with_extremes(bad=parts.KEPT_OUT)
         dots = ax.scatter(
             x_values, y_values, c=known, cmap=scale, plotnonfinite=True, label="design", zorder=3
         )
         figure_of(ax).colorbar(dots, ax=ax).set_label(label, parse_math=False)
     ax.scatter(
-        x_values[front], y_values[front], s=110, facecolors="none", edgecolors=GROUND, linewidths=1.2,
+        x_values[front], y_values[front], s=110, facecolors="none", edgecolors=parts.GROUND, linewidths=1.2,
         label="Pareto-optimal", zorder=4,
     )  # fmt: skip
     best = np.column_stack([x_values, y_values])[:_NUMBERED]
     taken: list[FloatArray] = []
-    for rank, (place, there) in enumerate(zip(best, in_points(ax, best), strict=True), start=1):
-        if apart(there, taken):
+    for rank, (place, there) in enumerate(zip(best, parts.in_points(ax, best), strict=True), start=1):
+        if parts.apart(there, taken):
             ax.annotate(
                 f"{rank}", tuple(place), (6, 5), textcoords="offset points", fontsize="small", zorder=5
             )
@@ -283,7 +268,7 @@ def _state(subject: Subject, theta2: npt.ArrayLike | None) -> Position:
         if not angles.size:
             raise ProblemError("theta2 is empty; it must have one driver angle or more")
     elif subject.problem is not None and subject.verdict is not None:
-        shown = targets_shown(subject.problem.task)
+        shown = parts.targets_shown(subject.problem.task)
         angles, assembly = subject.verdict.theta2[shown], subject.verdict.assembly[shown]
     else:
         sweep = subject.sweep

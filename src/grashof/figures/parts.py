@@ -131,7 +131,7 @@ def draw_path(axes: Axes, subject: Subject, scene: Scene) -> None:
     style: dict[str, Any] = {"color": PATH, "linewidth": 1.6, "label": "path of P", "zorder": 2}
     signs = [int(scene.linkage.assembly)]
     if verdict is not None:
-        extent = "whole turn" if subject.sweep.turns else "full range"
+        extent = "full turn" if subject.sweep.turns else "full range"
         style |= {"linewidth": 0.8, "linestyle": ":", "label": f"path of P, {extent}"}
         signs = sorted(set(verdict.assembly.tolist()))
     for sign in signs:

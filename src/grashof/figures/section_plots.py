@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from grashof.drawing.scene import bodies_of
-from grashof.figures.curves import DYNAMICS, KINEMATICS, SLIDE, Panel, draw_curves
+from grashof.figures.curves import DYNAMICS, KINEMATICS, SLIDE, Panel, cut, draw_curves, mark_driver
 from grashof.figures.files import STYLE, fit_title, shortened
 from grashof.figures.linkage import figure_of, new_axes, plane, plot_linkage
 from grashof.figures.parts import BODY, COLOURS, COUPLER, DRIVER, GROUND, OUTPUT, PATH, SCENE
@@ -88,16 +88,10 @@ def _draw_curves(ax: Axes, plot: Plot, places: FloatArray, most: float) -> list[
     for number, (label, values) in enumerate(plot.series.items()):
         drawn += ax.plot(places, broken_beyond(values, most), label=label, **_pen(number))
     if np.isfinite(most):
-        _cut(ax, np.concatenate(list(plot.series.values())), most)
+        cut(ax, np.concatenate(list(plot.series.values())), most)
     ax.axhline(0, color=GROUND, linewidth=0.6, zorder=0)
     ax.set_ylabel("\n".join(wrap(with_unit(plot.title, plot.unit), _LABEL)), parse_math=False)
-    dead = ""
-    if plot.over == DRIVER_ANGLE and not plot.swings:
-        _whole_turns(ax, places)
-    elif plot.over == DRIVER_ANGLE:
-        dead = "; dotted: dead positions"
-        for angle in _ends(places):
-            ax.axvline(angle, color=GROUND, linestyle=":", linewidth=0.9)
+    dead = mark_driver(ax, places, turns=not plot.swings) if plot.over == DRIVER_ANGLE else ""
     ax.set_xlabel(f"{plot.over}{dead}", parse_math=False)
     return drawn
 
@@ -110,26 +104,6 @@ def _draw_tracks(ax: Axes, plot: Plot, most: float) -> list[Line2D]:
     ax.set_title("\n".join(wrap(plot.title, 80)), parse_math=False)
     plane(ax, plot.unit)
     return drawn
-
-
-def _cut(ax: Axes, values: FloatArray, most: float) -> None:
-    known = values[np.isfinite(values)]
-    low, high = max(float(known.min()) * 1.05, -most), min(float(known.max()) * 1.05, most)
-    ax.set_ylim(min(low, -0.02 * most), max(high, 0.02 * most))
-
-
-def _whole_turns(ax: Axes, places: FloatArray) -> None:
-    low, high = float(places.min()), float(places.max())
-    ax.set_xlim(low, high)
-    step = 45 * max(1, round((high - low) / 360))
-    ax.set_xticks(np.arange(np.ceil(low / step - 1e-9), high / step + 1e-9) * step)
-
-
-def _ends(places: FloatArray) -> list[float]:
-    """First and last abscissa of every part between NaN."""
-    known = np.isfinite(np.concatenate([[np.nan], places, [np.nan]]))
-    first, last = np.flatnonzero(known[1:-1] & ~known[:-2]), np.flatnonzero(known[1:-1] & ~known[2:])
-    return sorted({float(place) for place in places[np.concatenate([first, last])]})
 
 
 def _pen(number: int) -> dict[str, Any]:

@@ -6,8 +6,9 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pickle import PicklingError
@@ -17,39 +18,24 @@ if TYPE_CHECKING:
     from grashof.problems import Problem
     from grashof.synth import Candidate
 
-Files = dict[str, bytes]
+    # Begins to draw designs, once.
+    Drawer = Callable[[Problem, Sequence[Candidate]], Iterator[dict[str, bytes]]]
+
+Files = dict[str, bytes]  # of a drawing, by ending
 
 FORMATS = (".png", ".svg")
 _MOST = 20.0  # s; a drawing takes less than one, so that the copy has then failed
 _UNSENDABLE = (PicklingError, AttributeError, TypeError)  # errors of pickle for a function without a name
 
 
-class Drawer:
-    """Draws designs in a copy of this process, or where there is none in this one."""
-
-    def __init__(self, copy: Connection | None = None) -> None:
-        self._copy = copy
-
-    def begin(self, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:
-        """Begin to draw designs, once; an iterator of their files by ending."""
-        if self._copy is None or not candidates:
-            return _made(problem, candidates)
-        with suppress(ConnectionError):
-            try:
-                self._copy.send((problem, tuple(candidates)))
-            except _UNSENDABLE:
-                return _made(problem, candidates)
-        return _received(self._copy, problem, candidates)
-
-
 @contextmanager
 def drawer(most: int) -> Iterator[Drawer]:
-    """A drawer of at most `most` designs, made ready beside this process until there are any.
+    """A drawer of at most `most` designs, made ready beside this process until there are any, or within it.
 
     The copy is made here, where it may be: with a single thread and a second core.
     """
     if not most or not _may_be_copied():
-        yield Drawer()
+        yield _made
         return
     context = get_context("fork")
     ours, theirs = context.Pipe()
@@ -57,7 +43,7 @@ def drawer(most: int) -> Iterator[Drawer]:
     beside.start()
     theirs.close()
     try:
-        yield Drawer(ours)
+        yield partial(_begun, ours)
     finally:
         beside.kill()
         beside.join()
@@ -76,6 +62,16 @@ def _made(problem: Problem, candidates: Sequence[Candidate], done: int = 0) -> I
 
         figure = draw_design(problem, candidate, rank)
         yield {ending: drawn(figure, ending) for ending in FORMATS}
+
+
+def _begun(pipe: Connection, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:
+    """Drawings of the copy, which begins at once; made here where the designs cannot be sent."""
+    with suppress(ConnectionError):
+        try:
+            pipe.send((problem, tuple(candidates)))
+        except _UNSENDABLE:
+            return _made(problem, candidates)
+    return _received(pipe, problem, candidates)
 
 
 def _received(pipe: Connection, problem: Problem, candidates: Sequence[Candidate]) -> Iterator[Files]:

@@ -18,7 +18,7 @@ import numpy as np
 from grashof.analysis import solve_position
 from grashof.analysis.cylinder.lengths import cylinder_state
 from grashof.analysis.judge.cylinder_drive import cylinder_forces
-from grashof.output.drawing import Drawer, Files, drawer
+from grashof.output.drawing import Files, drawer
 from grashof.output.folder import PAGE, RECORD, replacing_own_files
 from grashof.output.process import ExitCode, Interruption
 from grashof.problems.files.problem_writing import problem_toml
@@ -31,6 +31,8 @@ from grashof.wording.proof import enclosure_record
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from grashof.output.drawing import Drawer
 
 _GUARDS = ("Maximum_Iterations_Exceeded", "Maximum_WallTime_Exceeded")  # limits that ended solves
 _PACKAGES = ("grashof", "casadi", "numpy", "scipy", "pandas", "matplotlib", "jinja2")
@@ -55,7 +57,7 @@ def write_run(
     stop = Interruption() if stop is None else stop
     best = result.candidates[:drawings]
     with drawer(len(best)) if drawing is None else nullcontext(drawing) as ready:
-        drawn = ready.begin(result.problem, best)
+        drawn = ready(result.problem, best)
         from grashof.page.search import search_page  # only a run needs the templates, while designs are drawn
 
         with replacing_own_files(folder) as fresh:

@@ -22,7 +22,7 @@ from grashof.problems import Linkage, ProblemError
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.study.kinds import output_turns, plain
 from grashof.study.samples import Columns, curves, over_driver, table
-from grashof.study.section import Fact, Section
+from grashof.study.section import Fact, Section, angle_fact
 from grashof.study.study import LinkageStudy
 from grashof.study.turn import turn_means, turn_peaks
 
@@ -72,10 +72,7 @@ def _alternatives(
     linkage, steady = study.linkage, all(law.motor.steady for law in study.sweep.laws)
     way, note = _against_force(linkage, masses)
     ways = {_BARE: _Balanced(masses, {}), _FORCE: way}
-    notes = [
-        note,
-        "shaking force and moment are those of inertia; weights and loads are left out",
-    ]
+    notes = [note, "shaking force and moment are those of inertia; weights and loads are left out"]
     why = (
         "gravity is zero, so no counterweight evens out the torque"
         if not loads.gravity_vector().any()
@@ -104,65 +101,49 @@ def _against_force(linkage: Linkage, masses: Masses) -> tuple[_Balanced, str]:
     if len(kind.dyads) == 1 and not output_turns(kind):
         half = balance_reciprocating(linkage, masses, 0.5)
         balanced = "the rotating and half of the reciprocating masses"
-        return _Balanced(
-            half.masses, {2: half.crank_weight}
-        ), f"the counterweight at r2 balances {balanced}; {same}"
+        note = f"the counterweight at r2 balances {balanced}; {same}"
+        return _Balanced(half.masses, {2: half.crank_weight}), note
     full = balance_force(linkage, masses)
     place = "r4" if plain(kind) else "r2"
-    weights = {2: full.crank_weight, 4: full.output_weight}
-    return _Balanced(
-        full.masses, weights
-    ), f"counterweights are points at r2 from O2 and {place} from O4; {same}"
+    note = f"counterweights are points at r2 from O2 and {place} from O4; {same}"
+    return _Balanced(full.masses, {2: full.crank_weight, 4: full.output_weight}), note
 
 
 def _columns(state: Kinematics, ways: Mapping[str, _Balanced], loads: Loads, metre: float) -> Columns:
-    columns: dict[str, FloatArray] = {}
-    for name, way in ways.items():
-        force, moment, torque = _magnitudes(state, way.masses, loads, metre, signed=True)
-        key = _KEYS[name]
-        columns |= {f"shaking_force_{key}": force, f"shaking_moment_{key}": moment, f"torque_{key}": torque}
-    return columns
+    return {
+        f"{quantity}_{_KEYS[name]}": values
+        for name, way in ways.items()
+        for (quantity, *_), values in zip(_PLOTS, _rows(state, way.masses, loads, metre), strict=True)
+    }
 
 
-def _magnitudes(
-    state: Kinematics, masses: Masses, loads: Loads, metre: float, *, signed: bool = False
-) -> FloatArray:
+def _rows(state: Kinematics, masses: Masses, loads: Loads, metre: float) -> FloatArray:
     """Shaking force, shaking moment and drive torque, each a row; N and N m."""
     inertia, torque = inverse_dynamics(state, masses), inverse_dynamics(state, masses, loads).torque
     force = np.hypot(inertia.shaking_force[:, 0], inertia.shaking_force[:, 1]) * metre
-    rows = np.stack([force, inertia.shaking_moment * metre**2, torque * metre**2])
-    return rows if signed else np.abs(rows)
+    return np.stack([force, inertia.shaking_moment * metre**2, torque * metre**2])
 
 
 def _row(study: LinkageStudy, name: str, way: _Balanced, loads: Loads) -> dict[str, object]:
     row: dict[str, object] = {"aim": name}
     for link in (2, 4):
         weight = way.weights.get(link)
-        mass = 0.0 if weight is None else float(weight.mass)
-        at = np.zeros(2) if weight is None else weight.centre
-        row |= {
-            f"mass_{link}": mass,
-            f"u_{link}": float(at[0]),
-            f"v_{link}": float(at[1]),
-            f"mass_times_radius_{link}": mass * float(np.hypot(*at)),
-        }
+        mass, u, v = (0.0, 0.0, 0.0) if weight is None else (float(weight.mass), *weight.centre.tolist())
+        row |= {f"mass_{link}": mass, f"u_{link}": u, f"v_{link}": v}
+        row[f"mass_times_radius_{link}"] = mass * float(np.hypot(u, v))
     return row | (_figures(study, way.masses, loads) if study.sweep.turns else {})
 
 
-def _figures(study: LinkageStudy, masses: Masses, loads: Loads) -> dict[str, object]:
+def _figures(study: LinkageStudy, masses: Masses, loads: Loads) -> dict[str, float]:
     """Peaks over the turn, and the root mean square of the torque."""
 
     def rows(state: Kinematics) -> FloatArray:
-        return _magnitudes(state, masses, loads, study.metre)
+        return np.abs(_rows(state, masses, loads, study.metre))
 
-    (force, moment, torque), _ = turn_peaks(study, rows)
+    largest, _ = turn_peaks(study, rows)
     square = turn_means(study, lambda state: rows(state)[2:] ** 2)
-    return {
-        "shaking_force_peak": float(force),
-        "shaking_moment_peak": float(moment),
-        "torque_peak": float(torque),
-        "torque_rms": float(np.sqrt(square[0])),
-    }
+    peaks = {f"{name}_peak": value for (name, *_), value in zip(_PLOTS, largest.tolist(), strict=True)}
+    return peaks | {"torque_rms": float(np.sqrt(square[0]))}
 
 
 def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:
@@ -174,9 +155,9 @@ def _facts(study: LinkageStudy, rows: pd.DataFrame) -> Iterator[Fact]:
                 label = f"counterweight on link {link} for {aim}"
                 name = f"balance_{key}_{link}"
                 product = row[f"mass_times_radius_{link}"]
+                angle = np.arctan2(row[f"v_{link}"], row[f"u_{link}"])
                 yield Fact(f"{name}_mass_radius", f"{label}: mass times radius", product, f"kg {unit}")
-                angle = float(np.degrees(np.arctan2(row[f"v_{link}"], row[f"u_{link}"])))
-                yield Fact(f"{name}_angle_deg", f"{label}: direction from the link", angle, "deg")
+                yield angle_fact(f"{name}_angle", f"{label}: direction from the link", angle)
         for column, label, per in (
             ("shaking_force_peak", "shaking force, peak", "N"),
             ("shaking_moment_peak", "shaking moment, peak", "N m"),

@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.study.samples import Columns, components, curves, over_driver, table, track, tracks
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
-from grashof.study.turn import degrees, turn_extremes, varies
+from grashof.study.turn import extreme_facts, turn_extremes
 
 _SHOWN = 2.0  # times the sum of the link lengths: distance from A up to which the pole is drawn
 _NOTES = (
@@ -35,14 +35,11 @@ def coupler_plane(study: LinkageStudy) -> Section:
     frame = {name.upper(): _in_coupler(linkage, name) for name in linkage.mechanism.links[2].points}
     shown = [np.where(far[:, None], np.nan, points) for points in (fixed, moving)]
     circles, diameter = _circles(study, study.chosen), {"diameter": "inflection_diameter"}
-    named = {name: place[None] for name, place in frame.items()}
-    of_fixed, of_moving = (
-        "fixed centrode: I13 in the frame",
-        "moving centrode: I13 in the coupler, u along AB",
-    )
+    of_fixed = "fixed centrode: I13 in the frame"
+    of_moving = "moving centrode: I13 in the coupler, u along AB"
     plots = (
         Plot("fixed-centrode", of_fixed, unit, {"I13": shown[0]}, points=pivots, angles=theta2),
-        Plot("moving-centrode", of_moving, unit, {"I13": shown[1]}, points=named, angles=theta2),
+        Plot("moving-centrode", of_moving, unit, {"I13": shown[1]}, points=frame, angles=theta2),
         _circle_plot(study, circles),
         curves(columns, "inflection-diameter", "diameter of the inflection circle", unit, diameter),
     )
@@ -62,10 +59,10 @@ def _plane_columns(study: LinkageStudy, state: Kinematics) -> Columns:
 
 
 def _in_coupler(linkage: Linkage, name: str) -> FloatArray:
-    """A point of link 3 in its frame, shape (2,)."""
+    """A point of link 3 in its frame, shape (1, 2)."""
     if name in ("a", "b"):
-        return np.array([0.0 if name == "a" else linkage.columns["r3"], 0.0], dtype=np.float64)
-    return np.asarray(getattr(linkage, "coupler_point" if name == "p" else name))
+        return np.array([[0.0 if name == "a" else linkage.columns["r3"], 0.0]], dtype=np.float64)
+    return np.reshape(getattr(linkage, "coupler_point" if name == "p" else name), (1, 2))
 
 
 def _circles(study: LinkageStudy, angles: FloatArray) -> pd.DataFrame:
@@ -108,9 +105,8 @@ def _arc(pole: FloatArray, centre: FloatArray, a: FloatArray, reach: float) -> F
     if not (np.isfinite(radius) and radius > 0):
         return np.full((1, 2), np.nan)
     turn = np.linspace(np.arccos(min(1.0, span / (2 * radius))), np.pi / 2, 91)
-    turn = (
-        np.concatenate([-turn[::-1], [np.nan], turn]) if turn[0] > 0 else np.concatenate([-turn[:0:-1], turn])
-    )
+    other = [*-turn[::-1], np.nan] if turn[0] > 0 else -turn[:0:-1]
+    turn = np.concatenate([other, turn])
     angle = np.arctan2(*(centre - pole)[::-1]) + turn
     arc = pole + 2 * radius * np.cos(turn)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     near = np.hypot(*(arc - a).T) <= reach
@@ -129,9 +125,8 @@ def hodographs(study: LinkageStudy) -> Section:
         curves(columns, "angular-jerk", "angular jerk", "rad/s³", of_links),
     )
     kept = {key: values for key, values in columns.items() if "velocity" not in key and "accel" not in key}
-    return Section(
-        "hodographs", "Hodographs and jerk", tuple(_jerk_facts(study)), {"jerk": table(kept)}, plots
-    )
+    facts = tuple(_jerk_facts(study))
+    return Section("hodographs", "Hodographs and jerk", facts, {"jerk": table(kept)}, plots)
 
 
 def _hodograph(columns: Columns, rate: str, unit: str) -> Plot:
@@ -154,7 +149,4 @@ def _jerk_facts(study: LinkageStudy) -> Iterator[Fact]:
     if not study.sweep.turns:  # without limit towards dead positions
         return
     found = turn_extremes(study, lambda state: np.hypot(*state.p.jerk.T))
-    yield Fact("p_jerk_largest", "jerk of P, largest", found.high, f"{study.spec.unit}/s3")
-    label = "jerk of P, largest: theta2"
-    if varies(found):
-        yield Fact("p_jerk_largest_theta2_deg", label, degrees(found.at_high), "deg")
+    yield from extreme_facts("p_jerk", "jerk of P", found, f"{study.spec.unit}/s3", ends=("largest",))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import pandas as pd
 
 from grashof.analysis import Verdict, solve_position, verify
 from grashof.analysis.cylinder.lengths import cylinder_state
@@ -14,16 +13,15 @@ from grashof.analysis.judge.over_task import motion_ends
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.samples import Columns, curves, table
-from grashof.study.section import Fact, Section
+from grashof.study.section import Fact, Section, angle_fact
 from grashof.study.study import LinkageStudy
 
 KEY, _TITLE = "cylinder", "Cylinder"
 _SAMPLES = 181
-_NOTES = (
+_NOTE = (
     "over the task motion; the lever angle is that between the cylinder and the arm of its pivot, on "
-    "coupler and slider 90 deg less the angle between the cylinder and the path of its pivot",
+    "coupler and slider 90 deg less the angle between the cylinder and the path of its pivot"
 )
-_FORCES = "positive forces push; mass and friction of the cylinder itself are left out"
 
 
 def cylinder(study: LinkageStudy) -> Section | None:
@@ -44,12 +42,12 @@ def cylinder(study: LinkageStudy) -> Section | None:
         curves(over, "cylinder-rate", "rate of the cylinder dL/dθ2", f"{unit}/rad", {"rate": "rate"}),
         curves(over, "cylinder-angle", "lever angle of the cylinder", "deg", {"angle": "angle_deg"}),
     ]
-    loaded = "force" in over
-    if loaded:
+    notes = [_NOTE]
+    if "force" in over:
         plots.append(curves(over, "cylinder-force", "force of the cylinder", "N", {"force": "force"}))
-    tables = {KEY: table(over), f"{KEY}-at-targets": pd.DataFrame(targets)}
-    notes = (*_NOTES, _FORCES) if loaded else _NOTES
-    return Section(KEY, _TITLE, tuple(_facts(study, problem, verdict)), tables, tuple(plots), notes)
+        notes.append("positive forces push; mass and friction of the cylinder itself are left out")
+    tables = {KEY: table(over), f"{KEY}-at-targets": targets}
+    return Section(KEY, _TITLE, tuple(_facts(study, problem, verdict)), tables, tuple(plots), tuple(notes))
 
 
 def _columns(study: LinkageStudy, problem: Problem, verdict: Verdict, theta2: FloatArray) -> Columns:
@@ -74,17 +72,14 @@ def _facts(study: LinkageStudy, problem: Problem, verdict: Verdict) -> Iterator[
     if driven is None or found is None:
         return
     yield Fact("cylinder_on", "link that the cylinder acts on", driven.on)
-    for (name, value), label in zip(
-        driven.columns.items(), ("base, x", "base, y", "pivot, u", "pivot, v"), strict=True
-    ):
+    labels = ("base, x", "base, y", "pivot, u", "pivot, v")
+    for (name, value), label in zip(driven.columns.items(), labels, strict=True):
         yield Fact(name, f"cylinder: {label}", value, unit)
     yield Fact("cylinder_closed", "cylinder: closed length", found.closed, unit)
     yield Fact("cylinder_open", "cylinder: open length", found.open, unit)
     yield Fact("cylinder_stroke", "cylinder: stroke", found.stroke, unit)
     yield Fact("cylinder_ratio", "cylinder: open over closed length", found.ratio)
-    yield Fact(
-        "cylinder_angle_min_deg", "cylinder: worst lever angle", float(np.degrees(found.angle_min)), "deg"
-    )
+    yield angle_fact("cylinder_angle_min", "cylinder: worst lever angle", found.angle_min)
     if problem.dynamics is not None:
         peak = cylinder_force_peak(study.linkage, problem, verdict)
         yield Fact("cylinder_force_max", "cylinder: peak force", peak, "N")

@@ -28,11 +28,10 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.samples import Columns, curves, line, over_driver, table
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
-from grashof.study.turn import degrees, turn_extremes, turn_means, turn_peaks, varies
+from grashof.study.turn import degrees, extreme_facts, turn_extremes, turn_means, turn_peaks
 
 _CERTAIN = 1e-7  # share of the input work: error up to which an efficiency is reported
 _RPM = 60 / TURN
-_SPEED = "speed of the motor (rpm)"
 
 
 def energy_section(study: LinkageStudy) -> Section | None:
@@ -78,11 +77,7 @@ def _energy_facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
     if not (study.sweep.turns and masses.total > 0):
         return
     found = turn_extremes(study, lambda state: energies(state, masses).kinetic.sum(axis=0))
-    for name, value, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
-        yield Fact(f"kinetic_energy_{name}", f"kinetic energy, {name}", value * study.metre**2, "J")
-        if varies(found):
-            label = f"kinetic energy, {name}: theta2"
-            yield Fact(f"kinetic_energy_{name}_theta2_deg", label, degrees(at), "deg")
+    yield from extreme_facts("kinetic_energy", "kinetic energy", found, "J", study.metre**2)
 
 
 def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]:
@@ -101,9 +96,8 @@ def _losses(study: LinkageStudy, masses: Masses, loads: Loads) -> Iterator[Fact]
         work = lost * law.duration * study.metre**2
         yield Fact("friction_work", "work of friction in the joints, a turn", work, "J")
         left = 1 - lost / put_in
-        yield Fact(
-            "efficiency", "efficiency: work put in that friction leaves", left if left > _CERTAIN else 0.0
-        )
+        label = "efficiency: work put in that friction leaves"
+        yield Fact("efficiency", label, left if left > _CERTAIN else 0.0)
 
 
 def motor(study: LinkageStudy) -> Section | None:
@@ -114,10 +108,12 @@ def motor(study: LinkageStudy) -> Section | None:
     spec = given.motor
     columns = over_driver(study, lambda state: _motor_columns(state, masses, loads, spec, study.metre**2))
     places, angles = columns["motor_rpm"], columns["theta2_deg"]
-    torque, title = {"torque": line(columns["motor_torque"])}, "torque of the motor against its speed"
+    against_speed = {"torque": line(columns["motor_torque"])}
+    title = "torque of the motor against its speed"
+    over = "speed of the motor (rpm)"
     inertia = {"inertia": "inertia_kg_m2"}
     plots = (
-        Plot("motor-torque-speed", title, "N m", torque, places, _SPEED, angles=angles),
+        Plot("motor-torque-speed", title, "N m", against_speed, places, over, angles=angles),
         curves(columns, "motor-torque", "torque of the motor", "N m", {"torque": "motor_torque"}),
         curves(columns, "motor-power", "power of the motor", "W", {"power": "motor_power"}),
         curves(columns, "motor-inertia", "inertia of the linkage at the motor", "kg m²", inertia),
@@ -131,43 +127,33 @@ def motor(study: LinkageStudy) -> Section | None:
 
 
 def _motor_columns(state: Kinematics, masses: Masses, loads: Loads, spec: MotorSpec, joule: float) -> Columns:
-    torque, speed = _torque(state, masses, loads, spec, joule), spec.gear_ratio * state.omega2
-    inertia = generalised_inertia(state.linkage, state.theta2, masses) * joule / spec.gear_ratio**2
+    ratio = spec.gear_ratio
+    torque = inverse_dynamics(state, masses, loads).torque * joule
+    torque = motor_torque(torque, state.omega2, state.alpha2, ratio, spec.gear_efficiency, spec.inertia)
+    speed = ratio * state.omega2 + np.zeros(state.shape)
+    inertia = generalised_inertia(state.linkage, state.theta2, masses) * joule / ratio**2
     return {
-        "motor_rpm": speed * _RPM + np.zeros(state.shape),
+        "motor_rpm": speed * _RPM,
         "motor_torque": torque,
         "motor_power": torque * speed,
         "inertia_kg_m2": inertia + np.zeros(state.shape),
     }
 
 
-def _torque(state: Kinematics, masses: Masses, loads: Loads, spec: MotorSpec, joule: float) -> FloatArray:
-    """Torque of the motor, N m."""
-    torque = inverse_dynamics(state, masses, loads).torque * joule
-    return motor_torque(
-        torque, state.omega2, state.alpha2, spec.gear_ratio, spec.gear_efficiency, spec.inertia
-    )
-
-
 def _motor_facts(study: LinkageStudy, masses: Masses, loads: Loads, spec: MotorSpec) -> Iterator[Fact]:
-    joule, ratio = study.metre**2, spec.gear_ratio
+    joule = study.metre**2
 
     def sizes(state: Kinematics) -> FloatArray:
-        torque, speed = (
-            _torque(state, masses, loads, spec, joule),
-            ratio * state.omega2 + np.zeros(state.shape),
-        )
-        inertia = generalised_inertia(study.linkage, state.theta2, masses) * joule / ratio**2
-        return np.stack([np.abs(torque), torque * speed, -torque * speed, np.abs(speed), inertia, -inertia])
+        speed, torque, power, inertia = _motor_columns(state, masses, loads, spec, joule).values()
+        return np.stack([np.abs(torque), power, -power, np.abs(speed), inertia, -inertia])
 
     def parts(state: Kinematics) -> FloatArray:
-        found = inverse_dynamics(state, masses, loads)
-        torque = _torque(state, masses, loads, spec, joule)
-        return np.stack([torque**2, torque * ratio * state.omega2, found.power * joule])
+        _, torque, power, _ = _motor_columns(state, masses, loads, spec, joule).values()
+        return np.stack([torque**2, power, inverse_dynamics(state, masses, loads).power * joule])
 
     (torque, power, back, speed, most, least), places = turn_peaks(study, sizes)
     square, mean, load = turn_means(study, parts)
-    yield Fact("motor_rpm_peak", "speed of the motor, largest", float(speed) * _RPM, "rpm")
+    yield Fact("motor_rpm_peak", "speed of the motor, largest", float(speed), "rpm")
     yield Fact("motor_torque_peak", "torque of the motor, largest", float(torque), "N m")
     label = "torque of the motor, largest: theta2"
     yield Fact("motor_torque_peak_theta2_deg", label, degrees(float(places[0])), "deg")
@@ -179,12 +165,9 @@ def _motor_facts(study: LinkageStudy, masses: Masses, loads: Loads, spec: MotorS
     yield Fact("motor_power_mean", "power of the motor, mean over time", mean, "W")
     if spec.gear_efficiency < 1:
         yield Fact("gear_loss_mean", "power lost in the gear, mean over time", mean - float(load), "W")
-    yield Fact(
-        "motor_load_inertia_least", "inertia of the linkage at the motor, least", -float(least), "kg m2"
-    )
-    yield Fact(
-        "motor_load_inertia_largest", "inertia of the linkage at the motor, largest", float(most), "kg m2"
-    )
+    label = "inertia of the linkage at the motor"
+    yield Fact("motor_load_inertia_least", f"{label}, least", -float(least), "kg m2")
+    yield Fact("motor_load_inertia_largest", f"{label}, largest", float(most), "kg m2")
     if spec.inertia > 0:
         label = "inertia of the linkage over that of the motor, largest"
         yield Fact("motor_inertia_ratio", label, float(most) / spec.inertia)

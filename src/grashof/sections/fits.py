@@ -28,13 +28,13 @@ def fits(study: LinkageStudy) -> Section | None:
         return None
     start, end, words = fit_motion(study)
     paths = list(_paths(study, start, end))
-    found = [path.fits for path in paths]
+    found = [(path, fit) for path in paths for fit in path.fits]
     tables = {
-        KEY: quality_table(paths, found),
-        f"{KEY}-coefficients": coefficient_table(paths, found),
+        KEY: quality_table(found),
+        f"{KEY}-coefficients": coefficient_table(found),
         f"{KEY}-points": _points(paths),
     }
-    plots = [plot for path, each in zip(paths, found, strict=True) for plot in _plots(study, path, each)]
+    plots = [plot for path in paths for plot in _plots(study, path, [fit for of, fit in found if of is path])]
     facts = tuple(_facts(tables[KEY], study.spec.unit))
     return Section(KEY, "Fits of paths", facts, tables, tuple(plots), tuple(_notes(study, paths, words)))
 
@@ -54,7 +54,7 @@ def fit_motion(study: LinkageStudy) -> tuple[float, float, str]:
             return start, end, "over the task motion"
     low, high = study.sweep.ranges[0]
     if study.sweep.turns:
-        return low, high, "over the whole turn"
+        return low, high, "over the full turn"
     part = "the full range of the driver" if len(study.sweep.ranges) == 1 else "its first range"
     return low + INSET, high - INSET, f"over {part}"
 
@@ -94,37 +94,21 @@ def _points(paths: list[FittedPath]) -> pd.DataFrame:
     return table
 
 
-def quality_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
+def quality_table(found: list[tuple[FittedPath, PathFit]]) -> pd.DataFrame:
     """Quality of each fit, a row each."""
-    return pd.DataFrame(
-        [
-            {
-                "path": path.label,
-                "fit": fit.of,
-                "by": _BY[fit.newton],
-                "degree": fit.degree,
-                "r2": fit.r2,
-                "error_points": fit.error_points,
-                "error_path": fit.error_path,
-            }
-            for path, each in zip(paths, found, strict=True)
-            for fit in each
-        ]
-    )
+    sizes = ("degree", "r2", "error_points", "error_path")
+    return pd.DataFrame([
+        {"path": path.label, "fit": fit.of, "by": _BY[fit.newton]} | {key: getattr(fit, key) for key in sizes}
+        for path, fit in found
+    ])  # fmt: skip
 
 
-def coefficient_table(paths: list[FittedPath], found: list[list[PathFit]]) -> pd.DataFrame:
+def coefficient_table(found: list[tuple[FittedPath, PathFit]]) -> pd.DataFrame:
     """Coefficients of powers of x or theta2 (rad) by least squares, divided differences by Newton.
 
     The latter belong to 1, (t - t0), (t - t0)(t - t1), ..., where t0 is the place of `first_point`.
     """
-    rows = [
-        {"path": path.label, **row}
-        for path, each in zip(paths, found, strict=True)
-        for fit in each
-        for row in _coefficients(fit)
-    ]
-    return pd.DataFrame(rows)
+    return pd.DataFrame([{"path": path.label, **row} for path, fit in found for row in _coefficients(fit)])
 
 
 def _coefficients(fit: PathFit) -> Iterator[dict[str, object]]:
@@ -146,13 +130,10 @@ def _plots(study: LinkageStudy, path: FittedPath, found: list[PathFit]) -> Itera
         (OF_THETA2, False, "parametric", "x and y by polynomials in theta2"),
         (OF_THETA2, True, "parametric-newton", "x and y by Newton interpolation over theta2"),
     ):
-        drawn = {
-            f"degree {fit.degree}": _near(path, fit.line)
-            for fit in found
-            if (fit.of, fit.newton) == (of, newton)
-        }
-        series, points = {"path": path.path, **drawn}, {"points fitted": path.points}
+        of_kind = [fit for fit in found if (fit.of, fit.newton) == (of, newton)]
+        series = {"path": path.path} | {f"degree {fit.degree}": _near(path, fit.line) for fit in of_kind}
         title = f"path of {path.label}: {what}"
+        points = {"points fitted": path.points}
         yield Plot(f"{KEY}-{key}-{path.key}", title, study.spec.unit, series, points=points)
 
 
@@ -168,13 +149,9 @@ def _facts(quality: pd.DataFrame, unit: str) -> Iterator[Fact]:
     best = quality[quality["degree"] == quality["degree"].max()]
     for (of, by), rows in best.groupby(["fit", "by"], sort=False):
         method = "regression" if by == _BY[False] else "newton"
+        key = f"fit_{method}_{'y_of_x' if of == Y_OF_X else 'of_theta2'}_error"
         label = f"paths by {by}, {of}, degree {rows['degree'].max()}: largest error"
-        yield Fact(
-            f"fit_{method}_{'y_of_x' if of == Y_OF_X else 'of_theta2'}_error",
-            label,
-            float(rows["error_path"].max()),
-            unit,
-        )
+        yield Fact(key, label, float(rows["error_path"].max()), unit)
 
 
 def _notes(study: LinkageStudy, paths: list[FittedPath], words: str) -> Iterator[str]:

@@ -21,7 +21,7 @@ from grashof.problems import AssemblyError, ProblemError, SolverError
 from grashof.problems.values.arrays import TURN
 from grashof.problems.values.checks import number_within
 from grashof.study.samples import TIME
-from grashof.study.section import Fact, Plot, Section
+from grashof.study.section import Fact, Plot, Section, angle_fact
 from grashof.study.study import LinkageStudy
 
 _NOTES = (
@@ -57,7 +57,10 @@ def _equilibrium_rows(study: LinkageStudy, found: Equilibria) -> pd.DataFrame:
         period = 1 / frequency
     return pd.DataFrame({
         "theta2_deg": np.degrees(found.theta2).round(9),
-        **{f"theta{link}_deg": np.degrees(state.angles[link]) for link in _output_links(study)},
+        **{  # of the second links of all dyads
+            f"theta{link.number}_deg": np.degrees(state.angles[link.number])
+            for link in study.linkage.mechanism.links[3::2]
+        },
         "p_x": state.p[:, 0],
         "p_y": state.p[:, 1],
         "stable": found.stiffness > 0,
@@ -66,11 +69,6 @@ def _equilibrium_rows(study: LinkageStudy, found: Equilibria) -> pd.DataFrame:
         "frequency_hz": frequency,
         "period_s": period,
     })  # fmt: skip
-
-
-def _output_links(study: LinkageStudy) -> tuple[int, ...]:
-    """The second links of all dyads."""
-    return tuple(link.number for link in study.linkage.mechanism.links[3::2])
 
 
 def _equilibrium_facts(table: pd.DataFrame) -> Iterator[Fact]:
@@ -160,14 +158,9 @@ def _release_facts(study: LinkageStudy, found: FreeResponse, parts: Energies) ->
     state, loads = found.state, study.loads
     yield Fact("release_ending", "free motion ended because", str(found.ending))
     yield Fact("release_seconds", "free motion lasted", found.end, "s")
-    turned = float(np.degrees(state.theta2[-1] - state.theta2[0]))
-    yield Fact("release_turned_deg", "driver turned by, from beginning to end", turned, "deg")
-    yield Fact(
-        "release_way_deg",
-        "driver turned, to and fro together",
-        float(np.degrees(_total_rotation(found))),
-        "deg",
-    )
+    turned = state.theta2[-1] - state.theta2[0]
+    yield angle_fact("release_turned", "driver turned by, from beginning to end", turned)
+    yield angle_fact("release_way", "driver turned, to and fro together", _total_rotation(found))
     kinetic = float(parts.kinetic.sum(axis=0).max())
     change = found.energy - found.energy[0]
     rubs = any(loads.friction.each(name).any() for name in ("viscous", "coulomb", "radius"))

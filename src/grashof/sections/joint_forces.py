@@ -61,9 +61,8 @@ def equations(study: LinkageStudy) -> Section | None:
         return None
     masses, title = study.masses, "System of equations"
     if masses is None:
-        return Section(
-            _EQUATIONS, title, notes=("the file states neither masses nor loads, so there are no forces",)
-        )
+        note = "the file states neither masses nor loads, so there are no forces"
+        return Section(_EQUATIONS, title, notes=(note,))
     theta2 = study.chosen
     state = study.sweep.state(theta2)
     system = system_of_equations(state, masses, study.loads)

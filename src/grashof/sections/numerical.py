@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -44,14 +45,11 @@ def newton_raphson(study: LinkageStudy) -> Section | None:
     }  # fmt: skip
     apart = np.abs(off).max(axis=0)
     same = apart < _OTHER
+    furthest = float(apart[same].max(initial=0.0))
+    label = "Newton-Raphson: largest difference from the closed form"
     facts = (
         Fact("newton_steps_max", "Newton-Raphson: most steps", int(np.nanmax(steps)) if known.any() else 0),
-        Fact(
-            "newton_difference_max_deg",
-            "Newton-Raphson: largest difference from the closed form",
-            float(apart[same].max(initial=0.0)),
-            "deg",
-        ),
+        Fact("newton_difference_max_deg", label, furthest, "deg"),
     )
     lines = {"theta3": _unwrapped(solved[0]), "theta4": _unwrapped(solved[1])}
     plots = (
@@ -134,9 +132,9 @@ def differences(study: LinkageStudy) -> Section | None:
         samples.plot(f"differences-{rate.key.replace('_', '-')}", rate.label, rate.unit, rate.lines)
         for rate in rates
     ]
-    return Section(
-        _DIFFERENCES, title, tuple(_deviation_facts(deviations)), tables, tuple(plots), _notes(study)
-    )
+    towards = "towards a dead position no step is small enough: rates grow without bound there"
+    notes = () if study.sweep.turns else (towards,)
+    return Section(_DIFFERENCES, title, tuple(_deviation_facts(deviations)), tables, tuple(plots), notes)
 
 
 def _even_samples(study: LinkageStudy) -> tuple[Samples, list[_Part]]:
@@ -159,29 +157,27 @@ def _rates(study: LinkageStudy, parts: list[_Part]) -> Iterator[Rate]:
         angles = [np.unwrap(getattr(part.state, f"theta{link}")) for part in parts]
         for derivative, (name, unit) in enumerate(_ANGULAR, start=1):
             exact = [getattr(part.state, f"{name}{link}") for part in parts]
-            yield _rate((f"{name}{link}", f"{name}{link}", unit), derivative, angles, exact, parts)
+            yield _rate(parts, (f"{name}{link}", f"{name}{link}", unit), derivative, angles, exact)
     centres = [centres_of(study, part.state) for part in parts]
     for key, label in centre_labels(study).items():
         places = [each[key].position for each in centres]
         for derivative, (name, per) in enumerate(_LINEAR, start=1):
             exact = [getattr(each[key], name) for each in centres]
             named = (f"{key}_{name}", f"{name} of {label}", f"{study.spec.unit}{per}")
-            yield _rate(named, derivative, places, exact, parts)
+            yield _rate(parts, named, derivative, places, exact)
 
 
 def _rate(
+    parts: list[_Part],
     named: tuple[str, str, str],
     derivative: int,
     places: list[FloatArray],
     exact: list[FloatArray],
-    parts: list[_Part],
 ) -> Rate:
-    by_order = {
-        order: _joined(
-            parts, [_by_time(*pair, derivative, order) for pair in zip(parts, places, strict=True)]
-        )
-        for order in ORDERS
-    }
+    pairs = list(zip(parts, places, strict=True))
+    by_order = dict[int, FloatArray]()
+    for order in ORDERS:
+        by_order[order] = _joined(parts, [_by_time(*pair, derivative, order) for pair in pairs])
     return Rate(*named, derivative, _joined(parts, exact), by_order)
 
 
@@ -190,9 +186,8 @@ def _by_time(part: _Part, values: FloatArray, derivative: int, order: int) -> Fl
     found = central_differences(part.at, values, derivative, order)
     if part.over_time:
         return found
-    omega2, alpha2 = (
-        each if values.ndim == 1 else each[:, None] for each in (part.state.omega2, part.state.alpha2)
-    )
+    shape = (-1,) + (1,) * (values.ndim - 1)
+    omega2, alpha2 = np.reshape(part.state.omega2, shape), np.reshape(part.state.alpha2, shape)
     if derivative == 1:
         return found * omega2
     return found * omega2**2 + central_differences(part.at, values, 1, order) * alpha2
@@ -206,21 +201,21 @@ def _joined(parts: list[_Part], values: list[FloatArray]) -> FloatArray:
 def _deviations(samples: Samples, rates: list[Rate]) -> pd.DataFrame:
     """The largest deviation of each rate by differences, its place, and its share of the peak."""
     rows = []
-    for rate in rates:
-        for order in ORDERS:
-            off = rate.deviation(order)
-            worst = int(np.argmax(np.where(np.isfinite(off), off, -1.0)))
-            size = _size(rate.exact)
-            peak = float(np.max(size[np.isfinite(size)], initial=0.0))
-            named: dict[str, object] = {
-                "quantity": rate.label,
-                "unit": rate.unit,
-                "derivative": rate.derivative,
-                "order": order,
-            }
-            share = float(off[worst]) / peak if peak > 0 else 0.0
-            where = {key: float(values[worst]) for key, values in samples.columns.items()}
-            rows.append(named | {"largest": float(off[worst]), "share": share} | where)
+    for rate, order in product(rates, ORDERS):
+        off = rate.deviation(order)
+        worst = int(np.argmax(np.where(np.isfinite(off), off, -1.0)))
+        largest = float(off[worst])
+        size = _size(rate.exact)
+        peak = float(np.max(size[np.isfinite(size)], initial=0.0))
+        row: dict[str, object] = {
+            "quantity": rate.label,
+            "unit": rate.unit,
+            "derivative": rate.derivative,
+            "order": order,
+            "largest": largest,
+            "share": largest / peak if peak > 0 else 0.0,
+        }
+        rows.append(row | {key: float(values[worst]) for key, values in samples.columns.items()})
     return pd.DataFrame(rows)
 
 
@@ -230,12 +225,6 @@ def _deviation_facts(deviations: pd.DataFrame) -> Iterator[Fact]:
             rows = deviations[(deviations["derivative"] == derivative) & (deviations["order"] == order)]
             label = f"{name} by central differences of order {order}: largest error, as a share of the peak"
             yield Fact(f"differences_{name}_order_{order}", label, float(rows["share"].max()))
-
-
-def _notes(study: LinkageStudy) -> tuple[str, ...]:
-    if study.sweep.turns:
-        return ()
-    return ("towards a dead position no step is small enough: rates grow without bound there",)
 
 
 def _components(values: FloatArray, name: str, name_of_axis: str) -> dict[str, FloatArray]:

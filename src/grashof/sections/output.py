@@ -24,10 +24,10 @@ from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.study.quantities import counted_on, counted_with
 from grashof.study.samples import Columns, curves, over_driver, table
-from grashof.study.section import FROM_FIRST_PAIR, Fact, Plot, Section
+from grashof.study.section import FROM_FIRST_PAIR, Fact, Plot, Section, angle_fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
-from grashof.study.turn import degrees, turn_extremes
+from grashof.study.turn import degrees, extreme_facts, turn_extremes
 
 _AT_REST = 1e-9  # |omega4 / omega2| below which the output is at rest
 
@@ -43,11 +43,9 @@ def function_section(study: LinkageStudy) -> Section | None:
     if curves is None:
         return None
     at_pairs = function_curves(study.linkage, task, verdict, at=task.driver_turns)
-    places, shown, unit = (
-        np.degrees(curves.turned),
-        task.counted_in.shown,
-        task.counted_in.of(problem.length_unit),
-    )
+    places = np.degrees(curves.turned)
+    shown = task.counted_in.shown
+    unit = task.counted_in.of(problem.length_unit)
     output = {"wanted": shown * curves.wanted, "generated": shown * curves.generated}
     plots = tuple(
         Plot(key, title, unit, lines, places, FROM_FIRST_PAIR, bounded=True)
@@ -78,10 +76,8 @@ def _function_facts(task: Task, verdict: Verdict, unit: str) -> Iterator[Fact]:
         yield Fact(f"{key}{ending}", label, float(task.counted_in.shown * getattr(verdict, key)), unit)
         if key == "structural_error_max":
             where = f"{label}: driver rotation from the first pair"
-            yield Fact(
-                "structural_error_at_deg", where, float(np.degrees(verdict.structural_error_at)), "deg"
-            )
-    yield Fact("theta2_first_deg", "theta2 at the first pair", float(np.degrees(verdict.theta2[0])), "deg")
+            yield angle_fact("structural_error_at", where, verdict.structural_error_at)
+    yield angle_fact("theta2_first", "theta2 at the first pair", verdict.theta2[0])
     yield Fact("driver_sense", "sense of the driver (1: counter-clockwise)", verdict.direction)
 
 
@@ -106,18 +102,16 @@ def dwell_section(study: LinkageStudy) -> Section | None:
     theta, key = f"theta{study.output}", f"theta{study.output}_deg"
     columns = over_driver(study, lambda state: {key: counted_on(np.degrees(getattr(state, theta)), 360.0)})
     swing = float(np.nanmin(columns[key])), float(np.nanmax(columns[key]))
-    numbered = enumerate(found, start=1)
-    facts = tuple(fact for number, rest in numbered for fact in _dwell_facts(study, rest, number, swing))
+    facts = [fact for n, rest in enumerate(found, start=1) for fact in _dwell_facts(study, rest, n, swing)]
     at = columns["theta2_deg"]
     dwelling = np.zeros(at.shape, dtype=bool)
     for rest in found:
         start, end = np.degrees([rest.start, rest.end])
         dwelling |= (at - start) % 360 <= end - start if study.sweep.turns else (at >= start) & (at <= end)
     columns["dwelling"] = np.where(dwelling, columns[key], np.nan)
-    labels = {theta: key, "dwell": "dwelling"}
     title = f"dwell of link {study.output} within {study.asked.dwell_deg:g} deg"
-    plot = curves(columns, "dwell", title, "deg", labels)
-    return Section("dwell", "Dwell", facts, {}, (plot,))
+    plot = curves(columns, "dwell", title, "deg", {theta: key, "dwell": "dwelling"})
+    return Section("dwell", "Dwell", tuple(facts), {}, (plot,))
 
 
 def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
@@ -133,13 +127,12 @@ def _rest(study: LinkageStudy, band: float, low: float, high: float) -> Dwell:
 
 
 def _dwell_facts(study: LinkageStudy, rest: Dwell, number: int, swing: tuple[float, float]) -> Iterator[Fact]:
-    many = len(study.sweep.ranges) > 1
-    mark, where = (f"_{number}", f", range {number}") if many else ("", "")
+    mark, where = (f"_{number}", f", range {number}") if len(study.sweep.ranges) > 1 else ("", "")
     theta = f"theta{study.output}"
     what = f"dwell of {theta} within {study.asked.dwell_deg:g} deg{where}"
-    yield Fact(f"dwell{mark}_deg", f"{what}: turn of the driver", float(np.degrees(rest.duration)), "deg")
+    yield angle_fact(f"dwell{mark}", f"{what}: turn of the driver", rest.duration)
     for name, angle in (("from", rest.start), ("to", rest.end)):
-        yield Fact(f"dwell{mark}_{name}_deg", f"{what}: {name} theta2", float(np.degrees(angle)), "deg")
+        yield angle_fact(f"dwell{mark}_{name}", f"{what}: {name} theta2", angle)
     middle = float(np.degrees(rest.low + rest.high)) / 2
     turned = counted_with(middle, [swing], 360.0) - middle
     for name, angle in (("low", rest.low), ("high", rest.high)):
@@ -200,10 +193,7 @@ def _ratio_facts(study: LinkageStudy) -> Iterator[Fact]:
     linkage, n = study.linkage, study.output
     if study.sweep.turns:
         found = turn_extremes(study, lambda state: advantage(linkage, state.theta2).velocity_ratio)
-        for name, ratio, at in (("least", found.low, found.at_low), ("largest", found.high, found.at_high)):
-            label = f"velocity ratio omega{n} / omega2, {name}"
-            yield Fact(f"velocity_ratio_{name}", label, ratio)
-            yield Fact(f"velocity_ratio_{name}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
+        yield from extreme_facts("velocity_ratio", f"velocity ratio omega{n} / omega2", found)
         if most := max(abs(found.low), abs(found.high)):
             yield Fact("mechanical_advantage_least", f"mechanical advantage |T{n} / T2|, least", 1 / most)
     if len(linkage.mechanism.dyads) == 1:

@@ -28,18 +28,21 @@ def over_time(study: LinkageStudy) -> Section | None:
         Fact("history_turns", "history over time: turns of the driver", turns),
     )
     tables = {"over-time": samples.table(columns)}
-    return Section(
-        "over-time", "Over time", facts, tables, _plots(study, history, columns), _notes(study, history)
-    )
+    plots = _plots(study, samples, columns)
+    notes: tuple[str, ...] = ()
+    if not history.complete:
+        end = f"the history ends after {history.time[-1]:.6g} s"
+        notes = (f"{end}, before the dead position that the driver reaches: it moves {study.reach}",)
+    return Section("over-time", "Over time", facts, tables, plots, notes)
 
 
-def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
-    samples, unit = Samples.over_time(study, history), study.spec.unit
+def _plots(study: LinkageStudy, samples: Samples, columns: dict[str, FloatArray]) -> tuple[Plot, ...]:
+    unit = study.spec.unit
     moving, links = study.linkage.mechanism.moving, turning(study.linkage.mechanism)
     speeds, accelerations = (
         {name.upper(): f"{name}_{size}" for name in moving} for size in ("speed", "acceleration")
     )
-    time, wrapped = sawtooth(history.time, columns["theta2_total_deg"])
+    time, wrapped = sawtooth(samples.places, columns["theta2_total_deg"])
     driver = Plot("theta2-over-time", "driver angle theta2 over time", "deg", {"theta2": wrapped}, time, TIME)
     rows = [
         ("theta2-total", "driver angle, counted on", "deg", {"theta2": "theta2_total_deg"}),
@@ -59,13 +62,6 @@ def _plots(study: LinkageStudy, history: History, columns: dict[str, FloatArray]
         for key, title, of, names in rows
         if (drawn := {label: columns[column] for label, column in names.items() if column in columns})
     )
-
-
-def _notes(study: LinkageStudy, history: History) -> tuple[str, ...]:
-    if history.complete:
-        return ()
-    end = f"the history ends after {history.time[-1]:.6g} s"
-    return (f"{end}, before the dead position that the driver reaches: it moves {study.reach}",)
 
 
 def sawtooth(time: FloatArray, angle_deg: FloatArray) -> tuple[FloatArray, FloatArray]:

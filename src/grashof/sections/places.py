@@ -55,11 +55,8 @@ def mass_table(study: LinkageStudy) -> pd.DataFrame:
         if given.density is not None and given.section is not None and link.number in bars:
             volume = given.section.areas[link.number - 2] * float(bars[link.number].reach)
             row |= {"density": given.density, "volume_m3": volume * study.metre**3}
-        rows.append(
-            row
-            | {"mass": float(body.mass), "centre_u": u, "centre_v": v}
-            | {"inertia_kg_m2": float(body.inertia) * study.metre**2}
-        )
+        row |= {"mass": float(body.mass), "centre_u": u, "centre_v": v}
+        rows.append(row | {"inertia_kg_m2": float(body.inertia) * study.metre**2})
     return pd.DataFrame([*rows, {"link": "all", "mass": float(masses.total)}])
 
 
@@ -76,10 +73,8 @@ def centres_of(study: LinkageStudy, state: Kinematics) -> dict[str, PointMotion]
 
 def centre_labels(study: LinkageStudy) -> dict[str, str]:
     """The names of `centres_of` in words."""
-    labels = {
-        f"g{link.number}": f"the centre of link {link.number}" for link in study.linkage.mechanism.links[1:]
-    }
-    masses = study.masses
+    masses, links = study.masses, study.linkage.mechanism.links[1:]
+    labels = {f"g{link.number}": f"the centre of link {link.number}" for link in links}
     return labels | ({"g": "the system's centre"} if masses is not None and masses.total > 0 else {})
 
 
@@ -90,15 +85,13 @@ def _centre_motion(study: LinkageStudy, samples: Samples) -> tuple[pd.DataFrame,
     for name, label in centre_labels(study).items():
         for rate, suffix, per in _RATES:
             xy = study.joined([getattr(motion[name], rate) for motion in motions])
-            keys = [f"{name}_{suffix}{'_' if suffix else ''}{axis}" for axis in "xy"]
-            columns |= dict(zip(keys, xy.T, strict=True))
+            columns |= components(f"{name}_{suffix}" if suffix else name, xy)
             if suffix:
                 size = columns[f"{name}_{_SIZES[suffix]}"] = np.hypot(*xy.T)
                 sizes[suffix][label.removeprefix("the ")] = size
-            title, unit = f"{suffix or 'place'} of {label}", f"{study.spec.unit}{per}"
-            plots.append(
-                samples.plot(f"{name}-{suffix or 'place'}", title, unit, dict(zip("xy", xy.T, strict=True)))
-            )
+            what, lines = suffix or "place", dict(zip("xy", xy.T, strict=True))
+            title, unit = f"{what} of {label}", f"{study.spec.unit}{per}"
+            plots.append(samples.plot(f"{name}-{what}", title, unit, lines))
     for (rate, each), unit in zip(sizes.items(), ("/s", "/s²"), strict=True):
         size, key = _SIZES[rate], f"centres-{_SIZES[rate]}"
         plots.append(samples.plot(key, f"{size} of the centres", f"{study.spec.unit}{unit}", each))

@@ -29,6 +29,7 @@ from grashof.problems.values.dynamics.pumping_unit import PumpingUnitSpec
 from grashof.study.samples import line
 from grashof.study.section import Fact, Plot, Section
 from grashof.study.study import LinkageStudy
+from grashof.study.turn import degrees
 
 _ANGLE = "API crank angle (deg)"
 _ROWS = np.arange(0.0, 360.0, 15.0)
@@ -41,23 +42,18 @@ def pumping_unit(study: LinkageStudy) -> Section | None:
     given, arm = study.spec.pumping_unit, study.spec.output_arm
     if given is None or arm is None:
         return None
-    rods = _Rods(
-        study, given, arm, rod_load(given) or _load_of_file(study, given, arm), beam_limits(study.four_bar)
-    )
+    load = rod_load(given) or _load_of_file(study, given, arm)
+    rods = _Rods(study, given, arm, load, beam_limits(study.four_bar))
     columns = rods.columns(np.radians(_FINE))
     notes = ["crank angles are clockwise from 12 o'clock, seen with the well to the right"]
     if rods.load is None:
         notes.append("no load on the polished rod is stated, so the reducer's torque is not known")
     if study.spec.dynamics is not None and study.sweep.speed_rpm * given.sense * given.side > 0:
         notes.append(f"this view turns the crank {given.crank}; speed_rpm turns it the other way")
-    return Section(
-        "pumping-unit",
-        "Pumping unit",
-        (*rods.motion_facts(), *rods.torque_facts()),
-        {"pumping-unit": pd.DataFrame(rods.columns(np.radians(_ROWS))).replace([np.inf, -np.inf], np.nan)},
-        tuple(_plots(columns, study.spec.unit)),
-        tuple(notes),
-    )
+    table = pd.DataFrame(rods.columns(np.radians(_ROWS))).replace([np.inf, -np.inf], np.nan)
+    facts = (*rods.motion_facts(), *rods.torque_facts())
+    plots = tuple(_plots(columns, study.spec.unit))
+    return Section("pumping-unit", "Pumping unit", facts, {"pumping-unit": table}, plots, tuple(notes))
 
 
 def _load_of_file(study: LinkageStudy, unit: PumpingUnitSpec, arm: float) -> Load | None:
@@ -127,7 +123,7 @@ class _Rods:
         for name, value, at in (("up", found.high, found.at_high), ("down", found.low, found.at_low)):
             label = f"torque factor, largest on the {name} stroke"
             yield Fact(f"torque_factor_{name}", label, value, unit)
-            yield Fact(f"torque_factor_{name}_crank_deg", f"{label}: crank angle", _degrees(at), "deg")
+            yield Fact(f"torque_factor_{name}_crank_deg", f"{label}: crank angle", degrees(at), "deg")
         factor = float(self.motion(np.array([np.pi / 2])).torque_factor[0])
         yield Fact("torque_factor_at_crank_90_deg", "torque factor at crank angle 90 deg", factor, unit)
 
@@ -138,7 +134,7 @@ class _Rods:
         for name, value, at in (("largest", found.high, found.at_high), ("least", found.low, found.at_low)):
             yield Fact(f"gearbox_torque_{name}", f"gearbox torque, {name}", value, "N m")
             label = f"gearbox torque, {name}: crank angle"
-            yield Fact(f"gearbox_torque_{name}_crank_deg", label, _degrees(at), "deg")
+            yield Fact(f"gearbox_torque_{name}_crank_deg", label, degrees(at), "deg")
         if self.unit.rating is not None:
             share = max(abs(found.low), abs(found.high)) / self.unit.rating
             yield Fact("gearbox_load", "gearbox torque as a share of the rating", share)
@@ -186,10 +182,6 @@ class _Rods:
 
 def _extremes(curve: Callable[[FloatArray], FloatArray]) -> Extremes:
     return extremes_of(curve, 0.0, TURN, closed=True)
-
-
-def _degrees(crank: float) -> float:
-    return float(np.round(np.degrees(crank) % 360, 9))
 
 
 def _plots(columns: dict[str, FloatArray], unit: str) -> Iterator[Plot]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pandas as pd
@@ -11,6 +11,8 @@ from grashof.analysis import (
     BAR_MEASURES,
     PIN_MEASURES,
     Kinematics,
+    SafetyFactor,
+    StrengthPeak,
     StrengthSummary,
     Structure,
     driver_samples,
@@ -34,9 +36,11 @@ def strength(study: LinkageStudy) -> Section | None:
     stretches = [driver_samples(study.linkage, low, high) for low, high in study.sweep.ranges]
     summary = strength_over(structure, study.sweep.state, stretches)
     plots, facts = tuple(_plots(study, columns)), tuple(_facts(study, summary))
-    tables = {"strength": table(columns), "strength-peaks": _peaks(study, summary)}
+    peaks = _worst_table(summary.peaks, "what", "largest")
+    peaks.insert(3, "unit", [_unit(study, peak.unit) for peak in summary.peaks])
+    tables = {"strength": table(columns), "strength-peaks": peaks}
     if summary.factors:
-        tables["safety"] = _safety(summary)
+        tables["safety"] = _worst_table(summary.factors, "failure", "safety_factor")
     notes = ["bars are straight and even; holes, notches, fatigue and impact are left out"]
     if not study.sweep.turns:
         notes.append("towards dead positions forces grow without bound, so that there are no greatest ones")
@@ -59,13 +63,9 @@ def _columns(state: Kinematics, structure: Structure) -> Columns:
 
 def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
     """A plot for each measure, with a line for each bar or joint."""
-    for measures, parts in (
-        (
-            BAR_MEASURES,
-            {str(link.number): f"link {link.number}" for link in study.linkage.mechanism.links[1:]},
-        ),
-        (PIN_MEASURES, {joint.name.lower(): joint.name for joint in joints_of(study.linkage)}),
-    ):
+    bars = {str(link.number): f"link {link.number}" for link in study.linkage.mechanism.links[1:]}
+    pins = {joint.name.lower(): joint.name for joint in joints_of(study.linkage)}
+    for measures, parts in ((BAR_MEASURES, bars), (PIN_MEASURES, pins)):
         for measure in measures:
             labels = {label: f"{measure.key}_{part}" for part, label in parts.items()}
             if all(key in columns for key in labels.values()):
@@ -73,31 +73,17 @@ def _plots(study: LinkageStudy, columns: Columns) -> Iterator[Plot]:
                 yield curves(columns, key, measure.label, _unit(study, measure.unit), labels)
 
 
-def _peaks(study: LinkageStudy, summary: StrengthSummary) -> pd.DataFrame:
+def _worst_table(found: Iterable[StrengthPeak | SafetyFactor], label: str, value: str) -> pd.DataFrame:
+    """A row for each, with these headings for its label and value."""
     rows = [
         {
-            "part": peak.part,
-            "what": peak.label,
-            "largest": peak.value,
-            "unit": _unit(study, peak.unit),
-            "theta2_deg": _degrees(peak.place),
-            "at": peak.at,
+            "part": each.part,
+            label: each.label,
+            value: each.value,
+            "theta2_deg": _degrees(each.place),
+            "at": each.at,
         }
-        for peak in summary.peaks
-    ]
-    return pd.DataFrame(rows).replace([np.inf, -np.inf], np.nan)
-
-
-def _safety(summary: StrengthSummary) -> pd.DataFrame:
-    rows = [
-        {
-            "part": factor.part,
-            "failure": factor.label,
-            "safety_factor": factor.value,
-            "theta2_deg": _degrees(factor.place),
-            "at": factor.at,
-        }
-        for factor in summary.factors
+        for each in found
     ]
     return pd.DataFrame(rows).replace([np.inf, -np.inf], np.nan)
 

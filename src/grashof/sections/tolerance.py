@@ -28,23 +28,25 @@ def tolerance(study: LinkageStudy) -> Section | None:
     unit = study.spec.unit
     columns = over_driver(study, lambda state: _columns(state, off))
     each = {dimension: f"p_{dimension}" for dimension in study.linkage.mechanism.dimensions}
-    output = study.output
-    turns = {dimension: f"theta{output}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
-    together = {"worst": "p_worst", "root of squares": "p_rms"}
-    turned = {"worst": f"theta{output}_worst_deg", "root of squares": f"theta{output}_rms_deg"}
-    plots: tuple[Plot, ...] = (
-        curves(columns, "tolerance-of-p", "move of P, one dimension off", unit, each),
-        curves(columns, "tolerance-of-p-all", "move of P, all dimensions off", unit, together),
-    )
+    plots = _plots(columns, "p", "move of P", unit, each)
     if output_turns(study.linkage.mechanism):
-        key, what = f"tolerance-of-theta{output}", f"turn of link {output}"
-        plots += (
-            curves(columns, key, f"{what}, one dimension off", "deg", turns),
-            curves(columns, f"{key}-all", f"{what}, all dimensions off", "deg", turned),
-        )
+        theta = f"theta{study.output}"
+        what = f"turn of link {study.output}"
+        turns = {dimension: f"{theta}_{dimension}_deg" for dimension in _of_loops(study.linkage)}
+        plots += _plots(columns, theta, what, "deg", turns)
     facts = (Fact("tolerance", "each dimension is off by", off, unit), *_facts(study, off))
     notes = ("the driver angle is held; moves are linear in the tolerance, without limit in dead positions",)
     return Section("tolerance", "Inexact dimensions", facts, {"tolerance": table(columns)}, plots, notes)
+
+
+def _plots(columns: Columns, key: str, what: str, unit: str, each: dict[str, str]) -> tuple[Plot, ...]:
+    """Displacements by each dimension alone, and by all of them."""
+    ending = "_deg" if unit == "deg" else ""
+    together = {"worst": f"{key}_worst{ending}", "root of squares": f"{key}_rms{ending}"}
+    return (
+        curves(columns, f"tolerance-of-{key}", f"{what}, one dimension off", unit, each),
+        curves(columns, f"tolerance-of-{key}-all", f"{what}, all dimensions off", unit, together),
+    )
 
 
 def _columns(state: Kinematics, off: float) -> Columns:

@@ -83,9 +83,8 @@ class Asked:
         for index, angle in enumerate(self.at_deg):
             number_within(angle, -_MOST_DEGREES, _MOST_DEGREES, f"at_deg[{index}]")
         if len(self.at_deg) > _MOST_PLACES:
-            raise ProblemError(
-                f"at_deg has {len(self.at_deg)} driver angles; it may have up to {_MOST_PLACES}"
-            )
+            count = len(self.at_deg)
+            raise ProblemError(f"at_deg has {count} driver angles; it may have up to {_MOST_PLACES}")
         for name in self.sections:
             if name not in ON_REQUEST:
                 raise wrong_value("sections", name, f"some of {', '.join(ON_REQUEST)}")
@@ -111,9 +110,8 @@ class Asked:
 
     def _check_fit(self) -> None:
         if (self.fit_from_deg is None) != (self.fit_to_deg is None):
-            given, absent = (
-                ("fit_from_deg", "fit_to_deg") if self.fit_to_deg is None else ("fit_to_deg", "fit_from_deg")
-            )
+            names = "fit_from_deg", "fit_to_deg"
+            given, absent = names if self.fit_to_deg is None else names[::-1]
             raise ProblemError(f"{given} is given without {absent}; give both")
         if self.fit_from_deg is not None and self.fit_to_deg is not None:
             span = abs(self.fit_to_deg - self.fit_from_deg)

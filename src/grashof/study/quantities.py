@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from operator import attrgetter
 
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import (
-    Kinematics,
-    inverse_dynamics,
-    solve_kinematics,
-    transmission_angle,
-)
+from grashof.analysis import Kinematics, inverse_dynamics, solve_kinematics, transmission_angle
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
@@ -24,7 +19,6 @@ from grashof.study.study import LinkageStudy
 
 Curve = Callable[[Kinematics], FloatArray]
 _DEAD = 1e-7  # rad: transmission angle that rounding of the driver angle leaves in a dead position
-_RATES = (("velocity", "/s"), ("acceleration", "/s2"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +65,12 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
         for n in driven
     ]
     if kind.slides:
-        found += _slide_quantities(unit)
+        part = partial(_part_of, attrgetter("slide"))
+        found.append(Quantity("slide_travel", "travel of the slide", unit, part("travel"), position=True))
+        found += [
+            Quantity(f"slide_{rate}", f"{rate} of the slide", f"{unit}{per}", part(rate))
+            for rate, per in (("velocity", "/s"), ("acceleration", "/s2"))
+        ]
     for name in kind.moving:
         point, moves = name.upper(), lru_cache(maxsize=2)(attrgetter(name))
         place = _part_of(moves, "position")
@@ -92,21 +91,6 @@ def kinematic_quantities(spec: LinkageSpec) -> list[Quantity]:
     return found
 
 
-def _slide_quantities(unit: str) -> list[Quantity]:
-    """Travel of a slide, and its rates."""
-
-    def part(name: str) -> Curve:
-        return lambda s: np.asarray(getattr(s.slide, name))
-
-    return [
-        Quantity("slide_travel", "travel of the slide", unit, part("travel"), position=True),
-        *(
-            Quantity(f"slide_{rate}", f"{rate} of the slide", f"{unit}{per}", part(rate))
-            for rate, per in _RATES
-        ),
-    ]
-
-
 def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
     """Torque, power and forces in N m, W and N, whatever the length unit; empty without masses or loads."""
     masses = study.masses
@@ -115,9 +99,7 @@ def dynamic_quantities(study: LinkageStudy) -> list[Quantity]:
     metre, loads = study.metre, study.loads
 
     solved = lru_cache(maxsize=2)(lambda s: inverse_dynamics(s, masses, loads))
-
-    def of(name: str) -> Curve:
-        return _part_of(solved, name)
+    of = partial(_part_of, solved)
 
     def force(joint: int) -> Curve:
         return lambda s: np.asarray(solved(s).forces[joint])

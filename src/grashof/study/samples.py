@@ -103,10 +103,8 @@ class Samples:
         angles = None if self.over == DRIVER_ANGLE else self.columns["theta2_deg"]
         shown = np.array if self.turns else line
         finite = {label: shown(values) for label, values in series.items()}
-        return Plot(
-            f"{key}{self.mark}", f"{title}{self.words}", unit, finite, self.places, self.over, angles=angles,
-            bounded=self.turns,
-        )  # fmt: skip
+        key, title = f"{key}{self.mark}", f"{title}{self.words}"
+        return Plot(key, title, unit, finite, self.places, self.over, angles=angles, bounded=self.turns)
 
     def table(self, columns: Mapping[str, FloatArray]) -> pd.DataFrame:
         """A row for each sample; empty where a value is not finite."""

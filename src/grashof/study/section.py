@@ -37,6 +37,11 @@ class Fact:
     aside: bool = False
 
 
+def angle_fact(key: str, label: str, angle: float | FloatArray) -> Fact:
+    """A fact about an angle, rad, which is stated in deg; `_deg` is appended to the key."""
+    return Fact(f"{key}_deg", label, float(np.degrees(angle)), "deg")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plot:
     """Curves over a common axis, or tracks in a plane.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from grashof.analysis import (
     DriverLaw,
-    DriverMotion,
     Kinematics,
     dead_ends,
     driver_ranges,
@@ -26,7 +25,7 @@ from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.second_loop import cut, recurring
 from grashof.analysis.mechanism.transmission import quality
 from grashof.problems import DeadPositionWarning, Linkage, LinkageSpec, ProblemError
-from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import GREATEST, number_within
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.mechanisms import NOISE
@@ -78,32 +77,28 @@ class Sweep:
 
     def state(self, theta2: FloatArray) -> Kinematics:
         """Kinematics at driver angles, rad, of any range."""
-        first, *others = self.laws
-        motion = first.at_angle(theta2)
-        for law, ends in zip(others, self.ranges[1:], strict=True):
-            inside, pairs = _within(theta2, ends), zip(law.at_angle(theta2), motion, strict=True)
-            motion = DriverMotion(*(np.where(inside, *pair) for pair in pairs))
+        motion = self._by_range(theta2, [law.at_angle(theta2) for law in self.laws])
         return solve_kinematics(self.spec.linkage, *motion)
 
     def time(self, theta2: FloatArray) -> FloatArray:
         """Time from the start of a turn, or of a range, at driver angles, s; NaN at no speed."""
-        first, *others = self.laws
-        time = first.time_at(theta2)
-        for law, ends in zip(others, self.ranges[1:], strict=True):
-            time = np.where(_within(theta2, ends), law.time_at(theta2), time)
-        return time
+        return self._by_range(theta2, [(law.time_at(theta2),) for law in self.laws])[0]
+
+    def _by_range(self, theta2: FloatArray, found: Sequence[Iterable[FloatArray]]) -> list[FloatArray]:
+        """At driver angles the values of the last range that has them, or else those of the first."""
+        chosen = list(found[0])
+        for values, (low, high) in zip(found[1:], self.ranges[1:], strict=True):
+            inside = (np.asarray(theta2) >= low) & (np.asarray(theta2) <= high)
+            chosen = [np.where(inside, *pair) for pair in zip(values, chosen, strict=True)]
+        return chosen
 
     @property
     def laws(self) -> list[DriverLaw]:
         """The motion of the driver through each range: upwards, or downwards where it turns clockwise."""
         dynamics, omega2 = self.spec.dynamics, self.speed_rpm * TURN / 60
         motor = (dynamics.motor if dynamics is not None else None) or MotorSpec()
-        return [
-            DriverLaw(low, high - low, omega2, motor)
-            if omega2 >= 0
-            else DriverLaw(high, low - high, omega2, motor)
-            for low, high in self.ranges
-        ]
+        ends = self.ranges if omega2 >= 0 else [(high, low) for low, high in self.ranges]
+        return [DriverLaw(start, end - start, omega2, motor) for start, end in ends]
 
     def states(self) -> list[Kinematics]:
         """Kinematics of each range at every degree, or at as many angles between dead positions."""
@@ -128,11 +123,6 @@ class Sweep:
             far = np.diff(motion.share(angles)).max() > _FAR
             between = motion.theta2(np.linspace(0, 1, _STEPS + 1)) if far else angles[:0]
             yield np.unique(np.concatenate([angles, between]))
-
-
-def _within(theta2: FloatArray, ends: tuple[float, float]) -> BoolArray:
-    inside: BoolArray = (np.asarray(theta2) >= ends[0]) & (np.asarray(theta2) <= ends[1])
-    return inside
 
 
 def driver_angles(low: float, high: float, steps: int, *, even: bool) -> FloatArray:

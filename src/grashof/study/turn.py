@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -10,9 +10,11 @@ from grashof.analysis import Extremes, Kinematics, driver_samples, even_motion, 
 from grashof.analysis.mechanism.driver_law import mean_in_time
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems.values.arrays import TURN, FloatArray
+from grashof.study.section import Fact
 from grashof.study.study import LinkageStudy
 
-_CONSTANT = 1e-12  # difference of least and largest value, as a share
+ENDS = ("least", "largest")
+_CONSTANT = 1e-12  # difference of least and largest value, as a share: less is rounding
 Rows = Callable[[Kinematics], FloatArray]  # of states, shape (N,), shape (R, N)
 
 
@@ -52,9 +54,15 @@ def turn_means(study: LinkageStudy, rows: Rows) -> FloatArray:
     return mean
 
 
-def varies(found: Extremes) -> bool:
-    """Whether a quantity varies by more than rounding, so that its extremes have driver angles."""
-    return found.stroke > _CONSTANT * max(abs(found.low), abs(found.high))
+def extreme_facts(
+    key: str, label: str, found: Extremes, unit: str = "", scale: float = 1.0, ends: tuple[str, ...] = ENDS
+) -> Iterator[Fact]:
+    """Least and largest value, or one of them, with their driver angles where the quantity varies."""
+    for end, value, at in zip(ENDS, (found.low, found.high), (found.at_low, found.at_high), strict=True):
+        if end in ends:
+            yield Fact(f"{key}_{end}", f"{label}, {end}", value * scale, unit)
+            if found.stroke > _CONSTANT * max(abs(found.low), abs(found.high)):
+                yield Fact(f"{key}_{end}_theta2_deg", f"{label}, {end}: theta2", degrees(at), "deg")
 
 
 def degrees(theta2: float) -> float:

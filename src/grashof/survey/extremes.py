@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -85,7 +86,7 @@ class _Samples:
         if period is not None and turns and abs(values[-1] - values[0]) > period / 2:
             return None
         if not quantity.never_negative:
-            found = refined(lambda at: self.curve(quantity, at), self.at, values, turns, period)
+            found = refined(partial(self.curve, quantity), self.at, values, turns, period)
             low, high = found.low, found.high
         else:  # a magnitude has a kink near 0, its square has not
             found = refined(lambda at: self.curve(quantity, at) ** 2, self.at, values**2, turns)
@@ -200,7 +201,7 @@ def _with_digits_that_hold(part: _Range, quantity: Quantity, found: Extremes) ->
 def _error(part: _Range, quantity: Quantity, value: float, place: float, way: float) -> float:
     """Possible rounding error of an extreme value; for a magnitude, which may have a kink, by its square."""
     if not quantity.never_negative:
-        return rounding_of(lambda at: part.curve(quantity, at), place, way)
+        return rounding_of(partial(part.curve, quantity), place, way)
     square = rounding_of(lambda at: part.curve(quantity, at) ** 2, place, way)
     return square / (2 * max(value, float(np.sqrt(square)))) if square > 0 else 0.0
 
@@ -234,10 +235,7 @@ def _counted(angle: float) -> float:
 def _with_its_ends(part: _Range, quantity: Quantity, found: Extremes) -> Extremes:
     """The extremes of a quantity without digits near the ends of a range, with its limits there."""
     values, places = [found.low, found.high], [found.at_low, found.at_high]
-
-    def curve(theta2: FloatArray) -> FloatArray:
-        return part.curve(quantity, theta2)
-
+    curve = partial(part.curve, quantity)
     motion, room = part.inner.motion, (part.high - part.low) / 4
     for near, limit, end in zip((motion.start, motion.end), (part.low, part.high), part.ends, strict=True):
         if end is End.DEAD:

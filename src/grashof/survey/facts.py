@@ -30,7 +30,7 @@ from grashof.problems import FourBar, LinkageSpec, ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.study.kinds import LIMIT_POSITIONS, SHARES, output_turns, plain, turning
 from grashof.study.quantities import counted_with, dynamic_quantities
-from grashof.study.section import Fact
+from grashof.study.section import Fact, angle_fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import Sweep
 from grashof.study.turn import degrees
@@ -49,8 +49,8 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     triple = triple_rocker_kind(linkage)
     yield Fact("grashof_class", f"Grashof class{of_first}", f"{kind} {triple}".strip())
     stretched, folded = rotatability(linkage)
-    both = (("stretched", stretched), ("folded", folded))
-    for (name, share), label in zip(both, SHARES[first.kind], strict=True):
+    both = {"stretched": stretched, "folded": folded}
+    for (name, share), label in zip(both.items(), SHARES[first.kind], strict=True):
         if label:
             yield Fact(f"rotatability_{name}", label, float(share))
     yield Fact("full_rotation", "driver turns fully", turns)
@@ -58,11 +58,9 @@ def facts_of(study: LinkageStudy, tables: Mapping[str, pd.DataFrame]) -> Iterato
     for number, (low, high) in enumerate([] if turns else ranges, start=1):
         mark = f"_{number}" if len(ranges) > 1 else ""
         for name, end in (("low", low), ("high", high)):
-            label = f"dead position, {name} end of range {number}"
-            yield Fact(f"driver_{name}{mark}_deg", label, float(np.degrees(end)), "deg")
+            yield angle_fact(f"driver_{name}{mark}", f"dead position, {name} end of range {number}", end)
     worst, where = (worst_transmission_cycle(linkage), "") if turns else (0.0, " (dead positions)")
-    label = f"worst transmission angle {sweep.over}{where}"
-    yield Fact("transmission_min_deg", label, float(np.degrees(worst)), "deg")
+    yield angle_fact("transmission_min", f"worst transmission angle {sweep.over}{where}", worst)
     extremes = tables["extremes"]
     yield from _limit_facts(study, extremes) if more else _stroke_facts(spec, turns, extremes)
     box = np.array([reach_box(linkage, low, high) for low, high in ranges])
@@ -81,7 +79,7 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
     elif not output_turns(kind):
         yield Fact("stroke", "stroke of the slide", float(stroke.chord), unit)
     elif np.isfinite(stroke.swing):
-        yield Fact("output_swing_deg", "swing of the output", float(np.degrees(stroke.swing)), "deg")
+        yield angle_fact("output_swing", "swing of the output", stroke.swing)
         if plain(kind):
             yield Fact("stroke_chord", "stroke of B, chord", float(stroke.chord), unit)
         if spec.output_arm is not None:
@@ -91,13 +89,12 @@ def _stroke_facts(spec: LinkageSpec, turns: bool, extremes: pd.DataFrame) -> Ite
         yield Fact("time_ratio", "time ratio of the strokes", float(stroke.time_ratio))
     for index, (name, words) in enumerate(LIMIT_POSITIONS[kind.dyads[0].kind].items()):
         if np.isfinite(stroke.theta4[index]):
-            angles = {2: stroke.theta2[index], 4: stroke.theta4[index]}
-            for link, angle in ((n, angles[n]) for n in (2, *turning(kind)) if n in angles):
-                label, found = f"{moved} turns back, {words}: theta{link}", float(np.degrees(angle))
-                if link == 4:  # as the extremes count it
-                    swings = extremes[extremes["quantity"] == "theta4_deg"]
-                    found = counted_with(found, zip(swings["min"], swings["max"], strict=True), 360.0)
-                yield Fact(f"toggle_{name}_theta{link}_deg", label, found, "deg")
+            key = f"toggle_{name}_theta"
+            label = f"{moved} turns back, {words}: theta"
+            yield angle_fact(f"{key}2", f"{label}2", stroke.theta2[index])
+            if 4 in turning(kind):
+                angle = _counted(float(np.degrees(stroke.theta4[index])), extremes, "theta4_deg")
+                yield Fact(f"{key}4_deg", f"{label}4", angle, "deg")
 
 
 def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
@@ -107,17 +104,22 @@ def _limit_facts(study: LinkageStudy, extremes: pd.DataFrame) -> Iterator[Fact]:
     found, moved = study.limit_positions(), kind.links[-1]
     if np.isfinite(found[0].time_ratio):
         yield Fact("time_ratio", "time ratio of the strokes", found[0].time_ratio)
+    theta = f"theta{moved.number}"
     theta2, values = (np.concatenate([getattr(each, name) for each in found]) for name in ("theta2", "value"))
-    rows = extremes[extremes["quantity"] == f"theta{moved.number}_deg"]
-    swings = list(zip(rows["min"], rows["max"], strict=True))
     for number, (at, value) in enumerate(zip(theta2.tolist(), values.tolist(), strict=True), start=1):
         key, label = f"turns_back_{number}", f"{moved.name} turns back, {number}"
         yield Fact(f"{key}_theta2_deg", f"{label}: theta2", degrees(at), "deg")
         if output_turns(kind):
-            angle = counted_with(float(np.degrees(value)), swings, 360.0)
-            yield Fact(f"{key}_theta{moved.number}_deg", f"{label}: theta{moved.number}", angle, "deg")
+            angle = _counted(float(np.degrees(value)), extremes, f"{theta}_deg")
+            yield Fact(f"{key}_{theta}_deg", f"{label}: {theta}", angle, "deg")
         else:
             yield Fact(f"{key}_travel", f"{label}: travel", value, unit)
+
+
+def _counted(angle_deg: float, extremes: pd.DataFrame, key: str) -> float:
+    """An angle of a link in the turn in which the extremes count it."""
+    rows = extremes[extremes["quantity"] == key]
+    return counted_with(angle_deg, zip(rows["min"], rows["max"], strict=True), 360.0)
 
 
 def _ranges_facts(spec: LinkageSpec, extremes: pd.DataFrame) -> Iterator[Fact]:
@@ -155,10 +157,10 @@ def _path_facts(sweep: Sweep) -> Iterator[Fact]:
         yield Fact(f"fourier_error_{_HARMONICS}", label, float(series.error_max[_HARMONICS]), unit)
     if plain(linkage.mechanism):
         yield from _double_points(spec.four_bar, unit)
-    still = np.degrees(cusps(linkage))
+    still = cusps(linkage)
     yield Fact("cusps", "cusps of the path of P", len(still))
     for number, angle in enumerate(still, start=1):
-        yield Fact(f"cusp_{number}_theta2_deg", f"cusp {number}: theta2", float(angle), "deg")
+        yield angle_fact(f"cusp_{number}_theta2", f"cusp {number}: theta2", angle)
     yield from _straight_facts(spec, low, high, turns)
 
 
@@ -168,9 +170,9 @@ def _double_points(linkage: FourBar, unit: str) -> Iterator[Fact]:
     for number, (point, angles) in enumerate(zip(crossings.points, crossings.theta2, strict=True), start=1):
         for axis, value in zip("xy", point, strict=True):
             yield Fact(f"double_point_{number}_{axis}", f"double point {number}, {axis}", float(value), unit)
-        for passage, angle in enumerate(np.degrees(angles), start=1):
+        for passage, angle in enumerate(angles, start=1):
             label = f"double point {number}, passage {passage}: theta2"
-            yield Fact(f"double_point_{number}_theta2_{passage}_deg", label, float(angle), "deg")
+            yield angle_fact(f"double_point_{number}_theta2_{passage}", label, angle)
 
 
 def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> Iterator[Fact]:
@@ -185,8 +187,8 @@ def _straight_facts(spec: LinkageSpec, low: float, high: float, turns: bool) -> 
             line = straightness(spec.linkage, low, high)
     except ProblemError:  # P does not move
         return
-    yield Fact("straight_from_deg", f"{what}: from theta2", float(np.degrees(low)), "deg")
-    yield Fact("straight_to_deg", f"{what}: to theta2", float(np.degrees(high)), "deg")
+    yield angle_fact("straight_from", f"{what}: from theta2", low)
+    yield angle_fact("straight_to", f"{what}: to theta2", high)
     yield Fact("straight_length", f"{what}: length along its best line", line.length, unit)
     least = ", least over length" if turns else ""
     yield Fact("straight_width", f"{what}: width{least}", line.width, unit)
@@ -200,8 +202,7 @@ def _mass_facts(study: LinkageStudy, masses: Masses) -> Iterator[Fact]:
         x, y = spec.dynamics.gravity
         yield Fact("gravity", "gravity", f"{x:g}, {y:g}", "m/s2")
     if study.sweep.turns:
-        mean, rms = _torque_over_turn(study)
-        for name, value in (("mean", mean), ("rms", rms)):
+        for name, value in zip(("mean", "rms"), _torque_over_turn(study), strict=True):
             if np.isfinite(value):  # friction may lock the linkage
                 yield Fact(f"torque_{name}", f"drive torque, {name} over the turn", value, "N m")
 

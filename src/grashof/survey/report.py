@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position, system_centre
+from grashof.analysis import GrashofClass, Masses, grashof_class, solve_position
 from grashof.analysis.curves.coupler_curve import smooth_polygon
 from grashof.problems import LinkageSpec
 from grashof.problems.values.arrays import FloatArray
 from grashof.sections import sections_of
+from grashof.sections.places import centres_of
 from grashof.study.asked import Asked
-from grashof.study.kinds import halfway
 from grashof.study.quantities import Quantity, dynamic_quantities, kinematic_quantities, table_of
 from grashof.study.section import Fact, Section
 from grashof.study.study import LinkageStudy
@@ -108,21 +108,9 @@ def _notes(sweep: Sweep) -> tuple[str, ...]:
 
 def mass_tracks(report: LinkageReport) -> dict[str, FloatArray]:
     """Tracks (N, 2) of the centres of mass of each link and of all; without masses, of points halfway."""
-    linkage, masses = report.sweep.spec.linkage, report.masses
-    tracks: dict[str, FloatArray] = {}
+    study, angles = LinkageStudy(report.sweep), report.sweep.angles()
     with dead_positions_unwarned():
-        fine = (
-            smooth_polygon(lambda t: solve_position(linkage, t).b, each)[0] for each in report.sweep.angles()
-        )
-        states = [report.sweep.state(angles) for angles in fine]
-        for link in (link.number for link in linkage.mechanism.links[1:]):
-            at = halfway(linkage, link) if masses is None else masses.of(link).centre
-            tracks[f"link {link}"] = np.concatenate([_gap(s.point(link, at).position) for s in states])
-        if masses is not None and masses.total > 0:
-            tracks["all links"] = np.concatenate([_gap(system_centre(masses, s).position) for s in states])
-    return tracks
-
-
-def _gap(points: FloatArray) -> FloatArray:
-    """The points with a row of NaN after them, so that lines do not join two ranges."""
-    return np.concatenate([points, np.full((1, 2), np.nan)])
+        fine = (smooth_polygon(lambda t: solve_position(study.linkage, t).b, each)[0] for each in angles)
+        motions = [centres_of(study, report.sweep.state(each)) for each in fine]
+    names = {key: "all links" if key == "g" else f"link {key.removeprefix('g')}" for key in motions[0]}
+    return {name: study.joined([motion[key].position for motion in motions]) for key, name in names.items()}

@@ -35,6 +35,7 @@ from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
+from grashof.wording.numbers import value_text
 
 # Quantities that a verdict reports besides missed requirements, where they have a value.
 _KEYS = (
@@ -76,7 +77,7 @@ def summary(problem: Problem) -> list[str]:
         f"  {row_of(_TASKS, task)(task, unit)}; {_exactness(problem)}",
         *([f"  mechanism {kinds}"] if (kinds := kinds_text(problem.mechanism)) else []),
         f"  rotatability {wanted.rotatability}, margin {wanted.rotatability_margin:g}; "
-        f"order {_yes(wanted.order)}, same branch {_yes(wanted.same_branch)}",
+        f"order {value_text(wanted.order)}, same branch {value_text(wanted.same_branch)}",
         *(
             f"  {_limit(problem, wanted, name)}"
             for name, limit in wanted.limited.items()
@@ -93,11 +94,7 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  {_driven(problem.dynamics)}")
     if problem.driver is not None:
         lines.append(f"  {_cylinder(problem.driver, unit)}")
-    return [
-        *lines,
-        f"  best: {_best(problem)}",
-        f"  search: {_search(problem)}",
-    ]
+    return [*lines, f"  best: {_best(problem)}", f"  search: {_search(problem)}"]
 
 
 def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
@@ -119,9 +116,8 @@ def _best(problem: Problem) -> str:
         best = f"a weighted sum: {', '.join(f'{word} {weight:g}' for word, weight in weights.items())}"
     missed = _missed(problem)
     if problem.task.has_output.any() and not problem.by_objective:
-        error = (
-            "greatest structural error" if "greatest" in _exactness(problem) else "error at the pairs (rms)"
-        )
+        greatest = "greatest" in _exactness(problem)
+        error = "greatest structural error" if greatest else "error at the pairs (rms)"
         return f"least {error}; the list offers more transmission besides"
     if problem.by_objective:
         return f"{best}{missed and f', {missed}'}"
@@ -174,10 +170,8 @@ def _cylinder(spec: CylinderSpec, unit: str) -> str:
         words.append(f"closed {spec.closed[0]:g} to {spec.closed[1]:g}{unit}")
     words.append(f"open up to {spec.ratio_max:g} times that")
     if spec.base is not None:
-        sides = (
-            f"{axis} {low:g} to {high:g}" for axis, (low, high) in (("x", spec.base.x), ("y", spec.base.y))
-        )
-        words.append(f"base {', '.join(sides)}{unit}")
+        (left, right), (low, high) = spec.base.x, spec.base.y
+        words.append(f"base x {left:g} to {right:g}, y {low:g} to {high:g}{unit}")
     return "; ".join(words)
 
 
@@ -284,10 +278,6 @@ def _exactness(problem: Problem) -> str:
             else f"met within {SWING_WITHIN:.2g} of it"
         )
     return f"every target {within} sizes"
-
-
-def _yes(value: bool) -> str:
-    return "yes" if value else "no"
 
 
 def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:

@@ -20,12 +20,10 @@ _NAMED = 2  # designs of each reason, by their ids
 
 def proof_line(result: Result) -> str:
     """Statement of the proof of a list, rounded to the safe side; empty without a proof."""
-    proof = result.proof
-    if proof is None:
+    if result.proof is None:
         return ""
-    rank = _rank(result, proof)
-    known = f"number {rank} has" if rank else ""
-    return _line(proof, known)
+    rank = _rank(result, result.proof)
+    return _line(result.proof, f"number {rank} has" if rank else "")
 
 
 def bound_line(proof: Proof, at_least: float | None = None) -> str:
@@ -141,7 +139,7 @@ def enclosure_line(result: Result) -> str:
     many = counted(shown, "design") if not undecided else f"{shown} of {counted(len(named), 'design')}"
     rest = f"; undecided: {_by_reason(undecided)}" if undecided else ""
     shown_of = f"Closure and transmission angle of {many} verified by intervals of the driver angle"
-    return f"{shown_of}, over their whole motion{rest}."
+    return f"{shown_of}, over their full motion{rest}."
 
 
 def _by_reason(missing: dict[str, str]) -> str:

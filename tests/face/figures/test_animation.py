@@ -12,7 +12,6 @@ import matplotlib.animation
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from matplotlib.animation import FuncAnimation
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -40,8 +39,10 @@ Grashof = Callable[..., Any]
 ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
 
 
-def frames_of(moving: FuncAnimation, axes: Axes) -> dict[str, Any]:
-    """Ends of the links, the trace and the body in every frame."""
+def frames_of(linkage: Any, problem: Problem | None = None, **options: Any) -> tuple[dict[str, Any], Axes]:
+    """Ends of the links, the trace and the body in every frame; the axes."""
+    axes = Figure().subplots()
+    moving = animate(linkage, problem, ax=axes, **options)
     shown: dict[str, list[Any]] = {"driver": [], "output": [], "coupler": [], "trace": [], "body": []}
     names = {DRIVER: "driver", OUTPUT: "output", COUPLER: "coupler"}
     for frame in moving.new_frame_seq():
@@ -54,7 +55,7 @@ def frames_of(moving: FuncAnimation, axes: Axes) -> dict[str, Any]:
                 shown["trace"].append(line.get_xydata().copy())
         shown["body"] += [patch.get_xy()[:-1].copy() for patch in axes.patches if patch.get_alpha() == 0.7]
     moving._draw_was_started = True  # else matplotlib warns that it was never seen
-    return shown
+    return shown, axes
 
 
 def test_names_move_along_and_the_time_is_shown() -> None:
@@ -82,8 +83,8 @@ def test_names_move_along_and_the_time_is_shown() -> None:
 
 
 def test_links_keep_their_lengths_and_p_draws_its_path() -> None:
-    linkage, axes = load_linkage("pumpjack"), Figure().subplots()
-    shown = frames_of(animate(linkage, seconds=1, fps=12, ax=axes), axes)
+    linkage = load_linkage("pumpjack")
+    shown, _ = frames_of(linkage, seconds=1, fps=12)
     driver, coupler, output = (np.array(shown[name]) for name in ("driver", "coupler", "output"))
     lengths = [np.hypot(*np.moveaxis(ends[:, 1] - ends[:, 0], -1, 0)) for ends in (driver, coupler, output)]
     expected = np.array([linkage.r2, linkage.r3, linkage.r4])[:, None]
@@ -97,8 +98,7 @@ def test_links_keep_their_lengths_and_p_draws_its_path() -> None:
 
 
 def test_a_driver_with_limits_swings_between_them_and_back() -> None:
-    axes = Figure().subplots()
-    driver = np.array(frames_of(animate(ROCKER, seconds=2, fps=20, ax=axes), axes)["driver"])
+    driver = np.array(frames_of(ROCKER, seconds=2, fps=20)[0]["driver"])
     angle = np.unwrap(np.arctan2(*driver[:, 1].T[::-1]))
     low, high = driver_ranges(ROCKER)[0]
     turned = angle - angle[0] + low
@@ -110,9 +110,9 @@ def test_a_driver_with_limits_swings_between_them_and_back() -> None:
 
 @pytest.mark.slow
 def test_a_design_starts_at_its_first_target_in_its_sense_and_carries_the_body(few: Result) -> None:
-    task, verdict, axes = few.problem.task, few.best.verdict, Figure().subplots()
+    task, verdict = few.problem.task, few.best.verdict
     assert isinstance(task, MotionTask)
-    shown = frames_of(animate(few.best, few.problem, seconds=3, fps=12, ax=axes), axes)
+    shown, axes = frames_of(few.best, few.problem, seconds=3, fps=12)
     a = np.array(shown["driver"])[:, 1] - few.best.linkage.o2
     step = np.angle((a[1:] @ [1, 1j]) / (a[:-1] @ [1, 1j]))
     np.testing.assert_allclose(step, verdict.direction * np.radians(10))
@@ -132,8 +132,7 @@ def test_between_limits_a_task_starts_at_its_first_target_in_its_sense(sense: in
     state = solve_position(ROCKER, angles)
     wanted = Requirements(rotatability=Rotatability.ANY)
     problem = Problem(task=MotionTask(state.p, state.theta3), requirements=wanted)
-    axes = Figure().subplots()
-    driver = np.array(frames_of(animate(ROCKER, problem, seconds=4, fps=20, ax=axes), axes)["driver"])
+    driver = np.array(frames_of(ROCKER, problem, seconds=4, fps=20)[0]["driver"])
     turned = np.unwrap(np.arctan2(*driver[:, 1].T[::-1]))
     assert turned[0] == pytest.approx(angles[0], abs=1e-6)
     assert np.sign(turned[1] - turned[0]) == sense
@@ -142,21 +141,16 @@ def test_between_limits_a_task_starts_at_its_first_target_in_its_sense(sense: in
 
 
 def test_a_change_point_linkage_moves_between_its_dead_positions() -> None:
-    axes = Figure().subplots()
-    parallelogram = FourBar((0, 0), (4, 0), 1, 4, 1)
-    shown = frames_of(animate(parallelogram, seconds=1, fps=20, ax=axes), axes)
+    shown, _ = frames_of(FourBar((0, 0), (4, 0), 1, 4, 1), seconds=1, fps=20)
     assert np.isfinite(shown["coupler"]).all()
     output = np.diff(np.array(shown["output"]), axis=1)[:, 0]
     np.testing.assert_allclose(np.hypot(*output.T), 1)
 
 
 def test_a_new_figure_only_where_no_axes_are_given() -> None:
-    try:
-        moving = animate(ROCKER, seconds=0.2, fps=20)
-        assert len(plt.get_fignums()) == 1
-        moving._draw_was_started = True  # else matplotlib warns that it was never seen
-    finally:
-        plt.close("all")
+    moving = animate(ROCKER, seconds=0.2, fps=20)
+    assert len(plt.get_fignums()) == 1
+    moving._draw_was_started = True  # else matplotlib warns that it was never seen
 
 
 @pytest.mark.parametrize(("seconds", "fps"), [(0.01, 10), (np.nan, 10), (1, np.inf), (-1, 25)])
@@ -188,14 +182,12 @@ def test_a_gif_has_the_frames_and_the_time_asked_for(tmp_path: Path) -> None:
     ],
 )
 def test_files_that_cannot_be_written_are_refused_before_any_work(
-    grashof: Grashof, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
+    refused: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, message: str
 ) -> None:
     monkeypatch.setattr(matplotlib.animation.shutil, "which", lambda _: None)
     monkeypatch.setattr(grashof_animation, "FuncAnimation", None)
     (tmp_path / "taken.gif").mkdir()
-    done = grashof("animate", "pumpjack", "--out", name)
-    assert done.exit_code == 2
-    assert done.stderr.count("\n") == 1
+    refused("animate", "pumpjack", "--out", name)
     with pytest.raises(ProblemError, match=message):
         grashof_animation.check_animation(Path(name))
     assert [path.name for path in tmp_path.iterdir()] == ["taken.gif"]
@@ -234,20 +226,14 @@ def test_a_design_of_a_list_moves_as_in_its_problem(few: Result, tmp_path: Path)
     """The same picture in every frame as from the result itself: body, poses, scene and start."""
     write_run(tmp_path, few, {}, drawings=0)
     for rank in (1, 3):
-        shown = []
-        design = few.candidates[rank - 1]
-        for linkage, problem in (
-            (design, few.problem),
-            (load_linkage_spec(f"{tmp_path}/candidates.json#{rank}"), None),
-        ):
-            axes = Figure().subplots()
-            frames = frames_of(animate(linkage, problem, seconds=1, fps=10, ax=axes), axes)
-            shown.append((frames, [line.get_xydata() for line in axes.lines], len(axes.patches), axes.axis()))
-        assert len(shown[0][0]["body"]) == 10
-        for one, other in zip(shown[0][0].values(), shown[1][0].values(), strict=True):
-            for parts in zip(one, other, strict=True):
-                np.testing.assert_allclose(*parts, atol=1e-9)
-        assert shown[0][2] == shown[1][2]
-        for ends in zip(shown[0][1], shown[1][1], strict=True):
-            np.testing.assert_allclose(*ends, atol=1e-9)
-        np.testing.assert_allclose(shown[0][3], shown[1][3], rtol=1e-9)
+        stored = load_linkage_spec(f"{tmp_path}/candidates.json#{rank}")
+        mine, axes = frames_of(few.candidates[rank - 1], few.problem, seconds=1, fps=10)
+        others, other_axes = frames_of(stored, seconds=1, fps=10)
+        assert len(mine["body"]) == 10
+        for one, other in zip(mine.values(), others.values(), strict=True):
+            for shown in zip(one, other, strict=True):
+                np.testing.assert_allclose(*shown, atol=1e-9)
+        assert len(axes.patches) == len(other_axes.patches)
+        for line, its in zip(axes.lines, other_axes.lines, strict=True):
+            np.testing.assert_allclose(line.get_xydata(), its.get_xydata(), atol=1e-9)
+        np.testing.assert_allclose(axes.axis(), other_axes.axis(), rtol=1e-9)

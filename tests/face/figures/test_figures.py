@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -47,14 +47,9 @@ DOUBLE_ROCKER = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
 
 
 @pytest.fixture(autouse=True)
-def nothing_is_shown(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    def shown(*_: object, **__: object) -> None:
-        raise AssertionError("a figure was shown")
-
-    monkeypatch.setattr(plt, "show", shown)
-    monkeypatch.setattr(Figure, "show", shown)
-    yield
-    plt.close("all")
+def _nothing_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    for shows in (plt, Figure):
+        monkeypatch.setattr(shows, "show", lambda *_, **__: pytest.fail("a figure was shown"))
 
 
 def axes() -> Axes:
@@ -163,9 +158,8 @@ def test_a_design_is_driven_in_the_sense_of_its_task(few: Result) -> None:
     (ax,) = plot_kinematics(few.best, few.problem, quantities=("angular velocity",), ax=axes())
     rpm = few.best.verdict.direction * 30 / np.pi
     assert f"driver at {rpm:.4g} rpm" in ax.get_xlabel()
-    (faster,) = plot_kinematics(
-        few.best, few.problem, quantities=("angular velocity",), speed_rpm=2 * rpm, ax=axes()
-    )
+    twice = {"quantities": "angular velocity", "speed_rpm": 2 * rpm}
+    (faster,) = plot_kinematics(few.best, few.problem, **twice, ax=axes())
     np.testing.assert_allclose(faster.lines[0].get_ydata(), 2 * np.asarray(ax.lines[0].get_ydata()))
 
 

@@ -117,4 +117,3 @@ def test_text_is_text(tmp_path: Path) -> None:
 def test_without_axes_a_figure_is_made() -> None:
     axes = plot_section(Plot("a", "a", "", {"a": TURN}, THETA2))
     assert plt.get_fignums() == [axes.figure.number]
-    plt.close("all")

@@ -1,48 +1,24 @@
-"""Balancing and flywheel as sections: before and after, in every unit, and input that is refused."""
+"""Balancing as a section: before and after, and in every unit."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from section_facts import facts, in_both_units
+from section_facts import HEAVY, JACK, ONE_RANGE, facts, in_both_units, loaded
 
-from grashof.analysis import inverse_dynamics, size_flywheel
-from grashof.problems import (
-    DynamicsSpec,
-    FourBar,
-    InvertedSliderCrank,
-    LinkageSpec,
-    ProblemError,
-    SliderCrank,
-    load_linkage_spec,
-)
+from grashof.analysis import inverse_dynamics
+from grashof.problems import DynamicsSpec, InvertedSliderCrank, LinkageSpec, SliderCrank
 from grashof.problems.values.dynamics.load_specs import CounterweightSpec
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.study.study import LinkageStudy
-from grashof.survey import Asked, Section, report_on
-
-Sections = Callable[..., dict[str, Section]]
-JACK = load_linkage_spec("pumpjack")
-BARE = replace(JACK, dynamics=None)
-ROCKER = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
-HEAVY = DynamicsSpec(2.0, gravity=(0, -9.81))
-
-
-def weighted(spec: LinkageSpec, row: Any, links: tuple[int, ...]) -> LinkageSpec:
-    """The linkage with the counterweights of a row of the table in its file."""
-    assert spec.dynamics is not None
-    weights = tuple(
-        CounterweightSpec(link, row[f"mass_{link}"], (row[f"u_{link}"], row[f"v_{link}"])) for link in links
-    )
-    return replace(spec, dynamics=replace(spec.dynamics, counterweights=weights))
+from grashof.survey import Asked, report_on
 
 
 @pytest.mark.study
-def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(sections: Sections) -> None:
+def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(sections: Any) -> None:
     found = sections(JACK, balance=True)["balancing"]
     rows = found.tables["balancing"].set_index("aim")
     assert rows.index.tolist() == ["as it is", "shaking force", "torque, rms", "torque, peak"]
@@ -50,9 +26,10 @@ def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(s
         ("as it is", ()), ("shaking force", (2, 4)), ("torque, rms", (2,)), ("torque, peak", (2,)),
     ):  # fmt: skip
         row = rows.loc[aim]
-        spec = weighted(JACK, row, links)
+        places = [(link, row[f"mass_{link}"], (row[f"u_{link}"], row[f"v_{link}"])) for link in links]
+        spec = loaded(JACK, counterweights=tuple(CounterweightSpec(*place) for place in places))
         report = report_on(spec)
-        summary = {fact.key: fact.value for fact in report.facts}
+        summary = facts(report)
         extremes = report.tables["extremes"].set_index("quantity").loc["torque"]
         assert row["torque_rms"] == pytest.approx(summary["torque_rms"], rel=1e-9)
         assert row["torque_peak"] == pytest.approx(max(-extremes["min"], extremes["max"]), rel=1e-9)
@@ -65,7 +42,7 @@ def test_before_is_the_linkage_as_it_is_and_after_with_its_weights_in_the_file(s
     assert rows["torque_peak"].idxmin() == "torque, peak"
 
 
-def test_counterweights_of_slider_kinds(sections: Sections) -> None:
+def test_counterweights_of_slider_kinds(sections: Any) -> None:
     """Half of what goes to and fro, with the crank of an engine; all of an inverted slider-crank."""
     given = DynamicsSpec(
         masses=(0.5, 0.8, 0.6), inertias=(200, 900, 100), centres=((10, 0), (30, 0), (0, 0)), speed_rpm=600
@@ -84,7 +61,7 @@ def test_counterweights_of_slider_kinds(sections: Sections) -> None:
 
 
 @pytest.mark.slow
-def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:
+def test_weights_are_the_same_in_every_unit(sections: Any) -> None:
     heavy = DynamicsSpec(300.0, speed_rpm=20, gravity=(0, -9.8))
     metres, inches = (
         sections(spec, balance=True, flywheel=0.1) for spec in in_both_units(JACK.linkage, heavy)
@@ -98,52 +75,13 @@ def test_weights_are_the_same_in_every_unit(sections: Sections) -> None:
 
 
 @pytest.mark.slow
-def test_what_cannot_be_balanced_is_said(sections: Sections) -> None:
-    floating = replace(JACK, dynamics=DynamicsSpec(300.0))
-    found = sections(floating, balance=True)["balancing"]
+def test_what_cannot_be_balanced_is_said(sections: Any) -> None:
+    found = sections(replace(JACK, dynamics=DynamicsSpec(300.0)), balance=True)["balancing"]
     assert len(found.tables["balancing"]) == 2
     assert "gravity is zero, so no counterweight evens out the torque" in found.notes
-    swings = LinkageSpec(ROCKER, "it", length_unit="m", dynamics=HEAVY)
-    found = sections(swings, balance=True)["balancing"]
+    found = sections(replace(ONE_RANGE, dynamics=HEAVY), balance=True)["balancing"]
     assert "torque_peak" not in found.tables["balancing"]
     assert any("does not turn fully" in note for note in found.notes)
     starting = replace(JACK, dynamics=replace(HEAVY, motor=MotorSpec(profile="cycloid")))
     found = sections(starting, balance=True)["balancing"]
     assert any("starts and stops" in note for note in found.notes)
-
-
-def test_the_flywheel_is_that_of_the_analysis(sections: Sections) -> None:
-    found = sections(JACK, flywheel=0.05)["flywheel"]
-    study = LinkageStudy.of(JACK, Asked())
-    assert study.masses is not None
-    wheel = size_flywheel(JACK.linkage, study.masses, 20 * np.pi / 30, 0.05, study.loads)
-    given = facts(found)
-    assert given["flywheel_inertia"] == wheel.inertia
-    assert given["flywheel_energy"] == wheel.energy
-    speed = found.plots[0].series["speed"]
-    assert np.ptp(speed) == pytest.approx(0.05 * 20, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("spec", "asked", "message"),
-    [
-        (BARE, {"balance": True}, "balance needs masses; [dynamics] states none"),
-        (BARE, {"flywheel": 0.1}, "flywheel needs masses or loads; the file states none"),
-        (JACK, {"flywheel": 0.0}, "flywheel is 0; it must be from 1e-06 to 1"),
-        (JACK, {"flywheel": np.nan}, "flywheel is nan; it must be a finite number"),
-        (
-            JACK,
-            {"flywheel": 0.1, "speed_rpm": 0.0},
-            "flywheel needs a steady speed of the driver, other than 0",
-        ),
-        (
-            LinkageSpec(ROCKER, "it", length_unit="m", dynamics=HEAVY),
-            {"flywheel": 0.1},
-            "flywheel needs a driver that turns fully; this one swings",
-        ),
-    ],
-)
-def test_what_is_refused(sections: Sections, spec: LinkageSpec, asked: dict[str, Any], message: str) -> None:
-    with pytest.raises(ProblemError) as error:
-        dict(sections(spec, **asked))
-    assert str(error.value) == message

@@ -1,23 +1,21 @@
-"""Inexact dimensions of a linkage: peaks of the displacements, and input that is refused."""
+"""Inexact dimensions of a linkage: peaks of the displacements."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
-from section_facts import facts
+from section_facts import ONE_RANGE, facts
 
 from grashof.analysis import solve_position
 from grashof.analysis.judge.tolerance import made_linkages
-from grashof.problems import FourBar, LinkageSpec, ProblemError, load_linkage_spec
-from grashof.survey import Section
+from grashof.problems import load_linkage_spec
 
-Sections = Callable[..., dict[str, Section]]
 LUFKIN = load_linkage_spec("lufkin-c912d")
 
 
-def test_made_linkages_move_by_no_more(sections: Sections) -> None:
+def test_made_linkages_move_by_no_more(sections: Any) -> None:
     found = sections(LUFKIN, tolerance=0.01)["tolerance"]
     table = found.tables["tolerance"]
     theta2 = np.radians(table["theta2_deg"].to_numpy())
@@ -35,13 +33,6 @@ def test_made_linkages_move_by_no_more(sections: Sections) -> None:
     assert given["tolerance_dimension"] == "r2"  # P is A
 
 
-def test_a_driver_that_swings_has_no_limit(sections: Sections) -> None:
-    rocker = LinkageSpec(FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1)), "it")
-    found = sections(rocker, tolerance=0.01)["tolerance"]
+def test_a_driver_that_swings_has_no_limit(sections: Any) -> None:
+    found = sections(ONE_RANGE, tolerance=0.01)["tolerance"]
     assert [fact.key for fact in found.facts] == ["tolerance"]
-
-
-@pytest.mark.parametrize("given", [0.0, -1.0, np.nan, 1e30])
-def test_what_is_refused(sections: Sections, given: float) -> None:
-    with pytest.raises(ProblemError, match="tolerance is"):
-        dict(sections(LUFKIN, tolerance=given))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from section_facts import facts, in_both_units
+from section_facts import JACK, ONE_RANGE, TWO_RANGES, extremes, facts, in_both_units, loaded
 
 import grashof.figures.files
 from grashof.analysis import (
@@ -31,17 +31,11 @@ from grashof.synth import Result, synthesize
 
 Grashof = Callable[..., Any]
 GOLDEN = json.loads((Path(__file__).parents[2] / "data" / "golden.json").read_text(encoding="utf-8"))
-DOUBLE_ROCKER = FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1))
-ONE_RANGE = FourBar((0, 0), (4, 0), 2, 2, 3, (1, 1))
-
-
-def extremes(report: LinkageReport) -> pd.DataFrame:
-    return report.tables["extremes"].set_index("quantity")
 
 
 @pytest.fixture(scope="module")
 def jack() -> LinkageReport:
-    return report_on(load_linkage_spec("pumpjack"))
+    return report_on(JACK)
 
 
 def test_the_real_unit_has_the_stroke_and_torque_factor_of_its_maker() -> None:
@@ -68,10 +62,7 @@ def test_extremes_of_the_pumpjack_are_the_reference_figures(jack: LinkageReport)
 
 
 def test_torque_and_forces_of_the_pumpjack_are_the_reference_figures() -> None:
-    spec = load_linkage_spec("pumpjack")
-    assert spec.dynamics is not None
-    still = replace(spec.dynamics, gravity=(0, -9.81))
-    heavy = report_on(LinkageSpec(spec.linkage, "jack", length_unit="m", dynamics=still))
+    heavy = report_on(loaded(JACK, gravity=(0, -9.81)))
     rows = heavy.tables["dynamics"].set_index("theta2_deg")
     checked = 0
     for case in GOLDEN["pumpjack_report_geometry"]["inverse_dynamics"]["cases"]:
@@ -88,18 +79,15 @@ def test_torque_and_forces_of_the_pumpjack_are_the_reference_figures() -> None:
 
 @pytest.mark.slow
 def test_forces_are_newtons_in_every_length_unit() -> None:
-    linkage = load_linkage_spec("pumpjack").linkage
-    assert isinstance(linkage, FourBar)
     heavy = DynamicsSpec(300.0, payload=50, speed_rpm=12, gravity=(0, -9.8))
-    metres, inches = map(report_on, in_both_units(linkage, heavy))
+    both = in_both_units(JACK.linkage, heavy)
+    metres, inches = (report_on(spec).tables["dynamics"] for spec in both)
     for name in ("torque", "f12", "f43", "shaking_force", "shaking_moment", "power"):
-        np.testing.assert_allclose(
-            inches.tables["dynamics"][name], metres.tables["dynamics"][name], rtol=1e-9, atol=1e-6
-        )
-    masses = uniform_bars(linkage, 300.0, 50.0)
-    state = solve_kinematics(linkage, np.radians(metres.tables["dynamics"]["theta2_deg"]), 12 * np.pi / 30)
+        np.testing.assert_allclose(inches[name], metres[name], rtol=1e-9, atol=1e-6)
+    masses = uniform_bars(JACK.linkage, 300.0, 50.0)
+    state = solve_kinematics(JACK.linkage, np.radians(metres["theta2_deg"]), 12 * np.pi / 30)
     torque = inverse_dynamics(state, masses, Loads(gravity=(0, -9.8))).torque
-    np.testing.assert_allclose(metres.tables["dynamics"]["torque"], torque, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(metres["torque"], torque, rtol=1e-12, atol=1e-9)
 
 
 def test_the_table_is_the_motion(jack: LinkageReport) -> None:
@@ -135,9 +123,8 @@ def test_constant_quantities_have_no_places_of_extremes(jack: LinkageReport) -> 
 
 def test_speed_scales_rates_and_the_torque_factor_has_a_sign() -> None:
     spec = load_linkage_spec("lufkin-c912d")
-    slow, fast = (
-        report_on(spec, Asked(speed_rpm=speed)).tables["kinematics"] for speed in (None, -60 / np.pi)
-    )
+    speeds = (None, -60 / np.pi)
+    slow, fast = (report_on(spec, Asked(speed_rpm=speed)).tables["kinematics"] for speed in speeds)
     np.testing.assert_allclose(fast["omega4"], -2 * slow["omega4"], rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(fast["alpha4"], 4 * slow["alpha4"], rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(fast["torque_factor"], slow["torque_factor"])
@@ -151,8 +138,8 @@ def test_speed_scales_rates_and_the_torque_factor_has_a_sign() -> None:
 
 
 def test_a_limited_range_says_so() -> None:
-    report = report_on(LinkageSpec(ONE_RANGE, "rocker"))
-    low, high = np.degrees(driver_ranges(ONE_RANGE)[0])
+    report, linkage = report_on(ONE_RANGE), ONE_RANGE.linkage
+    low, high = np.degrees(driver_ranges(linkage)[0])
     found, table = facts(report), extremes(report)
     assert (found["driver_low_deg"], found["driver_high_deg"]) == pytest.approx((low, high))
     assert found["transmission_min_deg"] == 0
@@ -163,12 +150,11 @@ def test_a_limited_range_says_so() -> None:
     assert table.loc["omega4", ["theta2_min_deg", "theta2_max_deg"]].tolist() == pytest.approx([low, high])
     # One end pulls alpha3 down without limit; what it reaches between is found all the same.
     inner = np.linspace(np.radians(low) + 0.1, np.radians(high) - 0.1, 20001)
-    assert table.loc["alpha3", "max"] == pytest.approx(
-        solve_kinematics(ONE_RANGE, inner).alpha3.max(), rel=1e-6
-    )
+    state = solve_kinematics(linkage, inner)
+    assert table.loc["alpha3", "max"] == pytest.approx(state.alpha3.max(), rel=1e-6)
     # B stands still where the output turns back, its acceleration does not vanish there or elsewhere.
     assert table.loc["b_speed", "min"] == 0
-    least = solve_kinematics(ONE_RANGE, inner).b.acceleration_magnitude.min()
+    least = state.b.acceleration_magnitude.min()
     assert table.loc["b_acceleration", "min"] == pytest.approx(least, rel=1e-6)
     assert "dead positions bound" in report.notes[0]
     assert "assembly +1" in report.notes[0]
@@ -180,7 +166,7 @@ def test_a_limited_range_says_so() -> None:
 
 
 def test_two_ranges_are_kept_apart() -> None:
-    report = report_on(LinkageSpec(DOUBLE_ROCKER, "rocker"))
+    report = report_on(TWO_RANGES)
     rows, found = report.tables["kinematics"], facts(report)
     assert rows["range"].value_counts().to_dict() == {1: 361, 2: 361}
     # The toggle positions lie on two circuits: the range between them is not a swing.
@@ -247,12 +233,10 @@ def test_a_design_is_analysed_as_the_list_drives_it(few: Result, tmp_path: Path,
 
 
 def test_given_masses_and_payload() -> None:
-    spec = load_linkage_spec("pumpjack")
-    dynamics = DynamicsSpec(masses=(1, 2, 3), inertias=(0.1, 0.2, 0.3), payload=5, speed_rpm=10)
-    report = report_on(LinkageSpec(spec.linkage, "jack", length_unit="m", dynamics=dynamics))
-    masses = given_masses(spec.linkage, (1, 2, 3), (0.1, 0.2, 0.3))
-    masses = masses.with_payload(5, spec.linkage.coupler_point)
-    state = solve_kinematics(spec.linkage, np.arange(0, 361) * np.pi / 180, np.pi / 3)
+    linkage, given = JACK.linkage, {"masses": (1, 2, 3), "inertias": (0.1, 0.2, 0.3)}
+    report = report_on(replace(JACK, dynamics=DynamicsSpec(**given, payload=5, speed_rpm=10)))
+    masses = given_masses(linkage, **given).with_payload(5, linkage.coupler_point)
+    state = solve_kinematics(linkage, np.arange(0, 361) * np.pi / 180, np.pi / 3)
     expected = inverse_dynamics(state, masses).torque
     np.testing.assert_allclose(report.tables["dynamics"]["torque"], expected, rtol=1e-9, atol=1e-12)
     assert facts(report)["mass"] == 11
@@ -264,7 +248,7 @@ def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
     """Rates without bound are cut off, and no warning is given."""
     from grashof.figures.section_plots import plots
 
-    made = dict(plots(report_on(LinkageSpec(DOUBLE_ROCKER, "rocker", length_unit="mm"))))
+    made = dict(plots(report_on(replace(TWO_RANGES, length_unit="mm"))))
     files = [tmp_path / f"velocities.{kind}" for kind in ("png", "svg")]
     grashof.figures.files.save(made["velocities"], files)
     assert min(file.stat().st_size for file in files) > 10_000
@@ -278,7 +262,7 @@ def test_plots_of_a_limited_range_are_made(tmp_path: Path) -> None:
 
 
 def test_a_driver_at_rest() -> None:
-    table = extremes(report_on(load_linkage_spec("pumpjack"), Asked(speed_rpm=0.0)))
+    table = extremes(report_on(JACK, Asked(speed_rpm=0.0)))
     assert table.loc["a_speed", "max"] == 0
     # The torque holds the weight.
     assert table.loc["torque", "max"] > 1000
@@ -287,13 +271,12 @@ def test_a_driver_at_rest() -> None:
 
 @pytest.mark.slow
 def test_one_angle_is_counted_alike_everywhere() -> None:
-    """Of a rocker that swings about 180 deg: where it turns back, the ends of its dwell, and its extremes."""
+    """Where a rocker turns back about 180 deg, the ends of its dwell, and its extremes."""
 
     def rocker(turned: float) -> LinkageReport:
         o4 = 5 * np.array([np.cos(turned), np.sin(turned)])
-        return report_on(
-            LinkageSpec(FourBar((0, 0), o4, 0.8, 4.2, 3.9, (1, 1)), "rocker"), Asked(dwell_deg=2.0)
-        )
+        linkage = FourBar((0, 0), o4, 0.8, 4.2, 3.9, (1, 1))
+        return report_on(LinkageSpec(linkage, "rocker"), Asked(dwell_deg=2.0))
 
     low, high = extremes(rocker(0.0)).loc["theta4_deg", ["min", "max"]]
     for turned in (0.0, np.pi - np.radians(low + high) / 2):
@@ -308,7 +291,7 @@ def test_one_angle_is_counted_alike_everywhere() -> None:
 
 def test_angles_that_turn_fully_have_no_extremes(capsys: pytest.CaptureFixture[str]) -> None:
     report = report_on(LinkageSpec(FourBar((0, 0), (1, 0), 3, 2.8, 3.2), "double-crank"))
-    table = report.tables["extremes"].set_index("quantity")
+    table = extremes(report)
     for link in (3, 4):
         row = table.loc[f"theta{link}_deg"]
         assert row[["min", "theta2_min_deg", "max", "theta2_max_deg"]].isna().all()

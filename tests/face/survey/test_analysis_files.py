@@ -176,11 +176,9 @@ def test_a_picture_of_curves_and_one_of_tracks(jack: LinkageReport, tmp_path: Pa
     assert made["plot-track"].axes[0].get_title().endswith("track")
 
 
-def test_a_linkage_that_never_closes_is_bad_input(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_linkage_that_never_closes_is_bad_input(refused: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "far.toml").write_text("o4 = [9, 0]\nr2 = 1\nr3 = 1\nr4 = 1\n")
-    done = grashof("analyse", "far.toml")
-    assert done.exit_code == 2
-    assert "closes at no driver angle" in done.stderr
+    assert "closes at no driver angle" in refused("analyse", "far.toml")
     assert not (tmp_path / "far-analysis").exists()
 
 
@@ -244,13 +242,11 @@ def test_designs_of_a_list_beside_the_list(grashof: Grashof, few: Result, tmp_pa
     assert summary["transmission_min_deg"]["value"] == expected
 
 
-def test_a_file_that_is_not_ours_is_not_replaced(grashof: Grashof, tmp_path: Path) -> None:
+def test_a_file_that_is_not_ours_is_not_replaced(refused: Callable[..., str], tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "summary.csv").write_text("mine")
-    done = grashof("analyse", "pumpjack", "--out", out)
-    assert done.exit_code == 2
-    assert "summary.csv in it is not Grashof's own" in done.stderr
+    assert "summary.csv in it is not Grashof's own" in refused("analyse", "pumpjack", "--out", out)
     assert (out / "summary.csv").read_text() == "mine"
 
 
@@ -268,10 +264,8 @@ def test_a_limited_range_on_the_terminal(grashof: Grashof, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("given", ["pumpjak", "no/such.toml", "x.json#1", "x.json"])
-def test_bad_input_is_one_line(grashof: Grashof, given: str) -> None:
-    done = grashof("analyse", given)
-    assert done.exit_code == 2
-    assert done.stderr.count("\n") == 1
+def test_bad_input_is_one_line(refused: Callable[..., str], given: str) -> None:
+    assert given.partition("#")[0] in refused("analyse", given)
 
 
 @pytest.mark.quick("=1+1")

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 from refusals import refusal
-from section_facts import facts
+from section_facts import extremes, facts
 from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
@@ -19,7 +18,6 @@ from grashof.options import AnalyseOptions
 from grashof.problems import (
     DynamicsSpec,
     LinkageSpec,
-    ProblemError,
     SixBar,
     SliderCrank,
     load,
@@ -51,9 +49,8 @@ def test_stroke_and_time_ratio_of_an_offset_slider_crank(engine: LinkageReport) 
     alpha = np.arcsin(20 / 80) - np.arcsin(20 / 160)
     assert found["time_ratio"] == pytest.approx((np.pi + alpha) / (np.pi - alpha), rel=1e-12)
     assert found["transmission_min_deg"] == pytest.approx(np.degrees(np.arccos(60 / 120)), rel=1e-12)
-    assert found["toggle_stretched_theta2_deg"] == pytest.approx(
-        360 - np.degrees(np.arcsin(1 / 8)), rel=1e-12
-    )
+    stretched = 360 - np.degrees(np.arcsin(1 / 8))
+    assert found["toggle_stretched_theta2_deg"] == pytest.approx(stretched, rel=1e-12)
     assert not {"output_swing_deg", "toggle_stretched_theta4_deg", "double_points"} & set(found)
 
 
@@ -88,8 +85,8 @@ def test_travel_of_the_rod(shaper: LinkageReport) -> None:
     far = np.sqrt(300**2 + 150**2 + 2 * 300 * 150 * np.sin(theta2))
     np.testing.assert_allclose(table["slide_travel"], far, rtol=1e-13)
     np.testing.assert_allclose((table["theta4_deg"] - table["theta3_deg"]) % 360, 90, atol=1e-9)
-    extremes = shaper.tables["extremes"].set_index("quantity")
-    assert extremes.loc["slide_travel", ["min", "max"]].tolist() == pytest.approx([150, 450], rel=1e-12)
+    travel = extremes(shaper).loc["slide_travel", ["min", "max"]]
+    assert travel.tolist() == pytest.approx([150, 450], rel=1e-12)
 
 
 @pytest.mark.parametrize("report", ["engine", "shaper"])
@@ -139,9 +136,8 @@ def test_options_of_other_kinds_are_refused_in_one_line(
 @pytest.mark.quick("crank-shaper")
 @pytest.mark.parametrize("spec", [ENGINE, SHAPER], ids=lambda spec: spec.name)
 def test_all_long_sections_at_once_are_those_that_the_kind_has(spec: LinkageSpec) -> None:
-    asked = Asked(
-        sections=ON_REQUEST, tolerance=0.1, at_deg=(0.0, 90.0), seconds=0.5, step=0.002, flywheel=0.05
-    )
+    over = {"at_deg": (0.0, 90.0), "seconds": 0.5, "step": 0.002}
+    asked = Asked(sections=ON_REQUEST, tolerance=0.1, flywheel=0.05, **over)  # type: ignore[arg-type]
     found = {section.key: section for section in report_on(replace(spec, dynamics=MASSES), asked).sections}
     wanted = "over-time positions fits differences pin-forces equations tolerance flywheel"
     assert {*wanted.split()} <= set(found)
@@ -158,10 +154,6 @@ STOPPED = SIX_BARS["stephenson-3"].changed(r5=1.0)  # its second loop opens on t
 def every_fact(report: LinkageReport) -> dict[str, Any]:
     """By keys, those of sections, too."""
     return {key: fact for part in (report, *report.sections) for key, fact in facts(part).items()}
-
-
-def extremes(report: LinkageReport) -> pd.DataFrame:
-    return report.tables["extremes"].set_index("quantity")
 
 
 @pytest.fixture(scope="module")
@@ -253,16 +245,13 @@ def test_a_driver_that_the_second_loop_stops() -> None:
 
 def test_links_that_turn_freely_are_refused() -> None:
     loose = SixBar((0, 0), (4, 0), 1, 4, 3, c=(4, 0), d=(3, 0), r5=4, r6=4, hosts=(3, 4))
-    with pytest.raises(ProblemError, match="mine: C and D are one point at every driver angle"):
-        report_on(LinkageSpec(loose, "mine"))
+    said = refusal(report_on, LinkageSpec(loose, "mine"))
+    assert said.startswith("mine: C and D are one point at every driver angle")
 
 
 def test_a_six_bar_is_not_judged_by_tasks_yet() -> None:
-    spec = load_linkage_spec("klann")
-    with pytest.raises(
-        ProblemError, match='mechanism is stephenson-3; of kind = "motion" it must be four-bar'
-    ):
-        judged_for(load("luggage"), spec)
+    said = refusal(judged_for, load("luggage"), load_linkage_spec("klann"))
+    assert said.startswith('mechanism is stephenson-3; of kind = "motion" it must be four-bar')
 
 
 def test_bars_that_are_dead_everywhere_but_for_rounding_are_refused_in_one_line(tmp_path: Path) -> None:
@@ -270,6 +259,6 @@ def test_bars_that_are_dead_everywhere_but_for_rounding_are_refused_in_one_line(
     dyad = "[dyad]\nhosts = [3, 1]\nc = [5, 1]\nd = [6, 2]\nr5 = 1e8\nr6 = 1e8\n"
     four = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]\n"
     file.write_text(f'mechanism = "stephenson-3"\n{four}{dyad}')
-    with pytest.raises(ProblemError, match="long: its lengths are too unlike to be analysed"):
-        analyse(str(file), AnalyseOptions(out=tmp_path / "made"))
+    said = refusal(analyse, str(file), AnalyseOptions(out=tmp_path / "made"))
+    assert "long: its lengths are too unlike to be analysed" in said
     assert not (tmp_path / "made").exists()

@@ -1,4 +1,4 @@
-"""Central differences: their order, the step they are taken in, and the two reports."""
+"""Newton-Raphson beside the closed form; central differences: their order, their step, two reports."""
 
 from __future__ import annotations
 
@@ -6,13 +6,43 @@ from typing import Any
 
 import numpy as np
 import pytest
+from section_facts import TWO_RANGES, facts
 
-from grashof.analysis import solve_kinematics
-from grashof.problems import FourBar, LinkageSpec, load_linkage_spec
+from grashof.analysis import solve_kinematics, solve_position
+from grashof.problems import load_linkage, load_linkage_spec
 
-ONLY = ("differences",)
+NEWTON, DIFFERENCES = "newton-raphson", "differences"
 STEP = (2 * np.pi + np.radians(121.9353869)) / 100
-SWINGING = LinkageSpec(FourBar((0, 0), (4, 0), 3, 1, 3, (0.5, 1)), "rocker")
+
+
+@pytest.mark.parametrize("name", ["pumpjack", "luggage-report", "lufkin-c912d"])
+def test_both_ways_agree(sections: Any, name: str) -> None:
+    section = sections(name, sections=(NEWTON,))[NEWTON]
+    table = section.tables[NEWTON]
+    exact = solve_position(load_linkage(name), np.radians(table["theta2_deg"]))
+    np.testing.assert_allclose(table["theta3_deg"], np.degrees(exact.theta3), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(table["theta4_difference_deg"], 0, atol=1e-9)
+    given = facts(section)
+    assert given["newton_difference_max_deg"] < 1e-10
+    assert given["newton_steps_max"] == table["steps"].max() <= 8
+    assert section.notes == ()
+    assert np.abs(np.diff(section.plots[0].series["theta4"])).max() < 40
+
+
+def test_what_misses_is_counted(sections: Any) -> None:
+    """In a dead position the two assemblies are one; beyond steps of 1 deg they are apart."""
+    section = sections(TWO_RANGES, sections=(NEWTON,))[NEWTON]
+    table = section.tables[NEWTON]
+    off = table[["theta3_difference_deg", "theta4_difference_deg"]].abs().max(axis=1)
+    missed = int((~(off < 1)).sum())
+    assert missed < 5
+    assert [int(note.split()[1]) for note in section.notes] == ([missed] if missed else [])
+
+
+def test_over_time_it_follows_the_history(sections: Any) -> None:
+    section = sections("pumpjack", sections=(NEWTON,), seconds=6, start_deg=90)[NEWTON]
+    assert section.tables[NEWTON]["time_s"].iloc[-1] == 6
+    assert section.plots[0].key == "newton-raphson-over-time"
 
 
 def largest(section: Any) -> dict[tuple[int, int], float]:
@@ -23,8 +53,8 @@ def largest(section: Any) -> dict[tuple[int, int], float]:
 
 
 def test_over_the_driver_angle_each_degree_has_its_neighbours(sections: Any) -> None:
-    section = sections("pumpjack", sections=ONLY)["differences"]
-    table = section.tables["differences"]
+    section = sections("pumpjack", sections=(DIFFERENCES,))[DIFFERENCES]
+    table = section.tables[DIFFERENCES]
     assert table["theta2_deg"].tolist() == pytest.approx(list(range(361)))
     assert not table.isna().any(axis=None)
     state = solve_kinematics(
@@ -48,7 +78,9 @@ def test_over_the_driver_angle_each_degree_has_its_neighbours(sections: Any) -> 
 def test_errors_fall_as_the_step_to_the_order(sections: Any) -> None:
     """Over a history of full turns of a clockwise driver, in steps of 2 and of 1 deg."""
     coarse, fine = (
-        largest(sections("pumpjack", sections=ONLY, seconds=6, step=step, speed_rpm=-10)["differences"])
+        largest(
+            sections("pumpjack", sections=(DIFFERENCES,), seconds=6, step=step, speed_rpm=-10)[DIFFERENCES]
+        )
         for step in (2 / 60, 1 / 60)
     )
     for (derivative, order), share in coarse.items():
@@ -58,8 +90,8 @@ def test_errors_fall_as_the_step_to_the_order(sections: Any) -> None:
 def test_the_samples_of_the_luggage_report(sections: Any) -> None:
     """Divided by 5 deg in place of their step of 4.8194 deg they come out 3.6 and 7.1 % low."""
     asked = {"seconds": 100 * STEP, "step": STEP, "start_deg": 74.0323}
-    section = sections("luggage-report", sections=ONLY, **asked)["differences"]
-    table = section.tables["differences"]
+    section = sections("luggage-report", sections=(DIFFERENCES,), **asked)[DIFFERENCES]
+    table = section.tables[DIFFERENCES]
     assert len(table) == 101
     assert np.degrees(STEP) == pytest.approx(4.8194, abs=5e-5)
     assert table["omega3_order_2"].isna().sum() == 2
@@ -70,8 +102,8 @@ def test_the_samples_of_the_luggage_report(sections: Any) -> None:
 
 
 def test_towards_a_dead_position_nothing_warns_or_is_infinite(sections: Any) -> None:
-    section = sections(SWINGING, sections=ONLY)["differences"]
-    table = section.tables["differences"]
+    section = sections(TWO_RANGES, sections=(DIFFERENCES,))[DIFFERENCES]
+    table = section.tables[DIFFERENCES]
     assert set(table["range"]) == {1, 2}
     for _, rows in table.groupby("range"):
         assert np.ptp(np.diff(rows["theta2_deg"])) < 1e-9  # an even grid, inside
@@ -81,10 +113,6 @@ def test_towards_a_dead_position_nothing_warns_or_is_infinite(sections: Any) -> 
 
 
 def test_too_few_samples_are_said(sections: Any) -> None:
-    section = sections("pumpjack", sections=ONLY, seconds=0.1)["differences"]
+    section = sections("pumpjack", sections=(DIFFERENCES,), seconds=0.1)[DIFFERENCES]
     assert section.notes == ("differences need 5 samples or more",)
     assert not section.tables
-
-
-def test_only_when_asked_for(sections: Any) -> None:
-    assert "differences" not in sections("pumpjack", sections=("fits",))
