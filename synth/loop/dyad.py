@@ -68,6 +68,7 @@ class ClosingDyad(ABC):
     """Links 3 and 4; r4 is the offset where one of them slides."""
 
     bars: ClassVar[int]  # of links 3 and 4
+    pinned: ClassVar[bool] = True  # O4 is a pivot
 
     @property
     def one_assembly(self) -> bool:
@@ -86,6 +87,14 @@ class ClosingDyad(ABC):
     def ground(self, at: PlacedLoop) -> Vector:
         """The ground of `closed`."""
         return at.o4 - at.o2
+
+    def ground_of(self, o2: Any, o4: Any, _b: Any) -> Any:
+        """The same by complex numbers, or arrays of them; O4 of a slider-crank lies on its slide, ahead of B."""
+        return o4 - o2
+
+    @abstractmethod
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        """r1, r2, r3, r4 by such points; the offset in place of r4, 0 for what the loop lacks."""
 
     def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """B where link 3 has a direction, a unit vector, whether the loop closes or not."""
@@ -184,6 +193,9 @@ class Bars(_Pivoted):
         output = coupler - diagonal
         return Closed(coupler, output, r3, height2)
 
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        return magnitude(o4 - o2), magnitude(a - o2), magnitude(b - a), magnitude(b - o4)
+
     def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         return b - at.o4
 
@@ -221,6 +233,7 @@ class Slider(ClosingDyad):
     """RRP: a bar A-B and a slider at B; h from A to the slide, r3 u = h n +- sqrt(r3^2 - h^2) s."""
 
     bars = 1
+    pinned = False
 
     def closed(
         self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
@@ -229,6 +242,12 @@ class Slider(ClosingDyad):
         ahead2 = (r3 - apart) * (r3 + apart)
         coupler = apart * ground + (assembly * root(ahead2)) * -ground.left
         return Closed(coupler, ground, r3, ahead2)
+
+    def ground_of(self, o2: Any, o4: Any, b: Any) -> Any:
+        return 1j * direction_of(o4 - b)
+
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        return 0.0, magnitude(a - o2), magnitude(b - a), (direction_of(o4 - b).conjugate() * (b - o2)).imag
 
     def ground(self, at: PlacedLoop) -> Vector:
         return at.normal
@@ -285,6 +304,10 @@ class Block(_Pivoted):
         rod = assembly * root(rod2)
         along = (rod * diagonal + r4 * diagonal.left) / square
         return Closed(along, along.left, rod, rod2)
+
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        offset = (direction_of(b - a).conjugate() * (b - o4)).imag
+        return magnitude(o4 - o2), magnitude(a - o2), 0.0, offset
 
     def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """The foot of O4 on the rod."""
@@ -350,6 +373,16 @@ def as_complex(vector: Vector) -> ComplexArray:
     """Plane vectors as complex numbers."""
     joined: ComplexArray = np.asarray(vector.x + 1j * vector.y)
     return joined
+
+
+def magnitude(z: Any) -> Any:
+    """The absolute value: of single numbers by Python, of arrays by NumPy, which rounds otherwise."""
+    return abs(z) if type(z) is complex else np.abs(z)
+
+
+def direction_of(z: Any) -> Any:
+    """The unit vector of a complex number, or of many; NaN without a length."""
+    return z / (abs(z) or np.nan) if type(z) is complex else z / np.abs(z)
 
 
 def coupler_of(

@@ -125,7 +125,7 @@ class Start:
     @property
     def theta1(self) -> float:
         """Direction of the ground line, rad."""
-        return self.kind.theta1_of(self.points)
+        return float(self.kind.theta1_of(self.o2, self.o4, self.b))
 
     @property
     def arm(self) -> complex:
@@ -145,7 +145,8 @@ class Start:
     @property
     def lengths(self) -> tuple[float, float, float, float]:
         """r1, r2, r3, r4 in sizes; of slider kinds the offset in place of r4, and 0 for what they lack."""
-        return self.kind.lengths_of(self.points)
+        o2, o4, a, b, _ = self.points.tolist()
+        return self.kind.dyad.lengths_of(o2, o4, a, b)
 
     @property
     def turns_fully(self) -> bool:

@@ -18,8 +18,7 @@ from grashof.problems import (
     SliderCrank,
 )
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
-from grashof.synth.loop.dimensions import FourBarClosure, InvertedSliderCrankClosure, SliderCrankClosure
-from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.dyad import as_vector, direction_of
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
 from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
@@ -54,7 +53,6 @@ class FourBarKind(_Pivoted):
     linkage = FourBar
     proportions = 3
     formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
-    closure = FourBarClosure()
     instant = FourBarInstant
     generators = FourBars
 
@@ -85,36 +83,11 @@ class FourBarKind(_Pivoted):
         derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
         return (r2, (total + difference) / 2, (total - difference) / 2), derivative
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        ground, coupler, output = (o4 - o2)[:, None], b - a, b - o4[:, None]
-        d.o4, d.r4 = as_vector(o4[:, None]), np.abs(output[:, :1])
-        d.bp = d.p_from(b)
-        d.r1, d.r3, d.theta1 = np.abs(ground), np.abs(coupler[:, :1]), np.angle(ground)
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        coupler, output = b - a, b - o4[:, None]
         d.output_turn = as_vector(output[:, :1]).angle_to(as_vector(output[:, -1:]))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sine: FloatArray = (coupler.conj() * output).imag / (d.r3 * d.r4)
+        sine: FloatArray = (coupler.conj() * output).imag / (d.r3 * d.r4)
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        return abs(o4 - o2), abs(a - o2), abs(b - a), abs(b - o4)
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "r3": np.abs(b - a), "r4": np.abs(b - o4)}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        coupler, ground = b - a, o4 - o2
-        arm = (p - a) * np.abs(coupler) / coupler
-        return ground, [np.abs(link) for link in (ground, a - o2, coupler, b - o4)], arm
-
-    def completed(
-        self, _pivots: Mapping[str, complex], _turned: complex, _found: Mapping[str, float]
-    ) -> dict[str, complex]:
-        return {}
 
     def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
         return [
@@ -142,7 +115,6 @@ class SliderCrankKind(Kind):
     linkage = SliderCrank
     proportions = 2
     formulas, smooth = formulas.SLIDER_CRANK, formulas.SMOOTH_SLIDER_CRANK
-    closure = SliderCrankClosure()
     instant = SliderCrankInstant
     generators = SliderCranks
 
@@ -165,41 +137,18 @@ class SliderCrankKind(Kind):
         b = a + ground[:, None] * loop.e3
         return b[:, 0] - 1j * ground, b
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        along, coupler = (o4 - b[:, 0])[:, None], b - a
-        d.r3, d.theta1, d.bp = np.abs(coupler[:, :1]), np.angle(1j * along), d.p_from(b)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            along = along / np.abs(along)
-            d.offset = (along.conj() * (b[:, :1] - o2[:, None])).imag
-            d.output_travel = (along.conj() * (b[:, -1:] - b[:, :1])).real
-            sine: FloatArray = (along.conj() * coupler).real / d.r3
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        along = direction_of((o4 - b[:, 0])[:, None])
+        d.output_travel = (along.conj() * (b[:, -1:] - b[:, :1])).real
+        sine: FloatArray = (along.conj() * (b - a)).real / d.r3
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        along = (o4 - b) / abs(o4 - b)
-        return 0.0, abs(a - o2), abs(b - a), (along.conjugate() * (b - o2)).imag
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        along = (o4 - b) / np.abs(o4 - b)
-        lengths = {"r2": np.abs(a - o2), "r3": np.abs(b - a), "offset": (along.conj() * (b - o2)).imag}
-        return {"o2": o2, **lengths, "slide_angle": np.angle(along)}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        along = (o4 - b) / np.abs(o4 - b)
-        lengths = [np.zeros_like(a.real), np.abs(a - o2), np.abs(b - a), (along.conj() * (b - o2)).imag]
-        return 1j * along, lengths, (p - a) * np.abs(b - a) / (b - a)
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         theta1, r3 = complex(linkage.theta1), float(linkage.r3) / frame.scale
         return complex(b - 1j * r3 * np.exp(1j * theta1))
 
-    def theta1_of(self, points: ComplexArray) -> float:
-        return float(np.angle(1j * (points[1] - points[3])))
+    def theta1_of(self, o2: Any, o4: Any, b: Any) -> Any:
+        return np.angle(1j * (o4 - b))
 
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
@@ -218,7 +167,6 @@ class InvertedKind(_Pivoted):
     linkage = InvertedSliderCrank
     proportions = 2
     formulas, smooth = formulas.INVERTED, formulas.SMOOTH_INVERTED
-    closure = InvertedSliderCrankClosure()
     instant = InvertedInstant
     generators = InvertedSliderCranks
 
@@ -235,33 +183,11 @@ class InvertedKind(_Pivoted):
         by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
         return (r2, np.ones_like(r2), room * tanh), by_lengths
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        ground, rod = (o4 - o2)[:, None], b - a
-        d.o4, d.r1, d.theta1 = as_vector(o4[:, None]), np.abs(ground), np.angle(ground)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            e3 = rod[:, :1] / np.abs(rod[:, :1])
-            d.offset = (e3.conj() * (b[:, :1] - o4[:, None])).imag
-            d.output_turn = as_vector(rod[:, :1]).angle_to(as_vector(rod[:, -1:]))
-            sine: FloatArray = np.abs(rod) / np.abs(o4[:, None] - a)
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        rod = b - a
+        d.output_turn = as_vector(rod[:, :1]).angle_to(as_vector(rod[:, -1:]))
+        sine: FloatArray = np.abs(rod) / np.abs(o4[:, None] - a)
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        along = (b - a) / (abs(b - a) or np.nan)  # the block is at A: no direction
-        return abs(o4 - o2), abs(a - o2), 0.0, (along.conjugate() * (b - o4)).imag
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        offset = (self.coupler(points).conj() * (b - o4)).imag
-        return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "offset": offset}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        ground, rod = o4 - o2, self.coupler(points)
-        lengths = [np.abs(ground), np.abs(a - o2), np.zeros_like(a.real), (rod.conj() * (b - o4)).imag]
-        return ground, lengths, (p - a) / rod
 
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]

@@ -14,6 +14,7 @@ from grashof.analysis.judge.planted import RANDOM
 from grashof.analysis.mechanism.mobility import full_rotation
 from grashof.problems import Linkage, Objective, PathTask, Problem
 from grashof.problems.values.arrays import ComplexArray
+from grashof.synth.loop.dimensions import dimensions_of, sized_loop
 from grashof.synth.programme.start import Start, Terms
 from grashof.synth.quantities.kinds import FOUR_BAR, KINDS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -49,10 +50,8 @@ def test_a_linkage_comes_back_from_its_points(mechanism: str) -> None:
         ):
             turned = np.angle(np.exp(1j * (one - other))) if row.kind == "angle" else one - other
             np.testing.assert_allclose(turned, 0, atol=1e-9, err_msg=row.name)
-        dimensions = scaled.kind.closure.dimensions(points)
-        loop = scaled.kind.closure.closed(
-            dimensions, np.array([np.exp(1j * np.angle(points[2] - points[0]))]), np.array([linkage.assembly])
-        )
+        dyad, e2 = scaled.kind.dyad, np.exp(1j * np.angle(points[2:3] - points[0]))
+        loop = sized_loop(dyad, dimensions_of(dyad, points), e2, np.array([linkage.assembly]))
         assert abs(loop.coupler[0] - (points[3] - points[2])) < 1e-9
         assert abs(loop.o4 - points[1]) < 1e-9
 
@@ -115,7 +114,7 @@ def test_a_kind_is_the_same_object_wherever_it_is_sent(mechanism: str) -> None:
 
 def test_a_rod_whose_block_is_at_a_has_no_direction() -> None:
     """A start in such a dead position fails; it ends no search."""
-    lengths = KINDS["inverted-slider-crank"].lengths_of(np.array([0, 3, 1, 1, 2], dtype=complex))
+    lengths = KINDS["inverted-slider-crank"].dyad.lengths_of(0j, 3 + 0j, 1 + 0j, 1 + 0j)
     assert lengths[:3] == (3, 1, 0)
     assert np.isnan(lengths[3])
 

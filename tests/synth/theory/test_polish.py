@@ -15,7 +15,8 @@ from grashof.analysis.judge.planted import (
 )
 from grashof.problems import Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE
+from grashof.synth.loop.dimensions import dimensions_of
+from grashof.synth.loop.dyad import Bars
 from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory import polish as path_polish
@@ -75,7 +76,7 @@ class Planted:
         has_point[no_points], has_turn[no_angles] = False, False
         self.targets = ExactTargets(
             np.where(has_point, points, 5 - 3j), has_point,
-            np.where(has_turn, turns, 1.0), has_turn, timed, FOUR_BAR_CLOSURE,
+            np.where(has_turn, turns, 1.0), has_turn, timed, Bars(),
         )  # fmt: skip
         self.near = self.numbers + rng.normal(0, off, 9)
         self.angles = self.theta2 + (off if timed else rng.normal(0, off, count))
@@ -181,7 +182,7 @@ def test_many_driver_angles_are_eliminated_without_a_difference(monkeypatch: pyt
     places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
     begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
     none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-    targets = ExactTargets(points, every, np.zeros(count), none, timed=False, closure=FOUR_BAR_CLOSURE)
+    targets = ExactTargets(points, every, np.zeros(count), none, timed=False, dyad=Bars())
     found = []
     for many in (path_polish.MANY, 1000):
         monkeypatch.setattr(path_polish, "MANY", many)
@@ -205,7 +206,7 @@ def planted_slider(
     state = solve_position(linkage, theta2)
     o2, a, b, p = (complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0]))
     points = np.array([o2, kind.o4_of(linkage, b, scaled.frame), a, b, p])
-    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, closure=kind.closure)
+    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, dyad=kind.dyad)
     return points, theta2, float(linkage.body_angle), targets
 
 
@@ -231,7 +232,7 @@ def _miss(linkage: object, theta2: FloatArray, positions: FloatArray) -> FloatAr
 def test_derivatives(mechanism: str, seed: int) -> None:
     points, theta2, body_angle, targets = planted_slider(mechanism, seed)
     arm = (points[4] - points[2]) * abs(points[3] - points[2]) / (points[3] - points[2])
-    numbers = [*targets.closure.dimensions(points), arm.real, arm.imag, body_angle, *theta2]
+    numbers = [*dimensions_of(targets.dyad, points), arm.real, arm.imag, body_angle, *theta2]
     unknowns, gaps, signs = np.array(numbers), theta2 - theta2[0], np.ones(len(theta2))
     _, missed, jacobian = _linearised(unknowns, gaps, signs, targets)
     assert np.abs(missed).max() < 1e-7
