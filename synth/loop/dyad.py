@@ -89,7 +89,7 @@ class ClosingDyad(ABC):
         return at.o4 - at.o2
 
     def ground_of(self, o2: Any, o4: Any, _b: Any) -> Any:
-        """The same by complex numbers, or arrays of them; O4 of a slider-crank lies on its slide, ahead of B."""
+        """The same by complex numbers, or arrays; O4 of a slider-crank lies on its slide, ahead of B."""
         return o4 - o2
 
     @abstractmethod

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, Self, TypeAlias, cast
+from typing import Any, ClassVar, Self, TypeAlias, cast
 
 import numpy as np
 
@@ -28,26 +28,11 @@ from grashof.synth.theory.functions.output import Generators
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
 LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+Directions: TypeAlias = tuple[ComplexArray, ComplexArray]  # e3 and e4 (n, N)
 
 
 LENGTHS = ("r1", "r2", "r3", "r4")
 _ONLY: dict[type, Any] = {}  # the one instance of each kind
-
-
-class LoopOf(Protocol):
-    """The directions of a `Loop`, in the frame of this module."""
-
-    @property
-    def r4(self) -> FloatArray:
-        """r4 or the offset, shape (n,)."""
-
-    @property
-    def e3(self) -> ComplexArray:
-        """Directions of the coupler, shape (n, N)."""
-
-    @property
-    def e4(self) -> ComplexArray:
-        """Directions of O4B, or across what slides, shape (n, N)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,15 +64,16 @@ class Kind(ABC):
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
 
-    @abstractmethod
     def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+        self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:
         """O4 (n,), and B at every target (n, N), of loops whose frame is turned and scaled by `ground`.
 
         Of a slider-crank, in place of O4, the point of the slide's line that lies r3 ahead of B at the first
-        target.
+        target. `r4` or the offset is (n,).
         """
+        o4, (_, e4) = o2 + ground, directions
+        return o4, o4[:, None] + (ground * r4)[:, None] * e4
 
     @abstractmethod
     def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:

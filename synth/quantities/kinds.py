@@ -22,32 +22,22 @@ from grashof.synth.loop.dyad import as_vector, direction_of
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
 from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
-from grashof.synth.quantities.kind import Kind, LoopOf, Shapes, by_two
+from grashof.synth.quantities.kind import Directions, Kind, Shapes, by_two
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4, slider_crank_cognate
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.slider_crank import SliderCranks
 
 
-@dataclass(frozen=True, slots=True)
-class _Pivoted(Kind):
-    """A kind whose O4 is a pivot."""
-
-    def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray]:
-        o4 = o2 + ground
-        return o4, o4[:, None] + (ground * loop.r4)[:, None] * loop.e4
-
-    def crank(self, proportion: FloatArray, longer_driver: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """r2 with r1 = 1, sigmoid(a) or its inverse, and its derivative."""
-        sigmoid = 1 / (1 + np.exp(-proportion))
-        r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
-        return r2, np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
+def _crank(proportion: FloatArray, longer_driver: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """r2 with r1 = 1, sigmoid(a) or its inverse, and its derivative."""
+    sigmoid = 1 / (1 + np.exp(-proportion))
+    r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
+    return r2, np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
 
 
 @dataclass(frozen=True, slots=True)
-class FourBarKind(_Pivoted):
+class FourBarKind(Kind):
     """r1 = 1."""
 
     linkage = FourBar
@@ -58,7 +48,9 @@ class FourBarKind(_Pivoted):
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:
-            return _any_lengths(proportions)
+            lengths = np.exp(proportions)
+            r2, r3, r4 = lengths.T
+            return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
         return self._full_crank(proportions, longer_driver, wanted.rotatability_margin)
 
     def _full_crank(self, proportions: FloatArray, longer_driver: BoolArray, margin: float) -> Shapes:
@@ -68,7 +60,7 @@ class FourBarKind(_Pivoted):
         r3 - r4 = (|1 - r2| - margin S) tanh(c). Where r2 is too close to 1 for the margin, r3 = r4.
         """
         a, b, c = proportions.T
-        r2, dr2 = self.crank(a, longer_driver)
+        r2, dr2 = _crank(a, longer_driver)
         k, excess, tanh = (1 + margin) / (1 - margin), np.exp(b), np.tanh(c)
         total = k * (1 + r2) + excess
         room = np.abs(1 - r2) - margin * (1 + r2 + total)
@@ -102,12 +94,6 @@ def _any_of_two(a: FloatArray, b: FloatArray) -> Shapes:
     return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
 
 
-def _any_lengths(proportions: FloatArray) -> Shapes:
-    lengths = np.exp(proportions)
-    r2, r3, r4 = lengths.T
-    return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
-
-
 @dataclass(frozen=True, slots=True)
 class SliderCrankKind(Kind):
     """r3 = 1; the slide lies across the real axis, at r4 = offset, and runs along -i."""
@@ -132,9 +118,9 @@ class SliderCrankKind(Kind):
         return (r2, np.ones_like(r2), room * tanh), by_lengths
 
     def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+        self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:
-        b = a + ground[:, None] * loop.e3
+        b = a + ground[:, None] * directions[0]
         return b[:, 0] - 1j * ground, b
 
     def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
@@ -161,7 +147,7 @@ class SliderCrankKind(Kind):
 
 
 @dataclass(frozen=True, slots=True)
-class InvertedKind(_Pivoted):
+class InvertedKind(Kind):
     """r1 = 1; (l - i offset) e3 = 1 - r2 e2, with r4 = offset."""
 
     linkage = InvertedSliderCrank
@@ -175,7 +161,7 @@ class InvertedKind(_Pivoted):
         if wanted.rotatability is Rotatability.ANY:
             return _any_of_two(a, b)
         margin, tanh = wanted.rotatability_margin, np.tanh(b)
-        r2, by_a = self.crank(a, longer_driver)
+        r2, by_a = _crank(a, longer_driver)
         room = (np.abs(1 - r2) - margin * (1 + r2)) / (1 + margin)
         by_room = -(np.sign(1 - r2) + margin) * by_a / (1 + margin)
         has_room = room > 0

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from circles import closed
 
 from grashof import load, synthesize
 from grashof.analysis import verify
@@ -17,6 +18,7 @@ from grashof.synth.programme.whole_screening import depth_on_the_way
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened
 from grashof.synth.search.finder import finder_for
+from grashof.synth.theory.distinct import signature
 
 AS_GIVEN = [[0, -9], [0, 0], [5, 0], [5, 4], [9, 4], [9, -9]]
 GOES_ON = [[0, -30], [0, 0], [5, 0], [5, 4], [30, 4], [30, -30]]  # the upper floor does not end at x = 9
@@ -118,17 +120,8 @@ def test_moving_parts_pass_beside_a_post(names: tuple[str, ...]) -> None:
     for candidate in result.candidates:
         linkage, verdict = candidate.linkage, candidate.verdict
         theta2 = np.linspace(verdict.theta2[0], verdict.theta2[-1], 400)
-        a = linkage.o2 + linkage.r2 * np.stack([np.cos(theta2), np.sin(theta2)], axis=-1)
-        # B by the two circles about A and O4.
-        across = linkage.o4 - a
-        distance = np.hypot(*across.T)[:, None]
-        along = (distance**2 + linkage.r3**2 - linkage.r4**2) / (2 * distance)
-        left = linkage.assembly * np.sqrt(linkage.r3**2 - along**2)
-        ahead = across / distance
-        b = a + along * ahead + left * np.stack([-ahead[:, 1], ahead[:, 0]], axis=-1)
-        u, v = linkage.coupler_point
-        coupler = (b - a) / linkage.r3
-        p = a + u * coupler + v * np.stack([-coupler[:, 1], coupler[:, 0]], axis=-1)
+        track = closed(signature(linkage), theta2, float(linkage.assembly))
+        a, b, p = (np.stack([each.real, each.imag], axis=-1) for each in track)
         o2, o4 = np.broadcast_to(linkage.o2, a.shape), np.broadcast_to(linkage.o4, a.shape)
         ends = (
             [(x, x) for x in (a, b, p)] if names != ("links",) else [(o2, a), (a, b), (o4, b), (a, p), (b, p)]

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from circles import closed, numbers_of
 from scipy.optimize import least_squares
 
 from grashof.analysis import solve_position
@@ -223,24 +224,12 @@ def noisy(seed: int, points: int, timed: bool) -> tuple[ScaledProblem, Start]:
 
 def squares_by_scipy(scaled: ScaledProblem, start: Start) -> float:
     """Least sum of squared distances, in sizes squared, from a start, by SciPy; no limits."""
-    o2, arm = start.o2, start.arm
-    gaps = np.array(start.theta2) - start.theta2[0]
-    timed = scaled.timed
-    x = np.array([
-        o2.real, o2.imag, start.o4.real, start.o4.imag, *start.lengths[1:], arm.real, arm.imag,
-        *(start.theta2[:1] if timed else start.theta2),
-    ])  # fmt: skip
+    gaps, timed = np.array(start.theta2) - start.theta2[0], scaled.timed
+    x = np.concatenate([numbers_of(start.points), start.theta2[:1] if timed else start.theta2])
 
     def residual(x: FloatArray) -> FloatArray:
-        theta2 = x[9] + gaps if timed else x[9:]
-        a = complex(*x[:2]) + x[4] * np.exp(1j * theta2)
-        to_o4 = complex(*x[2:4]) - a
-        distance = np.abs(to_o4)
-        foot = (distance**2 + x[5] ** 2 - x[6] ** 2) / (2 * distance)
-        height = np.sqrt(np.maximum(x[5] ** 2 - foot**2, 0.0))
-        # The assembly sign is that of sin(theta4 - theta3): B left of A->O4 for +1.
-        coupler = (foot + 1j * start.assembly * height) * to_o4 / distance
-        off = a + complex(*x[7:9]) * coupler / x[5] - scaled.targets
+        _, _, p = closed(x[:9], x[9] + gaps if timed else x[9:], start.assembly)
+        off = p - scaled.targets
         return np.concatenate([off.real, off.imag])
 
     answer = least_squares(residual, x, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=3000)

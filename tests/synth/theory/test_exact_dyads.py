@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from circles import pivots_of
 
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements
@@ -44,19 +45,6 @@ def spread_of_radii(scaled: ScaledProblem, dyads: Dyads) -> npt.NDArray[np.float
     far = 1 + np.abs(dyads.moving) + np.abs(dyads.ground)
     spread: npt.NDArray[np.float64] = np.ptp(radius, axis=1) / far**2
     return spread
-
-
-def planted_dyads(
-    scaled: ScaledProblem, task: MotionTask, linkage: FourBar
-) -> tuple[ComplexArray, ComplexArray]:
-    """Moving pivots at the first pose, and ground pivots, in the frame."""
-    turned = np.exp(1j * (task.angles[0] - float(linkage.body_angle)))
-    a = complex(*task.positions[0]) - complex(*linkage.coupler_point) * turned
-    moving = np.array([a, a + float(linkage.r3) * turned])
-    ground = np.array([complex(*linkage.o2), complex(*linkage.o4)])
-    outward = np.stack([moving, ground])
-    inward = (outward - scaled.frame.origin) / scaled.frame.scale
-    return inward[0], inward[1]
 
 
 BOXES: dict[str, dict[str, Any]] = {
@@ -115,11 +103,11 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
 @pytest.mark.parametrize("poses", [5, 6, 8, 12])
 def test_the_planted_dyads_are_among_those_of_five_poses_and_more(poses: int) -> None:
     for seed in range(25):
-        scaled, task, linkage = planted(seed, poses)
-        dyads = dyads_of(scaled)
+        scaled, _, linkage = planted(seed, poses)
+        dyads, pivots = dyads_of(scaled), pivots_of(scaled, linkage)
         assert 2 <= len(dyads) <= 4
         assert spread_of_radii(scaled, dyads).max() < 1e-9
-        for moving, ground in zip(*planted_dyads(scaled, task, linkage), strict=True):
+        for moving, ground in zip(pivots[2:4], pivots[:2], strict=True):
             gap = np.maximum(np.abs(dyads.moving - moving), np.abs(dyads.ground - ground))
             assert gap.min() < 1e-5 * (1 + abs(moving) + abs(ground)), seed
 
@@ -282,7 +270,6 @@ def test_two_poses_are_never_degenerate(turn: float) -> None:
 def test_all_is_in_the_unit_of_the_task() -> None:
     """A thousand times the size: the same dyads in sizes."""
     scaled, task, _ = planted(5, 5)
-    large = MotionTask(1000 * task.positions, task.angles)
-    scaled = ScaledProblem.of(replace(scaled.problem, task=large))
-    here, there = (np.sort_complex(dyads_of(each).ground) for each in (scaled, scaled))
+    large = replace(scaled.problem, task=MotionTask(1000 * task.positions, task.angles))
+    here, there = (np.sort_complex(dyads_of(each).ground) for each in (scaled, scaled.of_problem(large)))
     np.testing.assert_allclose(here, there, atol=1e-9 * np.abs(here).max())

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from as_found import as_found
+from circles import closed, numbers_of
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.judge.planted import (
@@ -34,25 +35,6 @@ CASES: dict[str, tuple[int, list[int], list[int], bool, bool]] = {
     "points and angles free": (6, [2], [0, 4], False, False),
     "angles but for one point": (7, [1, 2, 3, 4, 5, 6], [], False, False),
 }
-
-
-def closed(numbers: FloatArray, theta2: FloatArray, side: FloatArray) -> tuple[ComplexArray, ...]:
-    """A, B and P at driver angles, by circle intersection; numbers o2, o4, r2, r3, r4, u, v."""
-    o2, o4, arm = (complex(*numbers[i : i + 2]) for i in (0, 2, 7))
-    r2, r3, r4 = numbers[4:7]
-    a = o2 + r2 * np.exp(1j * theta2)
-    distance = np.abs(o4 - a)
-    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
-    coupler = (foot + 1j * side * np.sqrt(r3**2 - foot**2)) * (o4 - a) / distance
-    return a, a + coupler, a + arm * coupler / r3
-
-
-def numbers_of(points: ComplexArray) -> FloatArray:
-    o2, o4, a, b, p = points
-    arm = (p - a) * abs(b - a) / (b - a)
-    return np.array([
-        o2.real, o2.imag, o4.real, o4.imag, abs(a - o2), abs(b - a), abs(b - o4), arm.real, arm.imag,
-    ])  # fmt: skip
 
 
 class Planted:

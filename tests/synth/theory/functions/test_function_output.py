@@ -76,6 +76,15 @@ def test_output_is_that_of_the_judge(mechanism: str) -> None:
 
 
 @EVERY
+def test_random_ones_turn_fully_or_close_over_their_rotation(mechanism: str) -> None:
+    rng, kind = np.random.default_rng(0), KINDS[mechanism].generators
+    assert (kind.cranks(rng, 100).worst_cosine(2 * np.pi) < 1).all()
+    made = kind.anything(rng, 1000, 0.5, 1.0)
+    assert (made.worst_cosine(1.0) < 1).all()
+    assert (made.first == 0.5).all()
+
+
+@EVERY
 def test_slopes_are_those_of_differences(mechanism: str) -> None:
     made, turned, _ = planted(np.random.default_rng(2), 8, mechanism)
     slopes = made.slopes(turned)
@@ -97,7 +106,7 @@ def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -
 
 
 def test_slopes_of_the_stroke_are_those_of_differences() -> None:
-    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100, None, 0)
+    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100)
     made = made[made.worst_cosine(2 * np.pi) < 0.95]
     limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
     rows = limits.of(made)
