@@ -1,10 +1,12 @@
-"""Four-bars closed by circles about A and O4, and their pivots by the body's place: nothing of Grashof."""
+"""Four-bars closed by circles about A and O4, and points of linkages in the frame of the search."""
 
 import numpy as np
 
-from grashof.problems import FourBar
+from grashof.analysis import solve_position
+from grashof.problems import FourBar, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.theory.burmester import Dyads
 
 
 def meeting_points(
@@ -48,3 +50,17 @@ def pivots_of(scaled: ScaledProblem, linkage: FourBar) -> ComplexArray:
     a = p - complex(*linkage.coupler_point) * coupler
     every = np.array([complex(*linkage.o2), complex(*linkage.o4), a, a + float(linkage.r3) * coupler, p])
     return (every - frame.origin) / frame.scale
+
+
+def points_of(scaled: ScaledProblem, linkage: Linkage, theta2: float) -> ComplexArray:
+    """O2, O4, A, B, P of a linkage of any kind in the frame, as the search has them, by the judge."""
+    state, inward = solve_position(linkage, theta2), scaled.frame.inward
+    o2, a, b, p = (complex(inward(place)) for place in (linkage.o2, state.a, state.b, state.p))
+    return np.array([o2, scaled.kind.o4_of(linkage, b, scaled.frame), a, b, p])
+
+
+def radii(positions: ComplexArray, angles: FloatArray, dyads: Dyads) -> FloatArray:
+    """Distances (..., N) of moving pivots, carried in the body's own frame, from their ground pivots."""
+    own = (dyads.moving - positions[..., 0]) * np.exp(-1j * angles[..., 0])
+    places = positions + own[..., None] * np.exp(1j * angles)
+    return np.asarray(np.abs(places - dyads.ground[..., None]))

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from as_found import as_found
-from circles import closed, numbers_of
+from circles import closed, numbers_of, points_of
 
-from grashof.analysis import solve_position, verify
+from grashof.analysis import verify
 from grashof.analysis.judge.planted import (
     planted_motion,
     planted_path,
@@ -18,7 +18,6 @@ from grashof.problems import Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dimensions import dimensions_of
 from grashof.synth.loop.dyad import Bars
-from grashof.synth.quantities.kinds import KINDS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory import polish as path_polish
 from grashof.synth.theory.polish import ExactTargets, Polished, _linearised, _spread, polish_path
@@ -159,12 +158,10 @@ def test_many_driver_angles_are_eliminated_without_a_difference(monkeypatch: pyt
     rng = np.random.default_rng(count)
     task, linkage = planted_path(rng, count)
     verdict = verify(linkage, task, Requirements(exact=True))
-    points = task.positions @ np.array([1, 1j]) / task.size
-    state = solve_position(linkage, verdict.theta2[:1], verdict.assembly[:1])
-    places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
-    begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
+    scaled = ScaledProblem.of(Problem(task=task))
+    begin = points_of(scaled, linkage, verdict.theta2[0]) + rng.normal(0, 1e-5, 5)
     none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-    targets = ExactTargets(points, every, np.zeros(count), none, timed=False, dyad=Bars())
+    targets = ExactTargets(scaled.targets, every, np.zeros(count), none, timed=False, dyad=Bars())
     found = []
     for many in (path_polish.MANY, 1000):
         monkeypatch.setattr(path_polish, "MANY", many)
@@ -183,30 +180,9 @@ def planted_slider(
     task, linkage = planted_motion(np.random.default_rng([11, seed]), count, mechanism=mechanism)
     linkage = as_found(linkage)
     scaled = ScaledProblem.of(Problem(task=task, mechanism=mechanism))
-    kind, every = KINDS[mechanism], np.ones(count, dtype=bool)
-    theta2 = _driver_angles(linkage, task.positions)
-    state = solve_position(linkage, theta2)
-    o2, a, b, p = (complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0]))
-    points = np.array([o2, kind.o4_of(linkage, b, scaled.frame), a, b, p])
-    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, dyad=kind.dyad)
-    return points, theta2, float(linkage.body_angle), targets
-
-
-def _driver_angles(linkage: object, positions: FloatArray) -> FloatArray:
-    """Where a planted linkage meets its targets, by a dense look and bisection of the step."""
-    grid, step = np.linspace(-np.pi, np.pi, 20_001), 2 * np.pi / 20_000
-    found = grid[_miss(linkage, grid, positions).argmin(axis=1)]
-    while step > 1e-16:
-        near = found[:, None] + step * np.linspace(-1, 1, 21)
-        found = np.take_along_axis(near, _miss(linkage, near, positions).argmin(axis=1)[:, None], 1)[:, 0]
-        step /= 8
-    return found
-
-
-def _miss(linkage: object, theta2: FloatArray, positions: FloatArray) -> FloatArray:
-    gap = solve_position(linkage, theta2).p - positions[:, None]  # type: ignore[arg-type]
-    miss: FloatArray = np.hypot(gap[..., 0], gap[..., 1])
-    return miss
+    every, theta2 = np.ones(count, dtype=bool), verify(linkage, task, scaled.problem.requirements).theta2
+    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, dyad=scaled.kind.dyad)
+    return points_of(scaled, linkage, theta2[0]), theta2, float(linkage.body_angle), targets
 
 
 @pytest.mark.parametrize("seed", range(2))
