@@ -112,9 +112,9 @@ class ClosingDyad(ABC):
         The two equations are reduced to one without theta4, or the travel of the slide.
         """
 
-    @abstractmethod
     def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
         """The value of `reach`, from the place of A."""
+        return (a - at.o4).square
 
     @abstractmethod
     def most_lever(self, sizes: Sized) -> Any:
@@ -132,13 +132,13 @@ class ClosingDyad(ABC):
     def driven_by(self, loop: Closed, moved: Vector) -> Any:
         """Change of the output as B, held by link 3, is moved by a vector; times the lever."""
 
-    @abstractmethod
     def reach(self, sizes: Sized, angle: Any) -> Any:
-        """The length that decides the transmission angle, with O2A at an angle from the ground line."""
+        """What decides the transmission angle, with O2A at an angle from the ground line: A-O4 squared."""
+        return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
-    @abstractmethod
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
         """The reach with O2A folded over the ground line, and stretched along it."""
+        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
 
     @abstractmethod
     def cos_mu(self, sizes: Sized, reach: Any) -> Any:
@@ -164,20 +164,7 @@ class ClosingDyad(ABC):
         return loop.along.cross(loop.across)
 
 
-class _Pivoted(ClosingDyad):
-    """O4 is a pivot: the square of A-O4 decides the transmission angle."""
-
-    def reach(self, sizes: Sized, angle: Any) -> Any:
-        return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
-
-    def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
-        return (a - at.o4).square
-
-    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
-        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
-
-
-class Bars(_Pivoted):
+class Bars(ClosingDyad):
     """RRR: bars A-B and O4-B."""
 
     bars = 2
@@ -290,7 +277,7 @@ class Slider(ClosingDyad):
         return moved.dot(loop.along)
 
 
-class Block(_Pivoted):
+class Block(ClosingDyad):
     """RPR: a rod from A through a block at O4; with l from A to B, O4 - A = (l - i offset) u."""
 
     bars = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import casadi as ca
 import numpy as np
@@ -123,21 +123,19 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Positions) ->
 def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.SX:
     """Diagonal of a box around the pivots at all targets."""
 
-    def corner(pick: Callable[[FloatArray], FloatArray]) -> Fill:
-        def guess(scaled: ScaledProblem, start: Start) -> FloatArray:
-            every = np.concatenate([start.points, start.track.ravel(), scaled.targets])
-            return np.array([pick(every.real), pick(every.imag)])
+    def corners(scaled: ScaledProblem, start: Start) -> FloatArray:
+        every = np.concatenate([start.points, start.track.ravel(), scaled.targets])
+        x, y = every.real, every.imag
+        return np.array([[np.min(x), np.min(y)], [np.max(x), np.max(y)]])
 
-        return guess
-
-    low, high = (build.unknown(name, 2, corner(pick), always(-FAR, FAR)) for name, pick in _CORNERS.items())
+    low, high = (
+        build.unknown(name, 2, lambda *given, k=k: corners(*given)[k], always(-FAR, FAR))
+        for k, name in enumerate(("low", "high"))
+    )
     ground = (getattr(x, name) for name in form.kind.linkage.mechanism.ground)
     for point in (*ground, *places.a, *places.b, *places.p):
         build.row(point - low, high - point)
     return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
-
-
-_CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high": np.max}
 
 
 def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) -> ca.SX:
