@@ -92,7 +92,7 @@ class Kind(ABC):
     def sides(self, points: ComplexArray) -> tuple[ComplexArray, tuple[Any, ...], ComplexArray]:
         """Arguments of `Instant`, from points (..., 5): ground, lengths, and P in the coupler's frame."""
         o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        arm = (p - a) * np.abs(b - a) / (b - a) if self.dyad.bars else (p - a) / self.coupler(points)
+        arm = (p - a) * np.abs(b - a) / (b - a) if self.dyad.bars else (p - a) / direction_of(b - a)
         return self.dyad.ground_of(o2, o4, b), self.dyad.lengths_of(o2, o4, a, b), arm
 
     def completed(
@@ -132,11 +132,6 @@ class Kind(ABC):
         return {
             **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism
         }  # fmt: skip
-
-    def coupler(self, points: ComplexArray) -> ComplexArray:
-        """Direction of the coupler, from points (..., 5)."""
-        direction: ComplexArray = direction_of(points[..., 3] - points[..., 2])
-        return direction
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         """O4 in a frame, of a linkage whose B is there at the first target."""

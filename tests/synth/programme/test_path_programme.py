@@ -1,6 +1,5 @@
 """The programme for paths: targets and requirements are kept, least squares are the least."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import random_full_crank, uneven_driver_angles
 from grashof.problems import Box, Objective, PathTask, Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.programme.nonlinear_programme import Solve, solve
+from grashof.synth.programme.nonlinear_programme import Solve, begun_from, solve
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.coupler_search import search
@@ -172,11 +171,6 @@ def test_exact_timed_steps_are_kept(timing: list[float]) -> None:
         np.testing.assert_allclose(steps, np.abs(np.diff(timing)), atol=1e-7)
         assert track.off.max() < 1e-9 * scaled.frame.scale
         check(track, scaled.problem.requirements)
-
-
-def begun_from(start: Start, solved: Solve) -> Start:
-    o2, o4, a, b, p = solved.points
-    return replace(start, o2=o2, o4=o4, a=a, b=b, p=p, theta2=solved.theta2, theta3=solved.theta3)
 
 
 def noisy(seed: int, points: int, timed: bool) -> tuple[ScaledProblem, Start]:

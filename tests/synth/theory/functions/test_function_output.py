@@ -19,18 +19,8 @@ SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800} 
 
 
 def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
-    """As the search sees a linkage whose ground is (0, 0), (1, 0), or whose slide runs along x."""
-    kind, known = KINDS[linkage.mechanism.word].generators, linkage
-    sign, numbers = float(known.assembly), []
-    match linkage.mechanism.word:
-        case "four-bar":
-            numbers = np.log(known.lengths[1:]).tolist()
-        case "slider-crank":
-            numbers = [*np.log(known.lengths / unit), float(known.offset / known.r3)]  # type: ignore[attr-defined]
-        case _:
-            offset = float(known.offset)  # type: ignore[attr-defined]
-            numbers, sign = [float(np.log(known.lengths[1])), sign * offset], 1.0
-    return kind(np.array([[*numbers, start]]), np.array([sign]))
+    """As the search sees a linkage, its driver at `start`, rad, when it begins."""
+    return KINDS[linkage.mechanism.word].generators.of_linkage(linkage, unit, 1, start)
 
 
 def planted(
