@@ -25,7 +25,7 @@ from grashof.synth.quantities.along_motion import (
     value_of,
 )
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
-from grashof.synth.quantities.formulas import Part, parts_of, range_of
+from grashof.synth.quantities.formulas import Part, parts_of, range_of, smooth_ratio
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
@@ -33,8 +33,9 @@ ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
 def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows."""
-    design = Symbols(form, x, places)
-    for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
+    design, formulas = Symbols(form, x, places), form.kind.formulas
+    smooth = {"link_ratio": smooth_ratio(*formulas["link_length"])}
+    for name, part in parts_of(form.limited, smooth, formulas):
         if part.fixed:
             continue
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind.is_angle

@@ -42,7 +42,6 @@ class Kind(ABC):
     linkage: ClassVar[type[Linkage]]
     proportions: ClassVar[int]  # numbers that are neither place nor size
     formulas: ClassVar[Formulas]
-    smooth: ClassVar[Formulas]  # in place of those with a kink
     instant: ClassVar[type[Instant]]
     generators: ClassVar[type[Generators]]  # those that generate functions
 

@@ -42,7 +42,7 @@ class FourBarKind(Kind):
 
     linkage = FourBar
     proportions = 3
-    formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
+    formulas = formulas.FORMULAS
     instant = FourBarInstant
     generators = FourBars
 
@@ -100,7 +100,7 @@ class SliderCrankKind(Kind):
 
     linkage = SliderCrank
     proportions = 2
-    formulas, smooth = formulas.SLIDER_CRANK, formulas.SMOOTH_SLIDER_CRANK
+    formulas = formulas.SLIDER_CRANK
     instant = SliderCrankInstant
     generators = SliderCranks
 
@@ -152,7 +152,7 @@ class InvertedKind(Kind):
 
     linkage = InvertedSliderCrank
     proportions = 2
-    formulas, smooth = formulas.INVERTED, formulas.SMOOTH_INVERTED
+    formulas = formulas.INVERTED
     instant = InvertedInstant
     generators = InvertedSliderCranks
 
