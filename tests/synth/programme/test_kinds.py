@@ -31,11 +31,8 @@ def scaled_of(mechanism: str) -> ScaledProblem:
 
 def drawn(mechanism: str, rng: np.random.Generator) -> tuple[ScaledProblem, Linkage, float, Many]:
     """A linkage at a driver angle, and as the search sees it."""
-    scaled, linkage, theta2 = (
-        scaled_of(mechanism),
-        as_found(RANDOM[mechanism](rng)),
-        float(rng.uniform(-3, 3)),
-    )
+    scaled, linkage = scaled_of(mechanism), as_found(RANDOM[mechanism](rng))
+    theta2 = float(rng.uniform(-3, 3))
     o2, o4, a, b, p = points_of(scaled, linkage, theta2)[:, None]
     view = Many(p, o2, a[:, None], o4, b[:, None], np.array([[theta2]]), kind=scaled.kind)
     return scaled, linkage, theta2, view
