@@ -158,9 +158,3 @@ def _root_of_any(square: FloatArray) -> FloatArray:
     """The root; 1 where the square is not positive, so that open loops have numbers, too."""
     root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
     return root
-
-
-def by_two(*rows: list[FloatArray]) -> FloatArray:
-    """Derivatives (n, 3 lengths, 3 proportions) from rows by the first two proportions."""
-    zero = np.zeros_like(rows[0][0])
-    return np.stack([np.stack([*row, zero], axis=-1) for row in rows], axis=1)

@@ -22,7 +22,7 @@ from grashof.synth.loop.dyad import as_vector, direction_of
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
 from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
-from grashof.synth.quantities.kind import Directions, Kind, Shapes, by_two
+from grashof.synth.quantities.kind import Directions, Kind, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4, slider_crank_cognate
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
@@ -88,10 +88,17 @@ class FourBarKind(Kind):
         ]
 
 
+def _of_two(r2: FloatArray, by_a: FloatArray, offset: FloatArray, *offset_by: FloatArray) -> Shapes:
+    """r2, 1 and the offset, with the derivative of r2 by the first proportion, of the offset by both."""
+    zero = np.zeros_like(r2)
+    rows = (by_a, zero, zero), (zero, zero, zero), (*offset_by, zero)
+    return (r2, np.ones_like(r2), offset), np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+
+
 def _any_of_two(a: FloatArray, b: FloatArray) -> Shapes:
     """r2 = exp(a) and the offset b, with any rotatability; the other length is 1."""
-    r2, zero = np.exp(a), np.zeros_like(a)
-    return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
+    r2 = np.exp(a)
+    return _of_two(r2, r2, b, np.zeros_like(a), np.ones_like(b))
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,8 +121,7 @@ class SliderCrankKind(Kind):
         most = (1 - margin) / (1 + margin)
         r2, by_a = most * sigmoid, most * sigmoid * (1 - sigmoid)
         room = most - r2
-        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [-by_a * tanh, room * (1 - tanh**2)])
-        return (r2, np.ones_like(r2), room * tanh), by_lengths
+        return _of_two(r2, by_a, room * tanh, -by_a * tanh, room * (1 - tanh**2))
 
     def placed(
         self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
@@ -166,8 +172,7 @@ class InvertedKind(Kind):
         by_room = -(np.sign(1 - r2) + margin) * by_a / (1 + margin)
         has_room = room > 0
         room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
-        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
-        return (r2, np.ones_like(r2), room * tanh), by_lengths
+        return _of_two(r2, by_a, room * tanh, by_room * tanh, room * (1 - tanh**2))
 
     def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
         rod = b - a
