@@ -64,7 +64,7 @@ def _on_targets(scaled: ScaledProblem, start: Start, linkage: Start | Solve) -> 
         turns=scaled.turns,
         has_turn=scaled.turn_weights > 0,
         timed=scaled.timed,
-        closure=scaled.kind.closure,
+        dyad=scaled.kind.dyad,
     )
     polished = polish_path(points, theta2, linkage.body_angle, assembly, targets)
     return polished if polished.error < CLOSE and np.isfinite(polished.points).all() else None

@@ -68,6 +68,7 @@ class ClosingDyad(ABC):
     """Links 3 and 4; r4 is the offset where one of them slides."""
 
     bars: ClassVar[int]  # of links 3 and 4
+    pinned: ClassVar[bool] = True  # O4 is a pivot
 
     @property
     def one_assembly(self) -> bool:
@@ -87,6 +88,14 @@ class ClosingDyad(ABC):
         """The ground of `closed`."""
         return at.o4 - at.o2
 
+    def ground_of(self, o2: Any, o4: Any, _b: Any) -> Any:
+        """The same by complex numbers, or arrays; O4 of a slider-crank lies on its slide, ahead of B."""
+        return o4 - o2
+
+    @abstractmethod
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        """r1, r2, r3, r4 by such points; the offset in place of r4, 0 for what the loop lacks."""
+
     def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """B where link 3 has a direction, a unit vector, whether the loop closes or not."""
         placed: Vector = a + at.r3 * along
@@ -103,9 +112,9 @@ class ClosingDyad(ABC):
         The two equations are reduced to one without theta4, or the travel of the slide.
         """
 
-    @abstractmethod
     def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
         """The value of `reach`, from the place of A."""
+        return (a - at.o4).square
 
     @abstractmethod
     def most_lever(self, sizes: Sized) -> Any:
@@ -123,13 +132,13 @@ class ClosingDyad(ABC):
     def driven_by(self, loop: Closed, moved: Vector) -> Any:
         """Change of the output as B, held by link 3, is moved by a vector; times the lever."""
 
-    @abstractmethod
     def reach(self, sizes: Sized, angle: Any) -> Any:
-        """The length that decides the transmission angle, with O2A at an angle from the ground line."""
+        """What decides the transmission angle, with O2A at an angle from the ground line: A-O4 squared."""
+        return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
-    @abstractmethod
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
         """The reach with O2A folded over the ground line, and stretched along it."""
+        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
 
     @abstractmethod
     def cos_mu(self, sizes: Sized, reach: Any) -> Any:
@@ -155,20 +164,7 @@ class ClosingDyad(ABC):
         return loop.along.cross(loop.across)
 
 
-class _Pivoted(ClosingDyad):
-    """O4 is a pivot: the square of A-O4 decides the transmission angle."""
-
-    def reach(self, sizes: Sized, angle: Any) -> Any:
-        return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
-
-    def reach_at(self, at: PlacedLoop, a: Vector) -> Any:
-        return (a - at.o4).square
-
-    def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
-        return (sizes.r1 - sizes.r2) ** 2, (sizes.r1 + sizes.r2) ** 2
-
-
-class Bars(_Pivoted):
+class Bars(ClosingDyad):
     """RRR: bars A-B and O4-B."""
 
     bars = 2
@@ -183,6 +179,9 @@ class Bars(_Pivoted):
         coupler = foot * diagonal + (assembly * root(height2)) * diagonal.left
         output = coupler - diagonal
         return Closed(coupler, output, r3, height2)
+
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        return magnitude(o4 - o2), magnitude(a - o2), magnitude(b - a), magnitude(b - o4)
 
     def across(self, at: PlacedLoop, b: Vector, along: Vector) -> Vector:
         return b - at.o4
@@ -221,6 +220,7 @@ class Slider(ClosingDyad):
     """RRP: a bar A-B and a slider at B; h from A to the slide, r3 u = h n +- sqrt(r3^2 - h^2) s."""
 
     bars = 1
+    pinned = False
 
     def closed(
         self, ground: Vector, crank: Vector, r3: Any, r4: Any, assembly: Any, root: Root = np.sqrt
@@ -229,6 +229,12 @@ class Slider(ClosingDyad):
         ahead2 = (r3 - apart) * (r3 + apart)
         coupler = apart * ground + (assembly * root(ahead2)) * -ground.left
         return Closed(coupler, ground, r3, ahead2)
+
+    def ground_of(self, o2: Any, o4: Any, b: Any) -> Any:
+        return 1j * direction_of(o4 - b)
+
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        return 0.0, magnitude(a - o2), magnitude(b - a), (direction_of(o4 - b).conjugate() * (b - o2)).imag
 
     def ground(self, at: PlacedLoop) -> Vector:
         return at.normal
@@ -271,7 +277,7 @@ class Slider(ClosingDyad):
         return moved.dot(loop.along)
 
 
-class Block(_Pivoted):
+class Block(ClosingDyad):
     """RPR: a rod from A through a block at O4; with l from A to B, O4 - A = (l - i offset) u."""
 
     bars = 0
@@ -285,6 +291,10 @@ class Block(_Pivoted):
         rod = assembly * root(rod2)
         along = (rod * diagonal + r4 * diagonal.left) / square
         return Closed(along, along.left, rod, rod2)
+
+    def lengths_of(self, o2: Any, o4: Any, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
+        offset = (direction_of(b - a).conjugate() * (b - o4)).imag
+        return magnitude(o4 - o2), magnitude(a - o2), 0.0, offset
 
     def b(self, at: PlacedLoop, a: Vector, along: Vector) -> Vector:
         """The foot of O4 on the rod."""
@@ -350,6 +360,16 @@ def as_complex(vector: Vector) -> ComplexArray:
     """Plane vectors as complex numbers."""
     joined: ComplexArray = np.asarray(vector.x + 1j * vector.y)
     return joined
+
+
+def magnitude(z: Any) -> Any:
+    """The absolute value: of single numbers by Python, of arrays by NumPy, which rounds otherwise."""
+    return abs(z) if type(z) is complex else np.abs(z)
+
+
+def direction_of(z: Any) -> Any:
+    """The unit vector of a complex number, or of many; NaN without a length."""
+    return z / (abs(z) or np.nan) if type(z) is complex else z / np.abs(z)
 
 
 def coupler_of(

@@ -90,9 +90,9 @@ class Instant(ABC):
         of their frames, and the friction force on link 4 along the slide.
         """
 
-    @abstractmethod
     def pressing(self, in_b: Vector, force: dict[int, Any], about: dict[int, Any]) -> tuple[Any, Any]:
         """The force across the slide and its moment, from the force in B; zero without a slide."""
+        return 0.0, 0.0
 
     @property
     def travel(self) -> Any:
@@ -185,9 +185,6 @@ class FourBarInstant(Instant):
         """AB x F43 = about A and O4B x F43 = -about O4."""
         in_b: Vector = (-about[4] * self.coupler - about[3] * self.output) / self.output.cross(self.coupler)
         return in_b
-
-    def pressing(self, in_b: Vector, force: dict[int, Any], about: dict[int, Any]) -> tuple[Any, Any]:
-        return 0.0, 0.0
 
 
 @dataclass(frozen=True)

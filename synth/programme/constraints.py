@@ -18,7 +18,6 @@ from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at, on_symbols
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.theory.burmester import Displacements
 
 OWN_INSET = 1e-8  # by which the user's constraints are tightened, so that the polished design keeps them
 MOST_ZONE = 0.5  # sizes, rad: greater ones lead the solver astray
@@ -96,12 +95,13 @@ class Targets:
 def close_at_poses(build: Builder, form: Form, x: Unknowns) -> Positions:
     """Points of the body are displaced with it; A and B stay at their distances from O2 and O4."""
     n = form.targets
-    turned = build.parameter(
-        lambda scaled, start: interleaved(_motion(scaled).rotation[list(start.visit)]), 2 * n
-    )
-    moved = build.parameter(
-        lambda scaled, start: interleaved(_motion(scaled).shift[list(start.visit)]), 2 * n
-    )
+
+    def in_order(name: str) -> ca.SX:
+        return build.parameter(
+            lambda scaled, start: interleaved(getattr(scaled.motion, name)[list(start.visit)]), 2 * n
+        )
+
+    turned, moved = in_order("rotation"), in_order("shift")
     body = build.parameter(lambda scaled, _: interleaved(scaled.targets[:1]), 2)
 
     def displaced(point: ca.SX, k: int) -> ca.SX:
@@ -311,12 +311,6 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Positions) 
 def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
     """Angle of the body from a pose."""
     return x.theta3[k] + x.body_angle - targets.turns[k]
-
-
-def _motion(scaled: ScaledProblem) -> Displacements:
-    if scaled.motion is None:
-        raise TypeError("only whole poses displace the body")
-    return scaled.motion
 
 
 def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import casadi as ca
 import numpy as np
@@ -25,7 +25,7 @@ from grashof.synth.quantities.along_motion import (
     value_of,
 )
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
-from grashof.synth.quantities.formulas import Part, parts_of, range_of
+from grashof.synth.quantities.formulas import Part, parts_of, range_of, smooth_ratio
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
@@ -33,8 +33,9 @@ ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
 def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows."""
-    design = Symbols(form, x, places)
-    for name, part in parts_of(form.limited, form.kind.smooth, form.kind.formulas):
+    design, formulas = Symbols(form, x, places), form.kind.formulas
+    smooth = {"link_ratio": smooth_ratio(*formulas["link_length"])}
+    for name, part in parts_of(form.limited, smooth, formulas):
         if part.fixed:
             continue
         value, angle = ca.SX(part.of(design)), LIMITS[name].kind.is_angle
@@ -123,21 +124,19 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Positions) ->
 def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.SX:
     """Diagonal of a box around the pivots at all targets."""
 
-    def corner(pick: Callable[[FloatArray], FloatArray]) -> Fill:
-        def guess(scaled: ScaledProblem, start: Start) -> FloatArray:
-            every = np.concatenate([start.points, start.track.ravel(), scaled.targets])
-            return np.array([pick(every.real), pick(every.imag)])
+    def corners(scaled: ScaledProblem, start: Start) -> FloatArray:
+        every = np.concatenate([start.points, start.track.ravel(), scaled.targets])
+        x, y = every.real, every.imag
+        return np.array([[np.min(x), np.min(y)], [np.max(x), np.max(y)]])
 
-        return guess
-
-    low, high = (build.unknown(name, 2, corner(pick), always(-FAR, FAR)) for name, pick in _CORNERS.items())
+    low, high = (
+        build.unknown(name, 2, lambda *given, k=k: corners(*given)[k], always(-FAR, FAR))
+        for k, name in enumerate(("low", "high"))
+    )
     ground = (getattr(x, name) for name in form.kind.linkage.mechanism.ground)
     for point in (*ground, *places.a, *places.b, *places.p):
         build.row(point - low, high - point)
     return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
-
-
-_CORNERS: dict[str, Callable[[FloatArray], FloatArray]] = {"low": np.min, "high": np.max}
 
 
 def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) -> ca.SX:

@@ -88,13 +88,8 @@ class Start:
         o2, a, b, p = (
             complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0])
         )
-        o4 = scaled.kind.o4_of(linkage, b, scaled.frame)
         return cls(
-            o2=o2,
-            o4=o4,
-            a=a,
-            b=b,
-            p=p,
+            o2, scaled.kind.o4_of(linkage, b, scaled.frame), a, b, p,
             visit=tuple(visit.tolist()),
             theta2=tuple(verdict.theta2[visit].tolist()),
             theta3=tuple(np.unwrap(state.theta3[visit]).tolist()),
@@ -103,7 +98,7 @@ class Start:
             terms=Terms(scaled.objective),
             body_angle=float(linkage.body_angle),
             kind=scaled.kind,
-        )
+        )  # fmt: skip
 
     def at(
         self, points: Sequence[complex], theta2: Sequence[float], theta3: Sequence[float], body_angle: float
@@ -125,7 +120,7 @@ class Start:
     @property
     def theta1(self) -> float:
         """Direction of the ground line, rad."""
-        return self.kind.theta1_of(self.points)
+        return float(self.kind.theta1_of(self.o2, self.o4, self.b))
 
     @property
     def arm(self) -> complex:
@@ -145,7 +140,8 @@ class Start:
     @property
     def lengths(self) -> tuple[float, float, float, float]:
         """r1, r2, r3, r4 in sizes; of slider kinds the offset in place of r4, and 0 for what they lack."""
-        return self.kind.lengths_of(self.points)
+        o2, o4, a, b, _ = self.points.tolist()
+        return self.kind.dyad.lengths_of(o2, o4, a, b)
 
     @property
     def turns_fully(self) -> bool:
@@ -162,23 +158,18 @@ class Start:
     @classmethod
     def of_screened(cls, linkages: Screened, index: int, objective: Objective | None) -> Start:
         """A start at entry `index` of screened linkages."""
-        visit = linkages.visit[index]
-        o2, o4, a, b, p = (complex(point) for point in linkages.points[index])
+        visit, (o2, o4, a, b, p) = linkages.visit[index], linkages.points[index].tolist()
         return cls(
-            o2=o2,
-            o4=o4,
-            a=a,
-            b=b,
-            p=p,
-            visit=tuple(int(target) for target in visit),
-            theta2=tuple(float(angle) for angle in linkages.theta2[index]),
-            theta3=tuple(float(angle) for angle in np.unwrap(np.angle(linkages.coupler[index][visit]))),
+            o2, o4, a, b, p,
+            visit=tuple(visit.tolist()),
+            theta2=tuple(linkages.theta2[index].tolist()),
+            theta3=tuple(np.unwrap(np.angle(linkages.coupler[index][visit])).tolist()),
             direction=int(linkages.direction[index]),
             assembly=int(linkages.assembly[index]),
             terms=Terms(objective),
             body_angle=float(linkages.body_angle[index]),
             kind=linkages.kind,
-        )
+        )  # fmt: skip
 
 
 Proposal: TypeAlias = Start | Linkage  # a linkage is a design already: nothing is left to solve

@@ -21,7 +21,7 @@ from grashof.problems.values.specs.problem import NO_OBJECTIVE
 from grashof.synth.programme.start import Proposal, Start
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.screening import Many, Screened
+from grashof.synth.quantities.screening import Screened
 
 FAR = 1e3  # in place of an unbounded amount
 NEAREST = 8  # starts that are tried for the closest miss
@@ -107,14 +107,11 @@ def _values(scaled: ScaledProblem, linkages: Screened, functions: tuple[Constrai
 def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
     """The numbers of linkages in the order of `_symbols`, shape (n, M)."""
     o2, o4, a, b, p = linkages.points.T
-    view = Many(p, o2, a[:, None], o4, b[:, None], kind=linkages.kind)
-    fourth = view.r4 if linkages.kind.dyad.bars > 1 else view.offset
-    lengths = [getattr(view, "r1", 0 * view.r2), view.r2, getattr(view, "r3", 0 * view.r2), fourth]
-    arm = (p - a) * np.abs(b - a) / (b - a)
+    arm, lengths = (p - a) * np.abs(b - a) / (b - a), linkages.kind.dyad.lengths_of(o2, o4, a, b)
     columns = [
         *scaled.frame.outward(np.stack([o2, o4])).transpose(0, 2, 1).reshape(4, -1),
-        *(scaled.frame.scale * each[:, 0] for each in lengths),
-        view.theta1[:, 0],
+        *(np.broadcast_to(scaled.frame.scale * each, o2.shape) for each in lengths),
+        linkages.kind.theta1_of(o2, o4, b),
         *(scaled.frame.scale * np.stack([arm.real, arm.imag])),
         *linkages.theta2.T,
         *scaled.frame.outward(linkages.track).transpose(0, 2, 3, 1).reshape(-1, len(linkages)),

@@ -13,7 +13,7 @@ import numpy as np
 from grashof.problems.values.dynamics.load_specs import JOINTS, TURNING
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
-from grashof.synth.quantities.driver_motion import pieces
+from grashof.synth.quantities.driver_motion import cubics
 from grashof.synth.quantities.loading import AppliedLoad, Loading, Mass
 
 _TURN_DEG = 360.0
@@ -126,7 +126,7 @@ def _values(at: Instant, load: AppliedLoad) -> list[Any]:
 
 
 def _curve(load: AppliedLoad, column: int, place: Any) -> Any:
-    """The monotone cubic through a column, as a sum over its pieces, so that nothing branches."""
+    """The monotone cubic through a column."""
     places, values = np.array(load.places), np.array(load.rows)[:, column]
     if load.over in TURNING:  # its slopes look at the neighbours on the other turn
         beside = min(2, len(places) - 1)
@@ -134,13 +134,7 @@ def _curve(load: AppliedLoad, column: int, place: Any) -> Any:
             [places[-1 - beside : -1] - _TURN_DEG, places, places[1 : 1 + beside] + _TURN_DEG]
         )
         values = np.concatenate([values[-1 - beside : -1], values, values[1 : 1 + beside]])
-    value: Any = values[0]
-    for (cubic, square, slope), low, high in zip(
-        pieces(places, values), places[:-1], places[1:], strict=True
-    ):
-        way = np.minimum(np.maximum(place - low, 0.0), high - low)
-        value = value + ((cubic * way + square) * way + slope) * way
-    return value
+    return cubics(places, values, place)[0]
 
 
 def _joint_moments(at: Instant, loading: Loading) -> list[Any]:

@@ -46,7 +46,7 @@ def _profile(motor: MotorSpec, share: Any) -> tuple[Any, Any, Any]:
     if motor.values is not None:
         rows = np.array(motor.values)
         times, angles = ((rows - rows[0]) / (rows[-1] - rows[0])).T
-        return _cubics(times, angles, share)
+        return cubics(times, angles, share)
     if motor.profile == "cycloid":
         phase = 2 * np.pi * share
         return share - np.sin(phase) / (2 * np.pi), 1 - np.cos(phase), 2 * np.pi * np.sin(phase)
@@ -61,24 +61,17 @@ def _profile(motor: MotorSpec, share: Any) -> tuple[Any, Any, Any]:
     return way, top / ramp * (rising - falling), bend
 
 
-def _cubics(places: FloatArray, values: FloatArray, at: Any) -> tuple[Any, Any, Any]:
-    """The monotone cubic curve through values, with its first two derivatives."""
+def cubics(places: FloatArray, values: FloatArray, at: Any) -> tuple[Any, Any, Any]:
+    """The monotone cubic through values, as a sum without branches, and its first two derivatives."""
     value, rate, bend = values[0], 0.0, 0.0
-    for (cubic, square, slope), low, high in zip(
-        pieces(places, values), places[:-1], places[1:], strict=True
-    ):
+    pieces = scipy.interpolate.PchipInterpolator(places, values).c[:3].T
+    for (cubic, square, slope), low, high in zip(pieces, places[:-1], places[1:], strict=True):
         way = np.minimum(np.maximum(at - low, 0.0), high - low)
         value = value + ((cubic * way + square) * way + slope) * way
         inside = 1.0 * (at >= low) * (at < high) if high < places[-1] else 1.0 * (at >= low)
         rate = rate + inside * ((3 * cubic * way + 2 * square) * way + slope)
         bend = bend + inside * (6 * cubic * way + 2 * square)
     return value, rate, bend
-
-
-def pieces(places: FloatArray, values: FloatArray) -> FloatArray:
-    """Coefficients of (x - place)^3, ^2, ^1 in each piece of the monotone cubic curve, shape (N - 1, 3)."""
-    coefficients: FloatArray = scipy.interpolate.PchipInterpolator(places, values).c[:3].T
-    return coefficients
 
 
 def meeting_order(angle: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:

@@ -200,9 +200,6 @@ INVERTED: Formulas = {
     "output_swing": (Part("output swing", lambda d: _swing(d, _block_angle(d))),),
     "time_ratio": (Part("time ratio", lambda d: (1 - d.double_crank) * _ratio_of(_block_angle(d))),),
 }
-SMOOTH = {"link_ratio": smooth_ratio(*_LINKS)}
-SMOOTH_SLIDER_CRANK = {"link_ratio": smooth_ratio(_R2, _R3)}
-SMOOTH_INVERTED = {"link_ratio": smooth_ratio(_R1, _R2)}
 LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
 
 

@@ -11,14 +11,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, Self, TypeAlias, cast
+from typing import Any, ClassVar, Self, TypeAlias, cast
 
 import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
-from grashof.synth.loop.dimensions import Closure
-from grashof.synth.loop.dyad import ClosingDyad, PlacedLoop, as_complex, as_vector
+from grashof.synth.loop.dyad import ClosingDyad, PlacedLoop, as_complex, as_vector, direction_of
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Formulas
@@ -29,26 +28,11 @@ from grashof.synth.theory.functions.output import Generators
 Shapes: TypeAlias = tuple[tuple[FloatArray, FloatArray, FloatArray], FloatArray]
 # e3, e4 (n, N), r3 (n, N) or (n, 1), and whether the loop closes everywhere (n,).
 LoopAt: TypeAlias = tuple[ComplexArray, ComplexArray, FloatArray, BoolArray]
+Directions: TypeAlias = tuple[ComplexArray, ComplexArray]  # e3 and e4 (n, N)
 
 
-_LENGTHS = ("r1", "r2", "r3", "r4")
+LENGTHS = ("r1", "r2", "r3", "r4")
 _ONLY: dict[type, Any] = {}  # the one instance of each kind
-
-
-class LoopOf(Protocol):
-    """The directions of a `Loop`, in the frame of this module."""
-
-    @property
-    def r4(self) -> FloatArray:
-        """r4 or the offset, shape (n,)."""
-
-    @property
-    def e3(self) -> ComplexArray:
-        """Directions of the coupler, shape (n, N)."""
-
-    @property
-    def e4(self) -> ComplexArray:
-        """Directions of O4B, or across what slides, shape (n, N)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +42,6 @@ class Kind(ABC):
     linkage: ClassVar[type[Linkage]]
     proportions: ClassVar[int]  # numbers that are neither place nor size
     formulas: ClassVar[Formulas]
-    smooth: ClassVar[Formulas]  # in place of those with a kink
-    closure: ClassVar[Closure]
     instant: ClassVar[type[Instant]]
     generators: ClassVar[type[Generators]]  # those that generate functions
 
@@ -81,42 +63,42 @@ class Kind(ABC):
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
 
-    @abstractmethod
     def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+        self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:
         """O4 (n,), and B at every target (n, N), of loops whose frame is turned and scaled by `ground`.
 
         Of a slider-crank, in place of O4, the point of the slide's line that lies r3 ahead of B at the first
-        target.
+        target. `r4` or the offset is (n,).
         """
+        o4, (_, e4) = o2 + ground, directions
+        return o4, o4[:, None] + (ground * r4)[:, None] * e4
 
     @abstractmethod
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        """Set the lengths and directions of a `Many` beside those of the dyads; signed sin mu (n, N)."""
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        """Signed sin mu (n, N) of a `Many`; sets the way of its output from the first target to the last."""
 
-    @abstractmethod
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        """r1, r2, r3, r4 from O2, O4, A, B, P; the offset in place of r4, 0 for what the kind lacks."""
-
-    @abstractmethod
     def arguments(self, points: ComplexArray) -> dict[str, Any]:
         """Arguments of its value besides coupler point, assembly and body angle, from points (..., 5).
 
         Places as complex numbers, all lengths in the unit of the points.
         """
+        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
+        found = dict(zip(LENGTHS, self.dyad.lengths_of(o2, o4, a, b), strict=True))
+        found |= {"o2": o2, "o4": o4, "offset": found["r4"], "slide_angle": np.angle(direction_of(o4 - b))}
+        return {row.name: found[row.name] for row in self.linkage.mechanism.parameters if row.name in found}
 
-    @abstractmethod
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
+    def sides(self, points: ComplexArray) -> tuple[ComplexArray, tuple[Any, ...], ComplexArray]:
         """Arguments of `Instant`, from points (..., 5): ground, lengths, and P in the coupler's frame."""
+        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
+        arm = (p - a) * np.abs(b - a) / (b - a) if self.dyad.bars else (p - a) / direction_of(b - a)
+        return self.dyad.ground_of(o2, o4, b), self.dyad.lengths_of(o2, o4, a, b), arm
 
-    @abstractmethod
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
     ) -> dict[str, complex]:
         """O4 and B where the programme has no unknowns for them, from the unknowns `found` and e3."""
+        return {}
 
     @property
     def dyad(self) -> ClosingDyad:
@@ -142,7 +124,7 @@ class Kind(ABC):
 
     def named(self, lengths: Iterable[Any], theta1: Any) -> dict[str, Any]:
         """Fields of a `Design` from r1, r2, r3, r4, or the offset there, and the ground's direction."""
-        names, every = self.linkage.mechanism.lengths, dict(zip(_LENGTHS, lengths, strict=True))
+        names, every = self.linkage.mechanism.lengths, dict(zip(LENGTHS, lengths, strict=True))
         found = {name: length if name in names else None for name, length in every.items()}
         offset = None if "r4" in names else every["r4"]
         slide = theta1 - np.pi / 2 if "slide_angle" in self.formulas else None
@@ -150,19 +132,13 @@ class Kind(ABC):
             **found, "theta1": theta1, "offset": offset, "slide_angle": slide, "mechanism": self.mechanism
         }  # fmt: skip
 
-    def coupler(self, points: ComplexArray) -> ComplexArray:
-        """Direction of the coupler, from points (..., 5)."""
-        coupler = points[..., 3] - points[..., 2]
-        direction: ComplexArray = coupler / np.abs(coupler)
-        return direction
-
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         """O4 in a frame, of a linkage whose B is there at the first target."""
         return complex(frame.inward(linkage.o4))
 
-    def theta1_of(self, points: ComplexArray) -> float:
-        """Direction of the ground line from O2, O4, A, B, P, rad."""
-        return float(np.angle(points[1] - points[0]))
+    def theta1_of(self, o2: Any, o4: Any, _b: Any) -> Any:
+        """Direction of the ground line by complex numbers, or arrays of them, rad."""
+        return np.angle(o4 - o2)
 
     def b_of(
         self, lengths: tuple[float, ...], o4: complex, a: ComplexArray, turned: ComplexArray
@@ -182,9 +158,3 @@ def _root_of_any(square: FloatArray) -> FloatArray:
     """The root; 1 where the square is not positive, so that open loops have numbers, too."""
     root: FloatArray = np.sqrt(np.where(square > 0, square, 1.0))
     return root
-
-
-def by_two(*rows: list[FloatArray]) -> FloatArray:
-    """Derivatives (n, 3 lengths, 3 proportions) from rows by the first two proportions."""
-    zero = np.zeros_like(rows[0][0])
-    return np.stack([np.stack([*row, zero], axis=-1) for row in rows], axis=1)

@@ -19,49 +19,39 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanisms import ROWS
-from grashof.synth.loop.dimensions import FourBarClosure, InvertedSliderCrankClosure, SliderCrankClosure
-from grashof.synth.loop.dyad import as_vector
+from grashof.synth.loop.dyad import as_vector, direction_of
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
 from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
-from grashof.synth.quantities.kind import Kind, LoopOf, Shapes, by_two
+from grashof.synth.quantities.kind import Directions, Kind, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4, slider_crank_cognate
 from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.slider_crank import SliderCranks
 
 
-@dataclass(frozen=True, slots=True)
-class _Pivoted(Kind):
-    """A kind whose O4 is a pivot."""
-
-    def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray]:
-        o4 = o2 + ground
-        return o4, o4[:, None] + (ground * loop.r4)[:, None] * loop.e4
-
-    def crank(self, proportion: FloatArray, longer_driver: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """r2 with r1 = 1, sigmoid(a) or its inverse, and its derivative."""
-        sigmoid = 1 / (1 + np.exp(-proportion))
-        r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
-        return r2, np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
+def _crank(proportion: FloatArray, longer_driver: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """r2 with r1 = 1, sigmoid(a) or its inverse, and its derivative."""
+    sigmoid = 1 / (1 + np.exp(-proportion))
+    r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
+    return r2, np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
 
 
 @dataclass(frozen=True, slots=True)
-class FourBarKind(_Pivoted):
+class FourBarKind(Kind):
     """r1 = 1."""
 
     linkage = FourBar
     proportions = 3
-    formulas, smooth = formulas.FORMULAS, formulas.SMOOTH
-    closure = FourBarClosure()
+    formulas = formulas.FORMULAS
     instant = FourBarInstant
     generators = FourBars
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:
-            return _any_lengths(proportions)
+            lengths = np.exp(proportions)
+            r2, r3, r4 = lengths.T
+            return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
         return self._full_crank(proportions, longer_driver, wanted.rotatability_margin)
 
     def _full_crank(self, proportions: FloatArray, longer_driver: BoolArray, margin: float) -> Shapes:
@@ -71,7 +61,7 @@ class FourBarKind(_Pivoted):
         r3 - r4 = (|1 - r2| - margin S) tanh(c). Where r2 is too close to 1 for the margin, r3 = r4.
         """
         a, b, c = proportions.T
-        r2, dr2 = self.crank(a, longer_driver)
+        r2, dr2 = _crank(a, longer_driver)
         k, excess, tanh = (1 + margin) / (1 - margin), np.exp(b), np.tanh(c)
         total = k * (1 + r2) + excess
         room = np.abs(1 - r2) - margin * (1 + r2 + total)
@@ -86,36 +76,11 @@ class FourBarKind(_Pivoted):
         derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
         return (r2, (total + difference) / 2, (total - difference) / 2), derivative
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        ground, coupler, output = (o4 - o2)[:, None], b - a, b - o4[:, None]
-        d.o4, d.r4 = as_vector(o4[:, None]), np.abs(output[:, :1])
-        d.bp = d.p_from(b)
-        d.r1, d.r3, d.theta1 = np.abs(ground), np.abs(coupler[:, :1]), np.angle(ground)
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        coupler, output = b - a, b - o4[:, None]
         d.output_turn = as_vector(output[:, :1]).angle_to(as_vector(output[:, -1:]))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sine: FloatArray = (coupler.conj() * output).imag / (d.r3 * d.r4)
+        sine: FloatArray = (coupler.conj() * output).imag / (d.r3 * d.r4)
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        return abs(o4 - o2), abs(a - o2), abs(b - a), abs(b - o4)
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "r3": np.abs(b - a), "r4": np.abs(b - o4)}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        coupler, ground = b - a, o4 - o2
-        arm = (p - a) * np.abs(coupler) / coupler
-        return ground, [np.abs(link) for link in (ground, a - o2, coupler, b - o4)], arm
-
-    def completed(
-        self, _pivots: Mapping[str, complex], _turned: complex, _found: Mapping[str, float]
-    ) -> dict[str, complex]:
-        return {}
 
     def alike(self, points: ComplexArray, *, timed: bool, body: bool) -> list[ComplexArray]:
         return [
@@ -124,16 +89,17 @@ class FourBarKind(_Pivoted):
         ]
 
 
+def _of_two(r2: FloatArray, by_a: FloatArray, offset: FloatArray, *offset_by: FloatArray) -> Shapes:
+    """r2, 1 and the offset, with the derivative of r2 by the first proportion, of the offset by both."""
+    zero = np.zeros_like(r2)
+    rows = (by_a, zero, zero), (zero, zero, zero), (*offset_by, zero)
+    return (r2, np.ones_like(r2), offset), np.stack([np.stack(row, axis=-1) for row in rows], axis=1)
+
+
 def _any_of_two(a: FloatArray, b: FloatArray) -> Shapes:
     """r2 = exp(a) and the offset b, with any rotatability; the other length is 1."""
-    r2, zero = np.exp(a), np.zeros_like(a)
-    return (r2, np.ones_like(r2), b), by_two([r2, zero], [zero, zero], [zero, np.ones_like(b)])
-
-
-def _any_lengths(proportions: FloatArray) -> Shapes:
-    lengths = np.exp(proportions)
-    r2, r3, r4 = lengths.T
-    return (r2, r3, r4), lengths[:, :, None] * np.eye(3)
+    r2 = np.exp(a)
+    return _of_two(r2, r2, b, np.zeros_like(a), np.ones_like(b))
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,8 +108,7 @@ class SliderCrankKind(Kind):
 
     linkage = SliderCrank
     proportions = 2
-    formulas, smooth = formulas.SLIDER_CRANK, formulas.SMOOTH_SLIDER_CRANK
-    closure = SliderCrankClosure()
+    formulas = formulas.SLIDER_CRANK
     instant = SliderCrankInstant
     generators = SliderCranks
 
@@ -157,50 +122,26 @@ class SliderCrankKind(Kind):
         most = (1 - margin) / (1 + margin)
         r2, by_a = most * sigmoid, most * sigmoid * (1 - sigmoid)
         room = most - r2
-        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [-by_a * tanh, room * (1 - tanh**2)])
-        return (r2, np.ones_like(r2), room * tanh), by_lengths
+        return _of_two(r2, by_a, room * tanh, -by_a * tanh, room * (1 - tanh**2))
 
     def placed(
-        self, loop: LoopOf, o2: ComplexArray, ground: ComplexArray, a: ComplexArray
+        self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:
-        b = a + ground[:, None] * loop.e3
+        b = a + ground[:, None] * directions[0]
         return b[:, 0] - 1j * ground, b
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        along, coupler = (o4 - b[:, 0])[:, None], b - a
-        d.r3, d.theta1, d.bp = np.abs(coupler[:, :1]), np.angle(1j * along), d.p_from(b)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            along = along / np.abs(along)
-            d.offset = (along.conj() * (b[:, :1] - o2[:, None])).imag
-            d.output_travel = (along.conj() * (b[:, -1:] - b[:, :1])).real
-            sine: FloatArray = (along.conj() * coupler).real / d.r3
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        along = direction_of((o4 - b[:, 0])[:, None])
+        d.output_travel = (along.conj() * (b[:, -1:] - b[:, :1])).real
+        sine: FloatArray = (along.conj() * (b - a)).real / d.r3
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        along = (o4 - b) / abs(o4 - b)
-        return 0.0, abs(a - o2), abs(b - a), (along.conjugate() * (b - o2)).imag
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        along = (o4 - b) / np.abs(o4 - b)
-        lengths = {"r2": np.abs(a - o2), "r3": np.abs(b - a), "offset": (along.conj() * (b - o2)).imag}
-        return {"o2": o2, **lengths, "slide_angle": np.angle(along)}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        along = (o4 - b) / np.abs(o4 - b)
-        lengths = [np.zeros_like(a.real), np.abs(a - o2), np.abs(b - a), (along.conj() * (b - o2)).imag]
-        return 1j * along, lengths, (p - a) * np.abs(b - a) / (b - a)
 
     def o4_of(self, linkage: Linkage, b: complex, frame: Frame) -> complex:
         theta1, r3 = complex(linkage.theta1), float(linkage.r3) / frame.scale
         return complex(b - 1j * r3 * np.exp(1j * theta1))
 
-    def theta1_of(self, points: ComplexArray) -> float:
-        return float(np.angle(1j * (points[1] - points[3])))
+    def theta1_of(self, o2: Any, o4: Any, b: Any) -> Any:
+        return np.angle(1j * (o4 - b))
 
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]
@@ -213,13 +154,12 @@ class SliderCrankKind(Kind):
 
 
 @dataclass(frozen=True, slots=True)
-class InvertedKind(_Pivoted):
+class InvertedKind(Kind):
     """r1 = 1; (l - i offset) e3 = 1 - r2 e2, with r4 = offset."""
 
     linkage = InvertedSliderCrank
     proportions = 2
-    formulas, smooth = formulas.INVERTED, formulas.SMOOTH_INVERTED
-    closure = InvertedSliderCrankClosure()
+    formulas = formulas.INVERTED
     instant = InvertedInstant
     generators = InvertedSliderCranks
 
@@ -228,41 +168,18 @@ class InvertedKind(_Pivoted):
         if wanted.rotatability is Rotatability.ANY:
             return _any_of_two(a, b)
         margin, tanh = wanted.rotatability_margin, np.tanh(b)
-        r2, by_a = self.crank(a, longer_driver)
+        r2, by_a = _crank(a, longer_driver)
         room = (np.abs(1 - r2) - margin * (1 + r2)) / (1 + margin)
         by_room = -(np.sign(1 - r2) + margin) * by_a / (1 + margin)
         has_room = room > 0
         room, by_room = np.where(has_room, room, 0.0), np.where(has_room, by_room, 0.0)
-        by_lengths = by_two([by_a, 0 * a], [0 * a, 0 * a], [by_room * tanh, room * (1 - tanh**2)])
-        return (r2, np.ones_like(r2), room * tanh), by_lengths
+        return _of_two(r2, by_a, room * tanh, by_room * tanh, room * (1 - tanh**2))
 
-    def many(
-        self, d: Any, o2: ComplexArray, o4: ComplexArray, a: ComplexArray, b: ComplexArray
-    ) -> FloatArray:
-        ground, rod = (o4 - o2)[:, None], b - a
-        d.o4, d.r1, d.theta1 = as_vector(o4[:, None]), np.abs(ground), np.angle(ground)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            e3 = rod[:, :1] / np.abs(rod[:, :1])
-            d.offset = (e3.conj() * (b[:, :1] - o4[:, None])).imag
-            d.output_turn = as_vector(rod[:, :1]).angle_to(as_vector(rod[:, -1:]))
-            sine: FloatArray = np.abs(rod) / np.abs(o4[:, None] - a)
+    def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
+        rod = b - a
+        d.output_turn = as_vector(rod[:, :1]).angle_to(as_vector(rod[:, -1:]))
+        sine: FloatArray = np.abs(rod) / np.abs(o4[:, None] - a)
         return sine
-
-    def lengths_of(self, points: ComplexArray) -> tuple[float, float, float, float]:
-        o2, o4, a, b, _ = points.tolist()
-        along = (b - a) / (abs(b - a) or np.nan)  # the block is at A: no direction
-        return abs(o4 - o2), abs(a - o2), 0.0, (along.conjugate() * (b - o4)).imag
-
-    def arguments(self, points: ComplexArray) -> dict[str, Any]:
-        o2, o4, a, b, _ = np.moveaxis(points, -1, 0)
-        offset = (self.coupler(points).conj() * (b - o4)).imag
-        return {"o2": o2, "o4": o4, "r2": np.abs(a - o2), "offset": offset}
-
-    def sides(self, points: ComplexArray) -> tuple[ComplexArray, list[FloatArray], ComplexArray]:
-        o2, o4, a, b, p = np.moveaxis(points, -1, 0)
-        ground, rod = o4 - o2, self.coupler(points)
-        lengths = [np.abs(ground), np.abs(a - o2), np.zeros_like(a.real), (rod.conj() * (b - o4)).imag]
-        return ground, lengths, (p - a) / rod
 
     def completed(
         self, pivots: Mapping[str, complex], turned: complex, found: Mapping[str, float]

@@ -11,6 +11,7 @@ from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity
+from grashof.synth.loop.dyad import direction_of
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.kinds import kind_of
@@ -136,7 +137,7 @@ class ScaledProblem:
         coupler to the body (...) in rad is by default that of the first pose.
         """
         with np.errstate(invalid="ignore", divide="ignore"):  # a value refuses a link of no length
-            coupler, given = self.kind.coupler(points), self.kind.arguments(points)
+            coupler, given = direction_of(points[..., 3] - points[..., 2]), self.kind.arguments(points)
         arm = (points[..., 4] - points[..., 2]) * coupler.conj() * self.frame.scale
         if body_angle is None:
             body_angle = np.angle(np.exp(1j * self.turns[0]) * coupler.conj())

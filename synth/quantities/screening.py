@@ -14,7 +14,7 @@ from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
-from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.kind import LENGTHS, Kind
 
 ROUNDING = 1e-10  # sizes, rad: up to which a limit counts as kept
 TOUCHING = 1e-10  # sizes: a point no deeper inside an area counts as on its boundary
@@ -114,15 +114,17 @@ class Many(View):
             self.o2, self.a, self.ap = as_vector(o2[:, None]), as_vector(a), self.p_from(a)
             self.r2, self.theta2_start = np.abs(crank[:, :1]), np.angle(crank[:, :1])
         if o4 is not None and b is not None:
-            self.b = as_vector(b)
-            if kind.dyad.bars > 1:
-                self.o4, self.bp, self.r4 = (
-                    as_vector(o4[:, None]),
-                    self.p_from(b),
-                    np.abs(b[:, :1] - o4[:, None]),
-                )
+            self.o4, self.b, self.bp = as_vector(o4[:, None]), as_vector(b), self.p_from(b)
+            self.r4 = np.abs(b[:, :1] - o4[:, None])
         if o2 is not None and o4 is not None and a is not None and b is not None:
-            self.sine = kind.many(self, o2, o4, a, b)
+            first = o2[:, None], o4[:, None], a[:, :1], b[:, :1]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                *lengths, self.offset = kind.dyad.lengths_of(*first)
+                for name, length in zip(LENGTHS, (*lengths, self.offset), strict=True):
+                    if name in kind.linkage.mechanism.lengths:
+                        setattr(self, name, length)
+                self.theta1 = kind.theta1_of(*first[:2], first[3])
+                self.sine = kind.sine(self, o4, a, b)
             self.double_crank = self.r2 > getattr(self, "r1", np.inf)
             self.turns = kind.dyad.turns_fully(self)
         if theta2 is not None:

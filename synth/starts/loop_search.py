@@ -113,7 +113,7 @@ def _standing(target: SearchTargets, loop: Loop, z: ComplexArray, error: FloatAr
     z0, z1, z2 = z.T
     ground = z1 / loop.r2
     a = z0[:, None] + z1[:, None] * loop.e2
-    o4, b = target.kind.placed(loop, z0, ground, a)
+    o4, b = target.kind.placed(z0, ground, a, (loop.e3, loop.e4), loop.r4)
     turned, in_loop = body_turns(target, loop)
     return Placed(
         error=error + (turned**2).sum(axis=1),

@@ -15,7 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.problems import FourBar, SliderCrank, Task
-from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.arrays import FloatArray
 
 # Shares r2 / r3 at which a family is examined, close where one of the two vanishes beside the other.
 _GRID = np.unique(
@@ -53,11 +53,6 @@ class StrokeLinkages:
     def mirrored(self) -> StrokeLinkages:
         """Their mirror images, in which the driver turns the other way."""
         return replace(self, first=-self.last, last=-self.first, assembly=-self.assembly)
-
-    @property
-    def usable(self) -> BoolArray:
-        """Which of them turn fully on one assembly, shape (n,)."""
-        return self.margin > 0
 
 
 _LEAST_SHARE = float(_GRID[0])

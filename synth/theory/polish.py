@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from grashof.synth.loop.dimensions import Closure
+from grashof.synth.loop.dimensions import dimensions_of, sized_loop
+from grashof.synth.loop.dyad import ClosingDyad
 
 STEPS = 4
 MORE, DONE = 8, 1e-10  # steps at most beyond these where, as on short arcs, much is left
@@ -24,7 +25,7 @@ class ExactTargets:
     turns: FloatArray  # (N,), rad: angles of the body
     has_turn: BoolArray  # (N,)
     timed: bool  # the driver angles move together
-    closure: Closure  # of the kind of linkage
+    dyad: ClosingDyad  # of the kind of linkage
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ def polish_path(
     _, _, a, b, p = points
     arm = (p - a) * abs(b - a) / (b - a)
     unknowns = np.concatenate([
-        targets.closure.dimensions(points), [arm.real, arm.imag, body_angle],
+        dimensions_of(targets.dyad, points), [arm.real, arm.imag, body_angle],
         theta2[:1] if targets.timed else theta2,
     ])  # fmt: skip
     gaps = theta2 - theta2[0]
@@ -85,7 +86,7 @@ def _linearised(
     e2 = np.exp(1j * theta2)
     a = o2 + r2 * e2
     with np.errstate(invalid="ignore", divide="ignore"):
-        loop = targets.closure.closed(unknowns[:7], e2, assembly)
+        loop = sized_loop(targets.dyad, unknowns[:7], e2, assembly)
         e3, e4 = loop.e3, loop.e4
         p = a + arm * e3
         # The loop, projected on e4, gives the turn of the coupler.

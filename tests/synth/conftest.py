@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
+from circles import meeting_points
 
 import grashof.synth.search.workers as workers_module
 from grashof import load, synthesize
@@ -46,17 +47,6 @@ Judge: TypeAlias = Callable[[FourBar, MotionTask], Findings]
 
 def complex_point(point: FloatArray) -> complex:
     return complex(float(point[0]), float(point[1]))
-
-
-def meeting_points(a: ComplexArray, o4: complex, r3: float, r4: float) -> tuple[ComplexArray, ComplexArray]:
-    """Both places of B for places of A, left of A->O4 first; NaN where the circles do not meet."""
-    to_o4 = o4 - a
-    distance = np.abs(to_o4)
-    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
-    with np.errstate(invalid="ignore"):
-        height = np.sqrt(r3**2 - foot**2)
-    ahead = to_o4 / distance
-    return a + ahead * (foot + 1j * height), a + ahead * (foot - 1j * height)
 
 
 def folded_angle(a: ComplexArray, b: ComplexArray, o4: complex) -> FloatArray:

@@ -14,7 +14,7 @@ from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Bars, Closed
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
+from grashof.synth.theory.functions.output import Generators, crank_ratios, solved, weighed
 
 _TRIVIAL = 1e-6  # of the ground: with a pivot nearer to O2 or O4 it is the ground link itself
 
@@ -46,10 +46,6 @@ class FourBars(Generators):
         r1, *others = linkage.lengths
         shape = np.append(np.log(np.array(others) / r1), driver * (theta2 - linkage.theta1))
         return cls(shape[None], np.array([driver * float(linkage.assembly)]))
-
-    @property
-    def other_assembly(self) -> Self:
-        return type(self)(self.shape, -self.assembly)
 
     @staticmethod
     def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
@@ -103,14 +99,11 @@ class FourBars(Generators):
         shape[~np.isfinite(shape).all(axis=1)] = np.nan
         return cls(shape, assembly)
 
-    @classmethod
-    def cranks(
-        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
-    ) -> Self:
-        """Random four-bars whose driver turns fully, on both assemblies.
+    @staticmethod
+    def full_cranks(rng: np.random.Generator, count: int, shortest: int) -> FloatArray:
+        """All full cranks, and no other linkages, whatever b and c are, and r2 below or above 1.
 
-        With r1 = 1, r3 + r4 = 1 + r2 + exp(b) and r3 - r4 = abs(1 - r2) tanh(c), r2 below or above 1, any b
-        and c give a full crank, and there is none besides.
+        With r1 = 1 they have r3 + r4 = 1 + r2 + exp(b) and r3 - r4 = abs(1 - r2) tanh(c).
 
         >>> r1, r2, r3, r4 = FourBars.cranks(np.random.default_rng(0), 100).lengths.T
         >>> bool((r3 + r4 > r1 + r2).all() and (abs(r1 - r2) > abs(r3 - r4)).all())
@@ -123,21 +116,13 @@ class FourBars(Generators):
             1 + r2 + np.exp(rng.normal(-1, 1.5, count)),
             np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count)),
         )
-        begin = beginnings(rng, count, first)
         lengths = np.stack([r2, (total + difference) / 2, (total - difference) / 2], axis=-1)
-        return cls(np.column_stack([np.log(lengths), begin]), rng.choice([-1.0, 1.0], count))
+        return np.asarray(np.log(lengths))
 
-    @classmethod
-    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
-        """Lengths from 0.05 to 20.
-
-        >>> batch = FourBars.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
-        True
-        """
-        shape = np.column_stack([np.log(20) * rng.uniform(-1, 1, (count, 3)), np.full(count, first)])
-        batch = cls(shape, rng.choice([-1.0, 1.0], count))
-        return batch[batch.worst_cosine(span) < 1]
+    @staticmethod
+    def any_shape(rng: np.random.Generator, count: int) -> FloatArray:
+        """Lengths from 0.05 to 20."""
+        return np.asarray(np.log(20) * rng.uniform(-1, 1, (count, 3)))
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
@@ -147,10 +132,6 @@ class FourBars(Generators):
             min(wanted.link_lengths[0][1], ground.lengths[1]),
         )
         return ("r1", "r2", "r3", "r4"), [first, *wanted.link_lengths[1:]]
-
-    @staticmethod
-    def direction(wanted: Requirements) -> float:
-        return FunctionGround.of(wanted).theta1
 
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> FourBar:
         ground, shares = FunctionGround.of(wanted), self.lengths[0]

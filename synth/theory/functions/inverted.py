@@ -13,7 +13,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, L
 from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dyad import Block, Closed
 from grashof.synth.loop.vector import Vector
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, weighed
+from grashof.synth.theory.functions.output import Generators, crank_ratios, weighed
 
 _TRIVIAL = 1e-9  # share of a null vector: without O4 it is not a linkage
 
@@ -92,44 +92,30 @@ class InvertedSliderCranks(Generators):
             shape = np.stack([np.log(np.abs(w)), side * offset, np.angle(w * c)], axis=-1)
         return cls(shape, np.ones(len(shape)))
 
-    @classmethod
-    def cranks(
-        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
-    ) -> Self:
-        """Random ones whose driver turns fully: abs(offset) < abs(1 - r2).
-
-        >>> batch = InvertedSliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
-        True
-        """
+    @staticmethod
+    def full_cranks(rng: np.random.Generator, count: int, _shortest: int) -> FloatArray:
+        """abs(offset) < abs(1 - r2)."""
         crank = crank_ratios(rng, count)
         r2 = np.where(rng.random(count) < 0.5, 1 / crank, crank)
         offset = np.abs(1 - r2) * np.tanh(rng.normal(0, 1, count))
-        begin = beginnings(rng, count, first)
-        return cls(np.column_stack([np.log(r2), offset, begin]), np.ones(count))
+        return np.column_stack([np.log(r2), offset])
 
-    @classmethod
-    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
-        """r2 from 0.05 to 20, the offset up to the longer of r1 and r2.
-
-        >>> batch = InvertedSliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
-        True
-        """
+    @staticmethod
+    def any_shape(rng: np.random.Generator, count: int) -> FloatArray:
+        """r2 from 0.05 to 20, the offset up to the longer of r1 and r2."""
         r2 = np.log(20) * rng.uniform(-1, 1, count)
         offset = np.maximum(1.0, np.exp(r2)) * rng.uniform(-1, 1, count)
-        batch = cls(np.column_stack([r2, offset, np.full(count, first)]), np.ones(count))
-        return batch[batch.worst_cosine(span) < 1]
+        return np.column_stack([r2, offset])
+
+    @staticmethod
+    def assemblies(_rng: np.random.Generator, count: int) -> FloatArray:
+        return np.ones(count)
 
     @staticmethod
     def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
         (low, high), second = wanted.link_lengths[:2]
         least, most = FunctionGround.of(wanted).lengths
         return ("r1", "r2"), [(max(low, least), min(high, most)), second]
-
-    @staticmethod
-    def direction(wanted: Requirements) -> float:
-        return FunctionGround.of(wanted).theta1
 
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> InvertedSliderCrank:
         ground, (_, share), offset = FunctionGround.of(wanted), self.lengths[0], driver * self.shape[0, 1]

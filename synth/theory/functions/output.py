@@ -15,6 +15,7 @@ import numpy as np
 
 from grashof.problems import Linkage, Requirements
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, ClosingDyad, Sizes
 from grashof.synth.loop.vector import Vector
@@ -181,9 +182,9 @@ class Generators(ABC):
         return []
 
     @property
-    @abstractmethod
     def other_assembly(self) -> Self:
         """The same on the other assembly."""
+        return type(self)(self.shape, -self.assembly)
 
     @classmethod
     @abstractmethod
@@ -204,14 +205,35 @@ class Generators(ABC):
         """
 
     @classmethod
-    @abstractmethod
-    def cranks(cls, rng: np.random.Generator, count: int, first: float | None, shortest: int) -> Self:
-        """Random ones whose driver turns fully, from a given driver angle on, or any."""
+    def cranks(
+        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
+    ) -> Self:
+        """Random ones whose driver turns fully, from a given driver angle (rad) on, or any."""
+        shape = cls.full_cranks(rng, count, shortest)
+        begin = rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
+        return cls(np.column_stack([shape, begin]), cls.assemblies(rng, count))
 
     @classmethod
-    @abstractmethod
     def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
         """Random ones that close over a rotation from a driver angle."""
+        shape = np.column_stack([cls.any_shape(rng, count), np.full(count, first)])
+        batch = cls(shape, cls.assemblies(rng, count))
+        return batch[batch.worst_cosine(span) < 1]
+
+    @staticmethod
+    @abstractmethod
+    def full_cranks(rng: np.random.Generator, count: int, shortest: int) -> FloatArray:
+        """Random shapes but for the first driver angle, (count, K - 1), for `cranks`."""
+
+    @staticmethod
+    @abstractmethod
+    def any_shape(rng: np.random.Generator, count: int) -> FloatArray:
+        """The same for `anything`; some of them may not close."""
+
+    @staticmethod
+    def assemblies(rng: np.random.Generator, count: int) -> FloatArray:
+        """Random assemblies, shape (count,)."""
+        return rng.choice([-1.0, 1.0], count)
 
     def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:  # noqa: ARG002
         """The same in the size that suits an output; where all sizes have the same output, themselves."""
@@ -238,9 +260,9 @@ class Generators(ABC):
         """Names and limits of `lengths` under resolved requirements."""
 
     @staticmethod
-    @abstractmethod
     def direction(wanted: Requirements) -> float:
         """Direction of the ground line, or of the slide, rad."""
+        return FunctionGround.of(wanted).theta1
 
     @abstractmethod
     def linkage(self, wanted: Requirements, unit: float, driver: int) -> Linkage:
@@ -267,11 +289,6 @@ def crank_ratios(rng: np.random.Generator, count: int) -> FloatArray:
     """Random lengths of cranks, in lengths of the link that a crank must be shorter than; shape (count,)."""
     ratio: FloatArray = 1 / (1 + np.exp(-rng.normal(0, 1.5, count)))
     return ratio
-
-
-def beginnings(rng: np.random.Generator, count: int, first: float | None) -> FloatArray:
-    """Driver angles at the first pair in rad: the given one, or random ones; shape (count,)."""
-    return rng.uniform(-np.pi, np.pi, count) if first is None else np.full(count, first)
 
 
 def weighed(rows: FloatArray, right: FloatArray, slope: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -14,7 +14,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
 from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
-from grashof.synth.theory.functions.output import Generators, beginnings, crank_ratios, solved, weighed
+from grashof.synth.theory.functions.output import Generators, crank_ratios, solved, weighed
 
 _FARTHEST = float(np.arcsinh(30.0))  # of the slide at the first pair that is tried, in travels
 _BETWEEN = 2.5  # travels from the first pair on that are tried between two others
@@ -57,10 +57,6 @@ class SliderCranks(Generators):
         first = driver * (theta2 - float(linkage.slide_angle))
         shape = np.array([[np.log(r2 / unit), np.log(r3 / unit), driver * offset / r3, first]])
         return cls(shape, np.array([float(linkage.assembly)]))
-
-    @property
-    def other_assembly(self) -> Self:
-        return type(self)(self.shape, -self.assembly)
 
     @staticmethod
     def sizes_of(shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
@@ -112,35 +108,19 @@ class SliderCranks(Generators):
         shape[~np.isfinite(shape).all(axis=1)] = np.nan
         return cls(shape, np.where(ahead >= 0, 1.0, -1.0))
 
-    @classmethod
-    def cranks(
-        cls, rng: np.random.Generator, count: int, first: float | None = None, shortest: int = 0
-    ) -> Self:
-        """Random slider-cranks whose driver turns fully, r3 = 1: r2 + abs(offset) < 1.
-
-        >>> batch = SliderCranks.cranks(np.random.default_rng(0), 100)
-        >>> bool((batch.worst_cosine(2 * np.pi) < 1).all())
-        True
-        """
+    @staticmethod
+    def full_cranks(rng: np.random.Generator, count: int, _shortest: int) -> FloatArray:
+        """r3 = 1: r2 + abs(offset) < 1."""
         crank = crank_ratios(rng, count)
         share = (1 - crank) * np.tanh(rng.normal(0, 1, count))
-        begin = beginnings(rng, count, first)
-        shape = np.column_stack([np.log(crank), np.zeros(count), share, begin])
-        return cls(shape, rng.choice([-1.0, 1.0], count))
+        return np.column_stack([np.log(crank), np.zeros(count), share])
 
-    @classmethod
-    def anything(cls, rng: np.random.Generator, count: int, first: float, span: float) -> Self:
-        """r2 / r3 from 0.05 to 20, r3 = 1.
-
-        >>> batch = SliderCranks.anything(np.random.default_rng(0), 1000, 0.5, 1.0)
-        >>> bool((batch.worst_cosine(1.0) < 1).all() and (batch.first == 0.5).all())
-        True
-        """
+    @staticmethod
+    def any_shape(rng: np.random.Generator, count: int) -> FloatArray:
+        """r2 / r3 from 0.05 to 20, r3 = 1."""
         crank = np.log(20) * rng.uniform(-1, 1, count)
         share = np.maximum(1.0, np.exp(crank)) * rng.uniform(-1.5, 1.5, count)
-        shape = np.column_stack([crank, np.zeros(count), share, np.full(count, first)])
-        batch = cls(shape, rng.choice([-1.0, 1.0], count))
-        return batch[batch.worst_cosine(span) < 1]
+        return np.column_stack([crank, np.zeros(count), share])
 
     def scaled_to(self, turned: FloatArray, output: FloatArray) -> Self:
         """In the size of least squares; a negative one is the same linkage turned by half a turn."""

@@ -9,7 +9,7 @@ from random_linkages import any_linkages
 from grashof.analysis import solve_kinematics, transmission_angle
 from grashof.problems import Linkage
 from grashof.problems.values.linkages.mechanisms import CLASSES
-from grashof.synth.loop.dimensions import Closure
+from grashof.synth.loop.dimensions import sized_loop
 from grashof.synth.loop.dyad import Bars, PlacedLoop, as_complex, as_vector, coupler_of, root_or_zero
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.kinds import KINDS
@@ -106,24 +106,19 @@ def test_the_gap_is_zero_where_the_loop_closes_and_there_alone(word: str, seed: 
 def test_the_loop_follows_its_dimensions(word: str, seed: int) -> None:
     """The turn of link 3 by each dimension, against differences."""
     linkage, own = drawn(word, seed)
-    closure: Closure = KINDS[word].closure
-    pivots = [complex(*linkage.o2), complex(*linkage.o2) + own.ground]
-    start = np.array([*as_pair(pivots[0]), *as_pair(pivots[1]), linkage.r2, own.r3, own.r4])
-    if word == "slider-crank":
-        start[2:4] = np.angle(own.ground), 0.0
+    dyad = KINDS[word].dyad
+    to_o4 = np.array([own.ground.real, own.ground.imag])
+    second = linkage.o2 + to_o4 if dyad.pinned else [np.angle(own.ground), 0.0]
+    start = np.array([*linkage.o2, *second, linkage.r2, own.r3, own.r4])
     e2, step = np.exp(1j * TURN), 1e-6
-    loop = closure.closed(start, e2, own.assembly * np.ones(50))
+    loop = sized_loop(dyad, start, e2, own.assembly * np.ones(50))
     below = loop.rod * (loop.e3 * loop.e4.conj()).imag
     for k, moved in enumerate(loop.moved):
         by = step * np.eye(7)[k]
-        one, other = (closure.closed(start + sign * by, e2, own.assembly * np.ones(50)) for sign in (-1, 1))
+        one, other = (sized_loop(dyad, start + sign * by, e2, own.assembly * np.ones(50)) for sign in (-1, 1))
         with np.errstate(invalid="ignore", divide="ignore"):
             turned, sound = np.angle(other.e3 / one.e3) / (2 * step), np.abs(below) > 0.05
             np.testing.assert_allclose((moved / below)[sound], turned[sound], rtol=1e-5, atol=1e-6)
-
-
-def as_pair(point: complex) -> tuple[float, float]:
-    return point.real, point.imag
 
 
 def test_an_open_loop_has_numbers_only_on_request() -> None:

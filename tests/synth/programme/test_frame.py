@@ -5,13 +5,13 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from circles import pivots_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, ProblemError, Requirements
-from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
@@ -89,27 +89,6 @@ def test_defaults_are_filled_in_sizes() -> None:
 
 
 PlantedSetup = Callable[..., tuple[ScaledProblem, FourBar]]
-
-
-def pivots_of(scaled: ScaledProblem, linkage: FourBar) -> ComplexArray:
-    """O2, O4, and A, B, P at the first pose, from the body's place and the coupler's numbers."""
-    task, frame = scaled.problem.task, scaled.frame
-    coupler = np.exp(1j * (task.angles[0] - float(linkage.body_angle)))
-    p = complex(*task.positions[0])
-    a = p - complex(*linkage.coupler_point) * coupler
-    every = np.array([complex(*linkage.o2), complex(*linkage.o4), a, a + float(linkage.r3) * coupler, p])
-    return (every - frame.origin) / frame.scale
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_the_planted_linkage_comes_back_from_its_pivots(planted_scaled: PlantedSetup, seed: int) -> None:
-    scaled, linkage = planted_scaled(seed)
-    back = scaled.linkages(pivots_of(scaled, linkage), linkage.assembly)
-    for name in ("o2", "o4", "r2", "r3", "r4", "coupler_point", "assembly"):
-        np.testing.assert_allclose(
-            getattr(back, name), getattr(linkage, name), rtol=1e-11, atol=1e-11 * scaled.frame.scale
-        )
-    assert abs(np.exp(1j * float(back.body_angle)) - np.exp(1j * float(linkage.body_angle))) < 1e-12
 
 
 @pytest.mark.parametrize("seed", range(5))

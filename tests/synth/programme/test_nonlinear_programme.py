@@ -63,16 +63,9 @@ def best_apart(scaled: ScaledProblem, pairs: Screened, count: int) -> list[Start
     return [Start.of_screened(pairs, int(index), Objective()) for index in picked]
 
 
-def judged(scaled: ScaledProblem, points: tuple[complex, ...], assembly: int) -> Verdict:
-    return verify(linkage_of(scaled, points, assembly), scaled.problem.task, scaled.problem.requirements)
-
-
-def linkage_of(scaled: ScaledProblem, points: tuple[complex, ...], assembly: int) -> FourBar:
-    return scaled.linkages(np.array(points), np.array(assembly))
-
-
-def run(scaled: ScaledProblem, start: Start) -> Solve:
-    return solve(scaled, start)
+def judged(scaled: ScaledProblem, points: Any, assembly: int) -> Verdict:
+    linkage = scaled.linkages(np.array(points), np.array(assembly))
+    return verify(linkage, scaled.problem.task, scaled.problem.requirements)
 
 
 def ended(scaled: ScaledProblem, start: Start) -> Candidate:
@@ -88,7 +81,7 @@ def transmission(scaled: ScaledProblem, verdict: Verdict) -> float:
 
 def check_climb(scaled: ScaledProblem, starts: list[Start]) -> None:
     for start in starts:
-        begun = judged(scaled, start_points(start), start.assembly)
+        begun = judged(scaled, start.points, start.assembly)
         assert begun.ok
         verdict = ended(scaled, start).verdict
         assert verdict.defects == ()
@@ -122,16 +115,12 @@ def test_required_angles_are_kept(luggage_scaled: SetupOf, feasible_pairs: Pairs
     pairs = feasible_pairs(free)
     for start in best_apart(free, pairs, 2):
         angle = np.degrees(start.theta1 if key == "ground_angle_deg" else start.theta2[0])
-        begun = judged(free, start_points(start), start.assembly)
+        begun = judged(free, start.points, start.assembly)
         for turns in (0, -720):
             scaled = luggage_scaled(**{key: float(angle) + turns})
             verdict = ended(scaled, start).verdict
             assert verdict.defects == ()  # to 1e-9 rad
             assert verdict.transmission_min_task >= begun.transmission_min_task - 1e-6
-
-
-def start_points(start: Start) -> tuple[complex, ...]:
-    return start.o2, start.o4, start.a, start.b, start.p
 
 
 def test_it_climbs_beyond_the_best_pair(luggage_scaled: SetupOf, feasible_pairs: PairsOf) -> None:
@@ -148,8 +137,8 @@ def test_with_a_radius_it_stays_in_its_box(
 ) -> None:
     scaled = luggage_scaled()
     for start in best_apart(scaled, feasible_pairs(scaled), 4):
-        free = np.array(run(scaled, start).points) - start.points
-        kept = np.array(run(scaled, start.under(radius=radius)).points) - start.points
+        free = np.array(solve(scaled, start).points) - start.points
+        kept = np.array(solve(scaled, start.under(radius=radius)).points) - start.points
         assert max(np.abs(kept.real).max(), np.abs(kept.imag).max()) <= radius + 1e-7
         if max(np.abs(free.real).max(), np.abs(free.imag).max()) > radius:
             assert max(np.abs(kept.real).max(), np.abs(kept.imag).max()) > 0.5 * radius
@@ -193,7 +182,7 @@ def test_stay_goes_to_the_nearest_feasible_design(luggage_scaled: SetupOf, feasi
     tight = luggage_scaled(rotatability="any", link_length=(1.0, 5.0), coupler_arms=(0.3, 4.5))
     for start in best_apart(wide, feasible_pairs(wide), 3):
         point = start.points
-        solved = run(tight, start.under(stay=True))
+        solved = solve(tight, start.under(stay=True))
         assert solved.status == "Solve_Succeeded"
         assert judged(tight, solved.points, start.assembly).ok
         found = float(np.sum(np.abs(np.array(solved.points) - point) ** 2))
@@ -204,7 +193,7 @@ def test_stay_goes_to_the_nearest_feasible_design(luggage_scaled: SetupOf, feasi
 def test_stay_leaves_a_feasible_design_alone(luggage_scaled: SetupOf, feasible_pairs: PairsOf) -> None:
     scaled = luggage_scaled()
     for start in best_apart(scaled, feasible_pairs(scaled), 3):
-        moved = np.array(run(scaled, start.under(stay=True)).points) - start.points
+        moved = np.array(solve(scaled, start.under(stay=True)).points) - start.points
         assert np.abs(moved).max() < 1e-3
 
 
@@ -367,8 +356,8 @@ def test_a_solve_does_not_depend_on_those_before_it(
     def numbers(solved: Solve) -> tuple[bytes, str, int]:
         return np.array(solved.points).tobytes(), solved.status, solved.iterations
 
-    first = [numbers(run(scaled, start)) for start in starts]
+    first = [numbers(solve(scaled, start)) for start in starts]
     other, _ = planted_scaled(4)
     for start in best_apart(other, feasible_pairs(other), 2):
-        run(other, start)
-    assert [numbers(run(scaled, start)) for start in reversed(starts)] == first[::-1]
+        solve(other, start)
+    assert [numbers(solve(scaled, start)) for start in reversed(starts)] == first[::-1]

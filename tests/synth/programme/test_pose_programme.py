@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from circles import closed
 from scipy.optimize import least_squares
 
 from grashof.analysis import Verdict, verify
@@ -46,13 +47,10 @@ def solved(problem: Problem, linkage: FourBar, verdict: Verdict) -> Candidate:
 
 def residuals(x: Floats, task: MotionTask, side: float) -> Floats:
     """Weighted misses; x: o2, o4, logarithms of r2, r3, r4, u, v, body angle, driver angles."""
-    o2, o4, arm = (complex(*x[i : i + 2]) for i in (0, 2, 7))
-    r2, r3, r4 = np.exp(x[4:7])
-    a = o2 + r2 * np.exp(1j * x[10:])
-    distance = np.abs(o4 - a)
-    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
-    e3 = (foot + 1j * side * np.sqrt(np.maximum(r3**2 - foot**2, 0))) * (o4 - a) / (distance * r3)
-    gap = (a + arm * e3 - np.nan_to_num(task.positions) @ np.array([1, 1j])) * task.has_position
+    lengths = np.exp(x[4:7])
+    a, b, p = closed(np.concatenate([x[:4], lengths, x[7:9]]), x[10:], side)
+    e3 = (b - a) / lengths[1]
+    gap = (p - np.nan_to_num(task.positions) @ np.array([1, 1j])) * task.has_position
     turned = np.angle(e3 * np.exp(1j * (x[9] - np.nan_to_num(task.angles)))) * task.has_angle
     root = np.sqrt(task.weights)
     misses: Floats = np.concatenate([root * gap.real, root * gap.imag, root * task.angle_length * turned])

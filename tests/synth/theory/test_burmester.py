@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from circles import pivots_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grashof.analysis.judge.planted import planted_motion
-from grashof.problems import FourBar, MotionTask, Problem
+from grashof.problems import MotionTask, Problem
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import (
@@ -150,16 +151,9 @@ def test_polish_makes_dyads_exact_with_a_small_step(seed: int) -> None:
 def planted(seed: int) -> tuple[ScaledProblem, Dyads]:
     """A planted task, and both dyads of its linkage in the frame of the search."""
     task, linkage = planted_motion(np.random.default_rng(seed), poses=4)
-    return ScaledProblem.of(Problem(task=task)), dyads_of(task, linkage)
-
-
-def dyads_of(task: MotionTask, linkage: FourBar) -> Dyads:
-    frame = ScaledProblem.of(Problem(task=task)).frame
-    coupler = np.exp(1j * (task.angles[0] - linkage.body_angle))
-    a = complex(*task.positions[0]) - complex(*linkage.coupler_point) * coupler
-    moving = np.array([a, a + linkage.r3 * coupler])
-    ground = np.array([complex(*linkage.o2), complex(*linkage.o4)])
-    return Dyads((moving - frame.origin) / frame.scale, (ground - frame.origin) / frame.scale)
+    scaled = ScaledProblem.of(Problem(task=task))
+    pivots = pivots_of(scaled, linkage)
+    return scaled, Dyads(pivots[2:4], pivots[:2])
 
 
 @pytest.mark.parametrize("seed", range(4))

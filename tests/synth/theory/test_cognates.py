@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from circles import closed, meeting_points, numbers_of
 
 from grashof.analysis.judge.planted import random_full_crank, random_slider_crank
 from grashof.problems import FourBar
@@ -10,22 +11,11 @@ from grashof.synth.theory.cognates import cognate_points, driven_at_o4, same_cur
 from grashof.synth.theory.distinct import signature
 
 
-def meeting_points(a: ComplexArray, o4: complex, r3: float, r4: float) -> ComplexArray:
-    """Both places of B for places of A, shape (2, n); NaN where the circles do not meet."""
-    distance = np.abs(o4 - a)
-    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
-    with np.errstate(invalid="ignore"):
-        height = np.sqrt(r3**2 - foot**2)
-    return a + (o4 - a) / distance * (foot + np.array([[1j], [-1j]]) * height)
-
-
 def positions(linkage: FourBar, theta2: FloatArray) -> ComplexArray:
     """O2, O4, A, B, P at driver angles, shape (n, 5), by circle intersection."""
-    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
-    a = o2 + float(linkage.r2) * np.exp(1j * theta2)
-    b = meeting_points(a, o4, float(linkage.r3), float(linkage.r4))[0 if linkage.assembly > 0 else 1]
-    p = a + complex(*linkage.coupler_point) * (b - a) / float(linkage.r3)
-    return np.stack([np.full_like(a, o2), np.full_like(a, o4), a, b, p], axis=1)
+    a, b, p = closed(signature(linkage), theta2, float(linkage.assembly))
+    o2, o4 = (np.full_like(a, complex(*pivot)) for pivot in (linkage.o2, linkage.o4))
+    return np.stack([o2, o4, a, b, p], axis=1)
 
 
 def linkages(count: int) -> list[tuple[FourBar, FloatArray]]:
@@ -63,7 +53,7 @@ def test_the_timed_cognate_turns_with_the_driver(case: int) -> None:
     (first,) = cognate_points(way[0], timed=True)
     o2, o4, a, b, p = first
     places = o2 + (a - o2) * np.exp(1j * (theta2 - theta2[0]))
-    both = meeting_points(places, complex(o4), abs(b - a), abs(b - o4))
+    both = np.stack(meeting_points(places, complex(o4), abs(b - a), abs(b - o4)))
     sign = ((both - places).conj() * (both - o4)).imag
     assert (np.sign(sign) == np.array([[-1], [1]])).all() or (np.sign(sign) == np.array([[1], [-1]])).all()
     mine = both[0 if sign[0, 0] * ((b - a).conjugate() * (b - o4)).imag > 0 else 1]
@@ -103,16 +93,8 @@ def test_linkages_of_the_same_curve_are_the_cognates_from_numbers_alone(case: in
         assert len(found) == len(expected) == (2 if timed else 6)
         np.testing.assert_allclose(found[0], signature(linkage), rtol=1e-13)
         for points in expected:
-            gaps = np.abs(found - numbers(points)).max(axis=1)
-            assert np.count_nonzero(gaps < 1e-9 * np.abs(numbers(points)).max()) == 1
-
-
-def numbers(points: ComplexArray) -> FloatArray:
-    """O2, O4, r2, r3, r4, u, v of a linkage that stands at these pivots."""
-    o2, o4, a, b, p = points
-    arm = (p - a) / (b - a) * abs(b - a)
-    lengths = [abs(a - o2), abs(b - a), abs(b - o4)]
-    return np.array([o2.real, o2.imag, o4.real, o4.imag, *lengths, arm.real, arm.imag])
+            gaps = np.abs(found - numbers_of(points)).max(axis=1)
+            assert np.count_nonzero(gaps < 1e-9 * np.abs(numbers_of(points)).max()) == 1
 
 
 @pytest.mark.parametrize(("u", "count"), [(0.0, 4), (4.0, 4)])

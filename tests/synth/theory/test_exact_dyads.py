@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from circles import pivots_of, radii
 
 from grashof.analysis.judge.planted import planted_motion
 from grashof.problems import Box, FourBar, MotionTask, Problem, Requirements
@@ -29,6 +30,12 @@ def posed(rows: list[list[float]], **wanted: Any) -> ScaledProblem:
     return ScaledProblem.of(Problem(task=MotionTask.from_degrees(rows), requirements=Requirements(**wanted)))
 
 
+def said(task: MotionTask) -> str:
+    """Why there may be no design, as the finder says."""
+    scaled = ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=True)))
+    return finder_for(scaled).obstacle(rng(), {})
+
+
 def rng() -> np.random.Generator:
     return np.random.default_rng(0)
 
@@ -37,26 +44,10 @@ def spread_of_radii(scaled: ScaledProblem, dyads: Dyads) -> npt.NDArray[np.float
     """By how much the distance of the moving pivot from the ground pivot varies, from the poses."""
     task = scaled.problem.task
     assert isinstance(task, MotionTask)
-    places = scaled.frame.inward(task.positions)
-    in_body = (dyads.moving - places[0]) * np.exp(-1j * task.angles[0])
-    carried = places + in_body[:, None] * np.exp(1j * task.angles)
-    radius = np.abs(carried - dyads.ground[:, None])
+    radius = radii(scaled.frame.inward(task.positions), task.angles, dyads)
     far = 1 + np.abs(dyads.moving) + np.abs(dyads.ground)
     spread: npt.NDArray[np.float64] = np.ptp(radius, axis=1) / far**2
     return spread
-
-
-def planted_dyads(
-    scaled: ScaledProblem, task: MotionTask, linkage: FourBar
-) -> tuple[ComplexArray, ComplexArray]:
-    """Moving pivots at the first pose, and ground pivots, in the frame."""
-    turned = np.exp(1j * (task.angles[0] - float(linkage.body_angle)))
-    a = complex(*task.positions[0]) - complex(*linkage.coupler_point) * turned
-    moving = np.array([a, a + float(linkage.r3) * turned])
-    ground = np.array([complex(*linkage.o2), complex(*linkage.o4)])
-    outward = np.stack([moving, ground])
-    inward = (outward - scaled.frame.origin) / scaled.frame.scale
-    return inward[0], inward[1]
 
 
 BOXES: dict[str, dict[str, Any]] = {
@@ -115,11 +106,11 @@ def test_starts_of_two_and_three_poses_meet_them_with_their_pivots_in_place(
 @pytest.mark.parametrize("poses", [5, 6, 8, 12])
 def test_the_planted_dyads_are_among_those_of_five_poses_and_more(poses: int) -> None:
     for seed in range(25):
-        scaled, task, linkage = planted(seed, poses)
-        dyads = dyads_of(scaled)
+        scaled, _, linkage = planted(seed, poses)
+        dyads, pivots = dyads_of(scaled), pivots_of(scaled, linkage)
         assert 2 <= len(dyads) <= 4
         assert spread_of_radii(scaled, dyads).max() < 1e-9
-        for moving, ground in zip(*planted_dyads(scaled, task, linkage), strict=True):
+        for moving, ground in zip(pivots[2:4], pivots[:2], strict=True):
             gap = np.maximum(np.abs(dyads.moving - moving), np.abs(dyads.ground - ground))
             assert gap.min() < 1e-5 * (1 + abs(moving) + abs(ground)), seed
 
@@ -184,10 +175,10 @@ def test_how_far_a_fixed_pivot_is_off_the_curve_of_four_poses() -> None:
     x, y = free.frame.outward(np.array(at))
     scaled = posed(rows, o4=Box((float(x), float(x)), (float(y), float(y))))
     expected = float(np.abs(traced - at).min()) * free.frame.scale
-    said = finder_for(scaled).obstacle(rng(), {})
-    assert said.startswith(f"O4 is fixed at ({x:.6g}, {y:.6g}), ")
-    assert "nearest centre point that four poses have" in said
-    assert float(said.split("), ")[1].split()[0]) == pytest.approx(expected, abs=0.03 * free.frame.scale)
+    found = finder_for(scaled).obstacle(rng(), {})
+    assert found.startswith(f"O4 is fixed at ({x:.6g}, {y:.6g}), ")
+    assert "nearest centre point that four poses have" in found
+    assert float(found.split("), ")[1].split()[0]) == pytest.approx(expected, abs=0.03 * free.frame.scale)
     assert finder_for(free).obstacle(rng(), {}) == ""
 
 
@@ -215,9 +206,8 @@ def test_five_poses_of_a_slider_crank_say_so() -> None:
     angles = -np.arcsin(crank.imag / 3)
     body = crank + (1 + 0.7j) * np.exp(1j * angles)
     task = MotionTask(np.stack([body.real, body.imag], axis=1), angles)
-    said = finder_for(ScaledProblem.of(Problem(task=task))).obstacle(rng(), {})
-    assert said.startswith("the 5 poses have ")
-    assert said.endswith("; 1 dyad would have to be a slider")
+    assert said(task).startswith("the 5 poses have ")
+    assert said(task).endswith("; 1 dyad would have to be a slider")
 
 
 def test_two_real_dyads_that_make_no_usable_linkage_are_counted() -> None:
@@ -231,8 +221,7 @@ def test_two_real_dyads_that_make_no_usable_linkage_are_counted() -> None:
 def test_six_poses_at_random_have_no_dyads() -> None:
     draw = np.random.default_rng(44)
     task = MotionTask(draw.normal(size=(6, 2)), draw.uniform(-np.pi, np.pi, 6))
-    scaled = ScaledProblem.of(Problem(task=task, requirements=Requirements(exact=True)))
-    assert finder_for(scaled).obstacle(rng(), {}) == "the 6 poses have no real dyad, and a linkage needs two"
+    assert said(task) == "the 6 poses have no real dyad, and a linkage needs two"
 
 
 def test_one_dyad_of_six_poses_is_not_enough() -> None:
@@ -245,10 +234,7 @@ def test_one_dyad_of_six_poses_is_not_enough() -> None:
         np.concatenate([task.positions, [[p.real, p.imag]]]),
         np.append(task.angles, theta3 + float(linkage.body_angle)),
     )
-    said = finder_for(ScaledProblem.of(Problem(task=six, requirements=Requirements(exact=True)))).obstacle(
-        rng(), {}
-    )
-    assert said == "the 6 poses have a single real dyad, and a linkage needs two"
+    assert said(six) == "the 6 poses have a single real dyad, and a linkage needs two"
 
 
 @pytest.mark.parametrize("poses", [3, 5, 7])
@@ -256,11 +242,8 @@ def test_translations_and_rotations_of_any_number_are_reported(poses: int) -> No
     draw = np.random.default_rng(poses)
     places = draw.normal(size=(poses, 2))
     still = MotionTask(places, np.full(poses, 0.3))
-    reason = finder_for(
-        ScaledProblem.of(Problem(task=still, requirements=Requirements(exact=True)))
-    ).obstacle(rng(), {})
-    assert "pure translations" in reason
-    assert ("off any one circle" in reason) == (poses > 3)
+    assert "pure translations" in said(still)
+    assert ("off any one circle" in said(still)) == (poses > 3)
     turns = draw.uniform(-np.pi, np.pi, poses)
     arm = 2 * np.exp(1j * turns)
     about = MotionTask(np.stack([3 + arm.real, arm.imag - 1], axis=1), turns)
@@ -282,7 +265,6 @@ def test_two_poses_are_never_degenerate(turn: float) -> None:
 def test_all_is_in_the_unit_of_the_task() -> None:
     """A thousand times the size: the same dyads in sizes."""
     scaled, task, _ = planted(5, 5)
-    large = MotionTask(1000 * task.positions, task.angles)
-    scaled = ScaledProblem.of(replace(scaled.problem, task=large))
-    here, there = (np.sort_complex(dyads_of(each).ground) for each in (scaled, scaled))
+    large = replace(scaled.problem, task=MotionTask(1000 * task.positions, task.angles))
+    here, there = (np.sort_complex(dyads_of(each).ground) for each in (scaled, scaled.of_problem(large)))
     np.testing.assert_allclose(here, there, atol=1e-9 * np.abs(here).max())

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from circles import radii
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -29,10 +30,8 @@ class Poses:
         return rotation, self.positions - rotation * self.positions[:, :1]
 
     def radii(self, dyads: Dyads) -> FloatArray:
-        """Distances (m, 4, 5) of the moving pivots, carried in the body's own frame, from their centres."""
-        own = (dyads.moving - self.positions[:, :1]) * np.exp(-1j * self.angles[:, :1])
-        places = self.positions[:, None] + own[..., None] * np.exp(1j * self.angles[:, None])
-        return np.asarray(np.abs(places - dyads.ground[..., None]))
+        """Distances (m, 4, 5) of the moving pivots from their centres."""
+        return radii(self.positions[:, None], self.angles[:, None], dyads)
 
     @property
     def size(self) -> FloatArray:

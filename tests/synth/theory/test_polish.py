@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from as_found import as_found
+from circles import closed, numbers_of, points_of
 
-from grashof.analysis import solve_position, verify
+from grashof.analysis import verify
 from grashof.analysis.judge.planted import (
     planted_motion,
     planted_path,
@@ -15,8 +16,8 @@ from grashof.analysis.judge.planted import (
 )
 from grashof.problems import Problem, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.synth.loop.dimensions import FOUR_BAR_CLOSURE
-from grashof.synth.quantities.kinds import KINDS
+from grashof.synth.loop.dimensions import dimensions_of
+from grashof.synth.loop.dyad import Bars
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory import polish as path_polish
 from grashof.synth.theory.polish import ExactTargets, Polished, _linearised, _spread, polish_path
@@ -33,25 +34,6 @@ CASES: dict[str, tuple[int, list[int], list[int], bool, bool]] = {
     "points and angles free": (6, [2], [0, 4], False, False),
     "angles but for one point": (7, [1, 2, 3, 4, 5, 6], [], False, False),
 }
-
-
-def closed(numbers: FloatArray, theta2: FloatArray, side: FloatArray) -> tuple[ComplexArray, ...]:
-    """A, B and P at driver angles, by circle intersection; numbers o2, o4, r2, r3, r4, u, v."""
-    o2, o4, arm = (complex(*numbers[i : i + 2]) for i in (0, 2, 7))
-    r2, r3, r4 = numbers[4:7]
-    a = o2 + r2 * np.exp(1j * theta2)
-    distance = np.abs(o4 - a)
-    foot = (distance**2 + r3**2 - r4**2) / (2 * distance)
-    coupler = (foot + 1j * side * np.sqrt(r3**2 - foot**2)) * (o4 - a) / distance
-    return a, a + coupler, a + arm * coupler / r3
-
-
-def numbers_of(points: ComplexArray) -> FloatArray:
-    o2, o4, a, b, p = points
-    arm = (p - a) * abs(b - a) / (b - a)
-    return np.array([
-        o2.real, o2.imag, o4.real, o4.imag, abs(a - o2), abs(b - a), abs(b - o4), arm.real, arm.imag,
-    ])  # fmt: skip
 
 
 class Planted:
@@ -75,7 +57,7 @@ class Planted:
         has_point[no_points], has_turn[no_angles] = False, False
         self.targets = ExactTargets(
             np.where(has_point, points, 5 - 3j), has_point,
-            np.where(has_turn, turns, 1.0), has_turn, timed, FOUR_BAR_CLOSURE,
+            np.where(has_turn, turns, 1.0), has_turn, timed, Bars(),
         )  # fmt: skip
         self.near = self.numbers + rng.normal(0, off, 9)
         self.angles = self.theta2 + (off if timed else rng.normal(0, off, count))
@@ -176,12 +158,10 @@ def test_many_driver_angles_are_eliminated_without_a_difference(monkeypatch: pyt
     rng = np.random.default_rng(count)
     task, linkage = planted_path(rng, count)
     verdict = verify(linkage, task, Requirements(exact=True))
-    points = task.positions @ np.array([1, 1j]) / task.size
-    state = solve_position(linkage, verdict.theta2[:1], verdict.assembly[:1])
-    places = [linkage.o2, linkage.o4, state.a[0], state.b[0], state.p[0]]
-    begin = np.array(places) @ np.array([1, 1j]) / task.size + rng.normal(0, 1e-5, 5)
+    scaled = ScaledProblem.of(Problem(task=task))
+    begin = points_of(scaled, linkage, verdict.theta2[0]) + rng.normal(0, 1e-5, 5)
     none, every = np.zeros(count, dtype=bool), np.ones(count, dtype=bool)
-    targets = ExactTargets(points, every, np.zeros(count), none, timed=False, closure=FOUR_BAR_CLOSURE)
+    targets = ExactTargets(scaled.targets, every, np.zeros(count), none, timed=False, dyad=Bars())
     found = []
     for many in (path_polish.MANY, 1000):
         monkeypatch.setattr(path_polish, "MANY", many)
@@ -200,30 +180,9 @@ def planted_slider(
     task, linkage = planted_motion(np.random.default_rng([11, seed]), count, mechanism=mechanism)
     linkage = as_found(linkage)
     scaled = ScaledProblem.of(Problem(task=task, mechanism=mechanism))
-    kind, every = KINDS[mechanism], np.ones(count, dtype=bool)
-    theta2 = _driver_angles(linkage, task.positions)
-    state = solve_position(linkage, theta2)
-    o2, a, b, p = (complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0]))
-    points = np.array([o2, kind.o4_of(linkage, b, scaled.frame), a, b, p])
-    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, closure=kind.closure)
-    return points, theta2, float(linkage.body_angle), targets
-
-
-def _driver_angles(linkage: object, positions: FloatArray) -> FloatArray:
-    """Where a planted linkage meets its targets, by a dense look and bisection of the step."""
-    grid, step = np.linspace(-np.pi, np.pi, 20_001), 2 * np.pi / 20_000
-    found = grid[_miss(linkage, grid, positions).argmin(axis=1)]
-    while step > 1e-16:
-        near = found[:, None] + step * np.linspace(-1, 1, 21)
-        found = np.take_along_axis(near, _miss(linkage, near, positions).argmin(axis=1)[:, None], 1)[:, 0]
-        step /= 8
-    return found
-
-
-def _miss(linkage: object, theta2: FloatArray, positions: FloatArray) -> FloatArray:
-    gap = solve_position(linkage, theta2).p - positions[:, None]  # type: ignore[arg-type]
-    miss: FloatArray = np.hypot(gap[..., 0], gap[..., 1])
-    return miss
+    every, theta2 = np.ones(count, dtype=bool), verify(linkage, task, scaled.problem.requirements).theta2
+    targets = ExactTargets(scaled.targets, every, scaled.turns, every, timed=False, dyad=scaled.kind.dyad)
+    return points_of(scaled, linkage, theta2[0]), theta2, float(linkage.body_angle), targets
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -231,7 +190,7 @@ def _miss(linkage: object, theta2: FloatArray, positions: FloatArray) -> FloatAr
 def test_derivatives(mechanism: str, seed: int) -> None:
     points, theta2, body_angle, targets = planted_slider(mechanism, seed)
     arm = (points[4] - points[2]) * abs(points[3] - points[2]) / (points[3] - points[2])
-    numbers = [*targets.closure.dimensions(points), arm.real, arm.imag, body_angle, *theta2]
+    numbers = [*dimensions_of(targets.dyad, points), arm.real, arm.imag, body_angle, *theta2]
     unknowns, gaps, signs = np.array(numbers), theta2 - theta2[0], np.ones(len(theta2))
     _, missed, jacobian = _linearised(unknowns, gaps, signs, targets)
     assert np.abs(missed).max() < 1e-7

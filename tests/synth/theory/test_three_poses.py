@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from circles import radii
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -30,10 +31,9 @@ def points(seed: int, count: int = 50) -> ComplexArray:
 
 
 def radius_scatter(positions: ComplexArray, angles: FloatArray, dyads: Dyads) -> FloatArray:
-    """As a share of the coordinates; carried in the body's own frame, not by displacements."""
-    own = (dyads.moving - positions[0]) * np.exp(-1j * angles[0])
-    radii = np.abs(positions + own[:, None] * np.exp(1j * angles) - dyads.ground[:, None])
-    return np.asarray(np.ptp(radii, axis=1) / (1 + np.abs(dyads.moving) + np.abs(dyads.ground)))
+    """As a share of the coordinates."""
+    spread = np.ptp(radii(positions, angles, dyads), axis=1)
+    return np.asarray(spread / (1 + np.abs(dyads.moving) + np.abs(dyads.ground)))
 
 
 @bounded

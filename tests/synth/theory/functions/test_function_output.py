@@ -19,18 +19,8 @@ SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800} 
 
 
 def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
-    """As the search sees a linkage whose ground is (0, 0), (1, 0), or whose slide runs along x."""
-    kind, known = KINDS[linkage.mechanism.word].generators, linkage
-    sign, numbers = float(known.assembly), []
-    match linkage.mechanism.word:
-        case "four-bar":
-            numbers = np.log(known.lengths[1:]).tolist()
-        case "slider-crank":
-            numbers = [*np.log(known.lengths / unit), float(known.offset / known.r3)]  # type: ignore[attr-defined]
-        case _:
-            offset = float(known.offset)  # type: ignore[attr-defined]
-            numbers, sign = [float(np.log(known.lengths[1])), sign * offset], 1.0
-    return kind(np.array([[*numbers, start]]), np.array([sign]))
+    """As the search sees a linkage, its driver at `start`, rad, when it begins."""
+    return KINDS[linkage.mechanism.word].generators.of_linkage(linkage, unit, 1, start)
 
 
 def planted(
@@ -76,6 +66,15 @@ def test_output_is_that_of_the_judge(mechanism: str) -> None:
 
 
 @EVERY
+def test_random_ones_turn_fully_or_close_over_their_rotation(mechanism: str) -> None:
+    rng, kind = np.random.default_rng(0), KINDS[mechanism].generators
+    assert (kind.cranks(rng, 100).worst_cosine(2 * np.pi) < 1).all()
+    made = kind.anything(rng, 1000, 0.5, 1.0)
+    assert (made.worst_cosine(1.0) < 1).all()
+    assert (made.first == 0.5).all()
+
+
+@EVERY
 def test_slopes_are_those_of_differences(mechanism: str) -> None:
     made, turned, _ = planted(np.random.default_rng(2), 8, mechanism)
     slopes = made.slopes(turned)
@@ -97,7 +96,7 @@ def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -
 
 
 def test_slopes_of_the_stroke_are_those_of_differences() -> None:
-    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100, None, 0)
+    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100)
     made = made[made.worst_cosine(2 * np.pi) < 0.95]
     limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
     rows = limits.of(made)
