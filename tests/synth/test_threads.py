@@ -161,9 +161,7 @@ SCRIPTS = {"at once": AT_ONCE, "as executor": AS_EXECUTOR, "async": ASYNC, "own 
 
 
 @pytest.mark.study
-@pytest.mark.parametrize(
-    "how", [pytest.param(how, marks=pytest.mark.study) if how == "at once" else how for how in SCRIPTS]
-)
+@pytest.mark.parametrize("how", SCRIPTS)
 def test_threads_give_the_serial_lists(how: str, tmp_path: Path) -> None:
     (tmp_path / "threads.py").write_text(SEARCHES + SCRIPTS[how], encoding="utf-8")
     done = subprocess.run(
