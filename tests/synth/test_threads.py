@@ -68,19 +68,9 @@ def serial():
     return {name: found(name) for name in SEARCHES}
 """
 
-AT_ONCE = """
-alone = serial()
-assert "link_length up to" in alone["none"], alone["none"]
-names = list(SEARCHES)
-with ThreadPoolExecutor(3) as pool:
-    for number in range(20):  # three kinds at once, and every fourth time one kind three times
-        some = [names[(number + (k if number % 4 else 0)) % len(names)] for k in range(3)]
-        for name, text in zip(some, pool.map(found, some)):
-            assert text == alone[name], name
-"""
-
 AS_EXECUTOR = """
 alone = serial()
+assert "link_length up to" in alone["none"], alone["none"]
 for name in SEARCHES:
     with ThreadPoolExecutor(3) as pool:
         assert found(name, executor=pool, workers=3) == alone[name], name
@@ -157,7 +147,7 @@ assert not wrong, wrong
 assert min(checked) > 10, checked
 """
 
-SCRIPTS = {"at once": AT_ONCE, "as executor": AS_EXECUTOR, "async": ASYNC, "own functions": OWN_FUNCTIONS}
+SCRIPTS = {"as executor": AS_EXECUTOR, "async": ASYNC, "own functions": OWN_FUNCTIONS}
 
 
 @pytest.mark.study

@@ -104,13 +104,11 @@ class LimitPositions(DesignFinder):
 
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
         """Of the members that keep these limits, those that miss the additional one by least, or many."""
-        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(required), rng)
-
-    def _closest_to(self, required: LimitPositions, rng: np.random.Generator) -> list[Start]:
-        starts = list[Start]()
-        if required.elsewhere:
-            starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
-        return starts + required._closest(self._stretches) + required._closest(self._stretches, self)
+        if key in UNSMOOTH:
+            return []
+        asked = LimitPositions(required)
+        starts = self._chosen(_MANY) + self._anywhere(_MANY, rng) if asked.elsewhere else []
+        return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""

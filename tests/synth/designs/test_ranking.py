@@ -143,7 +143,8 @@ def test_ranking_keeps_the_strength_of_a_design() -> None:
 
 def test_the_user_s_own_objective_ranks() -> None:
     some = design(1, mu=50), design(2, mu=40), design(3, mu=30)
-    best_first = ranked(EXACT, some, lambda design: (design.o4[0] - design.o2[0] - 6) ** 2)
+    valued = [each.valued(lambda design: (design.o4[0] - design.o2[0] - 6) ** 2) for each in some]
+    best_first = ranked(EXACT, valued)
     assert [each.start for each in best_first] == [2, 1, 3]
     assert [each.own_objective for each in best_first] == [0, 1, 1]
     assert [each.start for each in ranked(EXACT, best_first[::-1])] == [2, 1, 3]  # they keep it
@@ -154,10 +155,10 @@ def test_the_user_s_own_objective_ranks() -> None:
 
 
 def test_an_objective_without_a_value_is_the_worst() -> None:
-    some = ranked(EXACT, (design(1), design(2)), lambda design: np.log(design.o4[0] - 5.5))
-    assert [each.start for each in some] == [2, 1]
+    valued = [each.valued(lambda design: np.log(design.o4[0] - 5.5)) for each in (design(1), design(2))]
+    assert [each.start for each in ranked(EXACT, valued)] == [2, 1]
     with pytest.raises(ProblemError, match="objective <lambda> gives 'short' on numbers"):
-        ranked(EXACT, some, lambda design: "short")
+        valued[0].valued(lambda design: "short")
 
 
 def test_other_goals_can_be_weighed() -> None:
