@@ -23,7 +23,7 @@ class Finder(ABC):
 
     @staticmethod
     def suits(_scaled: ScaledProblem) -> bool:
-        """Whether it suits a problem that none before it in the list of kinds suits."""
+        """Whether it suits a problem that no kind before it suits."""
         return True
 
     @property

@@ -48,8 +48,8 @@ class Findings:
     @property
     def exact(self) -> bool:
         """Whether all targets are met, in order, on one branch."""
-        missed = max(self.position_error, self.angle_error)
-        return missed < 1e-9 and self.in_order and self.on_one_branch
+        met = self.position_error < 1e-9 and self.angle_error < 1e-9
+        return met and self.in_order and self.on_one_branch
 
     def check_limits(self, candidate: Candidate, over_task: float, over_cycle: float) -> None:
         """Lengths and arms keep their limits, and transmission angles are those of the verdict.
