@@ -153,5 +153,4 @@ def _one_kind(scaled: ScaledProblem, run: Run, stop_condition: StopCondition) ->
         proven = bounds_after(scaled, run.proving, bounds, [each for one in ledgers for each in one.best])
     if proven is not None and proven is not bounds and proven.found is not None:
         solve([proven.found.linkage], ledgers[0], run)
-    bounds = proven
-    return conclude(scaled, ledgers, run, stop_condition, bounds or dyads, atlas)
+    return conclude(scaled, ledgers, run, stop_condition, proven or dyads, atlas)

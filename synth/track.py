@@ -18,7 +18,7 @@ from grashof.synth.programme.user_functions import refuse_no_list, refuse_unusab
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
 from grashof.synth.search.finder import finder_for
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.finder import DesignFinder
 
 _TRADED = 1.001  # times the least error: designs with more traded it for something else
 

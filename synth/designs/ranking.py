@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from grashof.analysis import Design
 from grashof.analysis.judge.measures import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
@@ -48,17 +46,8 @@ def _rounded(value: float, digits: int) -> float:
     return float(f"{value:.{digits}g}")
 
 
-def ranked(
-    problem: Problem,
-    candidates: Sequence[Candidate],
-    objective: Callable[[Design], Any] | None = None,
-) -> tuple[Candidate, ...]:
-    """Distinct candidates, best first; of two that are not distinct the better one stays.
-
-    The user's own `objective` of a `Design` (smaller is better) replaces the problem's.
-    """
-    if objective is not None:
-        candidates = [candidate.valued(objective) for candidate in candidates]  # they keep the values
+def ranked(problem: Problem, candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Distinct candidates, best first; of two that are not distinct the better one stays."""
     best_first = sorted(candidates, key=lambda candidate: ranking_key(problem, candidate))
     return distinct(problem, best_first, DISTINCT, len(best_first))
 

@@ -32,7 +32,10 @@ def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
     ledger = ledgers[-1]
     with run.timed("choosing"):
         if not (scaled.has_targets or scaled.exact):
-            return Chosen(_least_errors(scaled, ledger), ledger.rejected, 0)
+            problem = scaled.problem
+            found = within_factor(problem, ledger.best, ledger.least)
+            named = tuple(replace(one, best_at=best_at(problem, one, ledger.least)) for one in found)
+            return Chosen(named, ledger.rejected, 0)
         if scaled.bounded:
             found = [candidate for each in ledgers for candidate in each.verified]
             return _best_within_bounds(scaled, found, ledger, run)
@@ -64,13 +67,6 @@ def _best_within_bounds(
         good = [candidate for one in near for candidate in one.verified[:1]]
         attempts, solved = near + attempts, solved + more
     return Chosen(ranked(problem, good), [one for one in attempts if not one.verified], solved)
-
-
-def _least_errors(scaled: ScaledProblem, ledger: Ledger) -> tuple[Candidate, ...]:
-    """Designs up to the error that is allowed, named by their scores."""
-    problem = scaled.problem
-    found = within_factor(problem, ledger.best, ledger.least)
-    return tuple(replace(one, best_at=best_at(problem, one, ledger.least)) for one in found)
 
 
 def best_at(problem: Problem, one: Candidate, least: float) -> str:

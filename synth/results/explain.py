@@ -75,7 +75,7 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     ways = relaxations(scaled, known, rng, run) + wider(scaled.problem, scaled.constraints, known)
     squares = None if run.ended() or not _may_be_near(scaled) else _least_squares(scaled, run)
     ranks = () if squares is None else ranked(squares.scaled.problem, squares.best)
-    near = [_near(scaled, one) for one in ranks[:SHOWN]]  # the nearest first
+    near = [_Near(one.verdict, judged_again(scaled, one)) for one in ranks[:SHOWN]]  # the nearest first
     designs = tuple(one.candidate for one in near if one.candidate.verdict.ok)
     if designs:
         return Explanation("", designs=designs)
@@ -99,7 +99,8 @@ def _explained(scaled: ScaledProblem, ledger: Ledger, rejected: list[Attempt], r
     if squares is not None and not _misses_one(nearest) and not run.ended():
         missed = [one.candidate for one in squares.rejected if one.candidate is not None]
         loose = [
-            (each, _near(scaled, each.candidate)) for each in relaxations(squares.scaled, missed, rng, run)
+            (each, _Near(each.candidate.verdict, judged_again(scaled, each.candidate)))
+            for each in relaxations(squares.scaled, missed, rng, run)
         ]
         loose = [(each, one) for each, one in loose if _miss(one, scaled.problem.task.size) < 1]
         named = [f"{each.words} ({_comes_within(scaled, one)})" for each, one in loose[:ALTERNATIVES]]
@@ -137,10 +138,6 @@ def _least_squares(scaled: ScaledProblem, run: Run) -> Ledger:
     search = replace(run.search, effort=NEAR_EFFORT, enough=min(run.search.enough, NEAR))
     alone = replace(run, search=search, progress=None, seconds=dict(run.seconds))
     return search_designs(scaled.of_problem(problem), alone)
-
-
-def _near(scaled: ScaledProblem, by_squares: Candidate) -> _Near:
-    return _Near(by_squares.verdict, judged_again(scaled, by_squares))
 
 
 def _may_be_near(scaled: ScaledProblem) -> bool:

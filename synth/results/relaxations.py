@@ -32,7 +32,7 @@ from grashof.synth.results.relaxed_limits import (
 )
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.run import Run
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.selection import closest_starts
 
 SOLVES = 6  # starts for each requirement

@@ -44,7 +44,8 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     if exact and not leaves_freedom(scaled):  # all targets met: nothing to trade
         met = [one for one in ledger.verified if _error(problem, one) <= max(ledger.least, MET)]
         return Chosen(ranked(problem, met), [], 0)
-    least = max(ledger.least, _exact(problem))
+    times = FACTORS[-1] * float(np.sqrt(len(problem.task)))
+    least = max(ledger.least, same_error(problem) / times)  # where all targets are met to `same_error`
     seeds = seeds_of(problem, ledger.verified, FACTORS[-1] * least, SEEDS)
     surrogate = Surrogate.of(scaled, seeds[0], ledger.least) if seeds else Surrogate(scaled)
     begun_from = [(_error(problem, one), surrogate.taken(one)) for one in seeds]
@@ -70,8 +71,9 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
             latest[goal] = _best_at(surrogate, goal, every, factor, most) or latest.get(goal, [])
             found += good if surrogate.is_itself else latest[goal]
     if exact:  # the freedom that targets leave has been used; back onto them
-        begun_again = [] if run.ended() else [_settled(scaled, one) for one in found]
-        back = run.solve(scaled, begun_again, ledger.solved + len(attempts))
+        nearly = [] if run.ended() else [Start.of_linkage(scaled, one.linkage, one.verdict) for one in found]
+        again = [start.under(settled=True) for start in nearly]
+        back = run.solve(scaled, again, ledger.solved + len(attempts))
         attempts += back
         found = [each for one in back for each in one.verified]
     elif not surrogate.is_itself:
@@ -79,16 +81,6 @@ def trade_offs(scaled: ScaledProblem, ledger: Ledger, run: Run) -> Chosen:
     # of all designs those that no other one beats in every goal, up to twice the least error
     designs = _worth_choosing(problem, [*ledger.verified, *found], least)
     return Chosen(designs, [one for one in attempts if not one.verified], len(attempts))
-
-
-def _settled(scaled: ScaledProblem, candidate: Candidate) -> Start:
-    """A start at a design that is nearly exact: it is brought onto the targets, not solved."""
-    return Start.of_linkage(scaled, candidate.linkage, candidate.verdict).under(settled=True)
-
-
-def _exact(problem: Problem) -> float:
-    """The least error to trade against, where all targets are met to `same_error`."""
-    return same_error(problem) / (FACTORS[-1] * float(np.sqrt(len(problem.task))))
 
 
 def _best_at(

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, Protocol
-
-import numpy as np
 
 from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import located, whole_number
-from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.programme.start import Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.quantities.screening import Screened
-from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.dwells import Dwells
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
+from grashof.synth.starts.finder import DesignFinder, Finder, StartFinder
 from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
 from grashof.synth.starts.strokes.limit_positions import LimitPositions
 
-# The first that suits a problem is taken.
-KINDS: tuple[Any, ...] = (
+# The first that suits a problem is taken; the last suits all.
+KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
     Functions,
     LimitPositions,
     Dwells,
@@ -32,63 +28,8 @@ KINDS: tuple[Any, ...] = (
     NinePoints,
     EightPoints,
     PrecisionPoints,
+    LeastSquares,
 )
-
-
-class Finder(Protocol):
-    """A kind of search: its way to find starts, and its knowledge of the problems that it suits."""
-
-    @property
-    def beginning(self) -> str:
-        """First stage of the search, as shown to users."""
-
-    @property
-    def freedom(self) -> bool:
-        """Whether targets that are met leave freedom to a programme."""
-
-    @property
-    def cognates(self) -> bool:
-        """Whether linkages that move as a design does are judged, too: no start leads to each of them."""
-
-    @property
-    def exhausted(self) -> str:
-        """Why a search ends after all its rounds."""
-
-    def refuse(self) -> None:
-        """Raise `ProblemError` for targets that cannot be searched for."""
-
-    def degenerate(self) -> str:
-        """Why the targets need no linkage; empty where they need one."""
-
-    @property
-    def patience(self) -> float:
-        """Consecutive rounds without a start after which the search ends."""
-
-    @property
-    def rounds_a_pass(self) -> int:
-        """Rounds after which the search may begin again, with other random numbers."""
-
-    def quick_pass(self, rng: np.random.Generator) -> Round | None:
-        """A few starts found at once, where the first round takes long; None elsewhere."""
-
-    def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
-        """One independent round of starts for `enough` designs; None after the last.
-
-        With `size` times the usual draws where that helps.
-        """
-
-    def relaxed(self, rng: np.random.Generator) -> Sequence[Proposal]:
-        """Starts that may miss requirements that no linkage meets."""
-
-    def obstacle(self, rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
-        """Why theory, or the counts of the rounds, leave no design; empty where they may leave one."""
-
-
-class StartFinder(Finder, Protocol):
-    """A finder from whose starts a programme is solved."""
-
-    def near(self, rng: np.random.Generator) -> Screened:
-        """Linkages that meet the requirements, or nearly do."""
 
 
 def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Round]:
@@ -104,9 +45,7 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
 
 def finder_for(scaled: ScaledProblem) -> StartFinder | DesignFinder:
     """The first kind of search that suits a problem."""
-    suitable = (kind(scaled) for kind in KINDS if kind.suits(scaled))
-    made: StartFinder | DesignFinder = next(suitable, LeastSquares(scaled))
-    return made
+    return next(kind(scaled) for kind in KINDS if kind.suits(scaled))
 
 
 def refuse_unsearchable(problem: Problem) -> None:

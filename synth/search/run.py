@@ -10,6 +10,8 @@ from functools import partial
 from time import perf_counter
 from typing import Any, TypeVar
 
+import numpy as np
+
 from grashof.problems import Search
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
@@ -20,8 +22,8 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Journal
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.recorded_designs import are_attempts, is_round
-from grashof.synth.search.workers import CRASHED, Work, quick_pass, screen
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.search.workers import CRASHED, Work, screen
+from grashof.synth.starts.finder import DesignFinder
 
 _LOG = logging.getLogger(__name__)
 EXPECTED = 3  # rounds that most searches take, begun ahead
@@ -101,7 +103,8 @@ class Run:
     def quick_pass(self, scaled: ScaledProblem) -> Round | None:
         """Starts found at once, before the first round."""
         seed = self.search.seed
-        return self.step("quick_pass", (seed,), scaled, lambda: quick_pass(scaled, seed), is_round)
+        rng = np.random.default_rng(seed)
+        return self.step("quick_pass", (seed,), scaled, lambda: finder_for(scaled).quick_pass(rng), is_round)
 
     def onward(self, ledger: Ledger) -> Sequence[Proposal]:
         """Linkages that verified designs lead to, of a finder that proposes whole designs."""

@@ -16,10 +16,11 @@ from grashof.synth.programme.nonlinear_programme import MOST_ITERATIONS
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.chunks import begin_chunks, chunks, solve, solve_round, starts_of_chunk
-from grashof.synth.search.finder import Finder, asked_first, finder_for, rounds
+from grashof.synth.search.finder import asked_first, finder_for, rounds
 from grashof.synth.search.ledger import SAME, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import LARGER
+from grashof.synth.starts.finder import Finder
 from grashof.synth.theory.stopping import StopRequested
 
 _LOG = logging.getLogger(__name__)

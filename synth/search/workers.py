@@ -48,11 +48,6 @@ def screen(scaled: ScaledProblem, effort: int, number: int, enough: int, seed: i
     return finder_for(scaled).round(number, enough, rng, LARGER if effort else 1)
 
 
-def quick_pass(scaled: ScaledProblem, seed: int) -> Round | None:
-    """Starts that are found at once, where the first round takes long."""
-    return finder_for(scaled).quick_pass(np.random.default_rng(seed))
-
-
 @lru_cache(maxsize=8)
 def _unpacked(packed: bytes) -> ScaledProblem:
     """The same object each time, so that its cached values stay."""

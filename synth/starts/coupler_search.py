@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +14,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
+from grashof.synth.starts.finder import StartFinder
 from grashof.synth.starts.loop_search import draw, fitting, improve, judged, place
 from grashof.synth.starts.selection import feasible_starts, mended_starts, relaxed_starts
 from grashof.synth.starts.thinning import refined, thinned
@@ -32,18 +32,12 @@ AROUND, LATER = 0.7, (0.2, 1.5)  # where they are: sizes, and rad after the last
 NEAR = 20  # linkages near the requirements are enough
 
 
-@dataclass(frozen=True, slots=True)
-class CouplerSearch:
+class CouplerSearch(StartFinder):
     """Targets that theory does not solve directly."""
-
-    scaled: ScaledProblem
 
     beginning: ClassVar[str] = "searching"
     cognates: ClassVar[bool] = True
     freedom: ClassVar[bool] = True
-    patience: ClassVar[float] = np.inf
-    rounds_a_pass: ClassVar[int] = 1
-    exhausted: ClassVar[str] = "there are no other starts"
 
     def refuse(self) -> None:
         """Raise `ProblemError` for too few distinct targets, or timed angles without places."""
@@ -61,10 +55,6 @@ class CouplerSearch:
                 f"it must have {'three' if many else 'two'} or more{where}"
             )
 
-    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
-        """None: a round takes little time."""
-        return None
-
     def degenerate(self) -> str:
         """Why a single position needs no linkage; empty for others."""
         placed = self.scaled.targets[self.scaled.problem.task.has_position]
@@ -81,10 +71,6 @@ class CouplerSearch:
         """Starts that may miss what no linkage meets."""
         drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
-
-    def obstacle(self, _rng: np.random.Generator, _counts: Mapping[str, int], /) -> str:
-        """Empty: these targets have no theory."""
-        return ""
 
 
 def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> Round:

@@ -14,11 +14,11 @@ from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.loop.feasible import Demand
-from grashof.synth.programme.start import Round, Start
+from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
-from grashof.synth.starts.design_finder import DesignFinder
 from grashof.synth.starts.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
+from grashof.synth.starts.finder import DesignFinder
 
 ROUNDS = 3
 FEW = 0.25  # of the work of a round, where the reason for an empty list is looked for
@@ -72,13 +72,11 @@ class Dwells(DesignFinder):
         found = self._linkages(batch)
         return Round(found, {FINDS: len(found)})
 
-    def follow(self, design: Candidate) -> Sequence[Start | Linkage]:
+    def follow(self, design: Candidate) -> Sequence[Proposal]:
         """The design itself: tasks of a moved problem have other dwells."""
         return [design.linkage]
 
-    def closest_to(
-        self, required: ScaledProblem, key: str, rng: np.random.Generator
-    ) -> Sequence[Start | Linkage]:
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> Sequence[Proposal]:
         """Some of one round."""
         del required, key
         batch, _ = fitted(self.aim, drawn(self.aim, rng), FEW)

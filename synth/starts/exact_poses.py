@@ -6,9 +6,8 @@ four, and those of more poses are among the dyads of five of them.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import zip_longest
 from typing import ClassVar
 
@@ -23,6 +22,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.coupler_search import searched_round
 from grashof.synth.starts.dyad_pairs import near_misses, screen
+from grashof.synth.starts.finder import StartFinder
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
 from grashof.synth.starts.sampled_dyads import (
     SAMPLES,
@@ -62,16 +62,10 @@ EQUAL = 1e-12  # sizes and unit rotations: poses closer are the same one
 AT_ONCE = 1024  # poses compared with all others
 
 
-@dataclass(frozen=True, slots=True)
-class ExactPoses:
+class ExactPoses(StartFinder):
     """Poses with position and angle, all of them to be met."""
 
-    scaled: ScaledProblem
-
     beginning: ClassVar[str] = "tracing dyads and judging pairs"
-    cognates: ClassVar[bool] = False
-    patience: ClassVar[float] = np.inf
-    rounds_a_pass: ClassVar[int] = 1
 
     @property
     def motion(self) -> Displacements:
@@ -100,10 +94,6 @@ class ExactPoses:
                 "they must be distinct, or requirements.exact = false"
             )
 
-    def quick_pass(self, _rng: np.random.Generator) -> Round | None:
-        """None: there is one round, and it takes little time."""
-        return None
-
     def degenerate(self) -> str:
         """Why a pure rotation needs no linkage; empty for other poses."""
         motion = self.motion
@@ -118,7 +108,6 @@ class ExactPoses:
         return f"the poses are a pure rotation about ({x:.6g}, {y:.6g}): a single pivot there does the job"
 
 
-@dataclass(frozen=True, slots=True)
 class Parallelograms(ExactPoses):
     """Three poses or more that are pure translations of each other."""
 
@@ -147,8 +136,7 @@ class Parallelograms(ExactPoses):
         return parallelogram_obstacle(self.scaled)
 
 
-@dataclass(frozen=True, slots=True)
-class DyadPairs(ExactPoses, ABC):
+class DyadPairs(ExactPoses):
     """Poses whose linkages are pairs of dyads that theory gives."""
 
     @abstractmethod
@@ -180,7 +168,6 @@ class DyadPairs(ExactPoses, ABC):
         return [start.under(settled=not self.freedom) for start in starts]
 
 
-@dataclass(frozen=True, slots=True)
 class FewPoses(DyadPairs):
     """Two to four whole poses."""
 
@@ -241,7 +228,6 @@ class FewPoses(DyadPairs):
         return ""
 
 
-@dataclass(frozen=True, slots=True)
 class ManyPoses(DyadPairs):
     """Five whole poses and more, which leave no freedom."""
 

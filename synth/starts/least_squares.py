@@ -6,7 +6,7 @@ grow from stage to stage: so the search ends where the programme does, for any a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -69,7 +69,6 @@ UNLIMITED = (
 )
 
 
-@dataclass(frozen=True, slots=True)
 class LeastSquares(CouplerSearch):
     """Targets that may be missed."""
 

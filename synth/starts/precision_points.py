@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -31,7 +30,6 @@ THROUGH = "linkages through the points"  # counted
 FOLLOWED = "known solutions followed"  # counted: complex ones among them, cognates as one
 
 
-@dataclass(frozen=True, slots=True)
 class PrecisionPoints(CouplerSearch):
     """Any targets to be met exactly."""
 
@@ -47,8 +45,7 @@ class PrecisionPoints(CouplerSearch):
         return searched_round(self.scaled, enough, rng)
 
 
-@dataclass(frozen=True, slots=True)
-class EveryLinkage(PrecisionPoints, ABC):
+class EveryLinkage(PrecisionPoints):
     """Distinct points of an untimed path that leave no freedom: finitely many linkages, all computable."""
 
     patience: ClassVar[float] = np.inf
@@ -57,7 +54,7 @@ class EveryLinkage(PrecisionPoints, ABC):
     solutions: ClassVar[int]  # that are known for general points
 
     @property
-    def rounds_a_pass(self) -> int:  # type: ignore[override]
+    def rounds_a_pass(self) -> int:
         """Some searches, then all linkages."""
         return 1 + (SEARCHES if self.scaled.wanted.order else 0)
 
@@ -96,7 +93,6 @@ class EveryLinkage(PrecisionPoints, ABC):
         return f"none of the {every} linkages through the points meets all requirements" if every else ""
 
 
-@dataclass(frozen=True, slots=True)
 class NinePoints(EveryLinkage):
     """Nine points, four-bars."""
 
@@ -116,7 +112,6 @@ class NinePoints(EveryLinkage):
         return self._settled(linkages, chosen, 3 * len(through), followed)
 
 
-@dataclass(frozen=True, slots=True)
 class EightPoints(EveryLinkage):
     """Eight points, slider-cranks."""
 

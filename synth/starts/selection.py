@@ -18,6 +18,7 @@ POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
 MISSES, MISS_SPACING = 40, 0.05  # starts from near misses, the nearest first
+SETS, EACH = 3, 5  # sets of requirements that are missed by least, and starts of each
 FEW = 512  # points up to which all pairs are compared
 OTHERS = 10.0  # weight of other misses, where one requirement may be missed
 NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
@@ -56,7 +57,7 @@ def mended_starts(scaled: ScaledProblem, linkages: Screened, enough: int) -> lis
     return chosen + [start.under(radius=np.inf, stay=True) for start in nearly]
 
 
-def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, each: int = 5) -> list[Start]:
+def relaxed_starts(scaled: ScaledProblem, linkages: Screened) -> list[Start]:
     """Starts that may miss what no linkage meets: one requirement where one is enough, else a few."""
     missed = linkages.violations > 0
     fewest = missed.sum(axis=1).min(initial=len(GROUPS))
@@ -72,8 +73,8 @@ def relaxed_starts(scaled: ScaledProblem, linkages: Screened, groups: int = 3, e
     found.sort(key=lambda item: item[:2])  # the set that is missed least first
     return [
         start.under(relaxed=names)
-        for _, names, mine, lacking in found[:groups]
-        for start in _distinct_starts(scaled, mine, -lacking, each)
+        for _, names, mine, lacking in found[:SETS]
+        for start in _distinct_starts(scaled, mine, -lacking, EACH)
     ]
 
 

@@ -31,8 +31,7 @@ STEPS = 3000  # of the driver between two targets; three times as many over the 
 class Findings:
     """Findings of the independent judge: errors in sizes and rad, transmission in deg."""
 
-    position_error: float
-    angle_error: float
+    errors: FloatArray  # of positions, at the targets
     in_order: bool
     on_one_branch: bool
     turns: bool
@@ -40,6 +39,37 @@ class Findings:
     transmission_cycle: float
     lengths: FloatArray
     arms: FloatArray
+    angle_error: float = 0.0
+
+    @property
+    def position_error(self) -> float:
+        """The greatest, sizes."""
+        return float(self.errors.max())
+
+    @property
+    def exact(self) -> bool:
+        """Whether all targets are met, in order, on one branch."""
+        met = self.position_error < 1e-9 and self.angle_error < 1e-9
+        return met and self.in_order and self.on_one_branch
+
+    def check_limits(self, candidate: Candidate, over_task: float, over_cycle: float) -> None:
+        """Lengths and arms keep their limits, and transmission angles are those of the verdict.
+
+        The sampled angle over the task is no smaller, and greater by no more than `over_task`, deg; that over
+        the cycle is as near as `over_cycle`.
+        """
+        task, verdict = candidate.problem.task, candidate.verdict
+        whole, slack = candidate.problem.requirements.resolved(task.size), 1e-8 * task.size
+        for length, (low, high) in zip(self.lengths, whole.link_lengths, strict=True):
+            assert low - slack <= length <= high + slack
+        assert whole.coupler_arms is not None
+        assert whole.coupler_arms[0] - slack <= self.arms.min()
+        assert self.arms.max() <= whole.coupler_arms[1] + slack
+        exact = np.degrees(verdict.transmission_min_task)
+        assert exact - 1e-6 <= self.transmission_task <= exact + over_task
+        if self.turns:
+            exact = np.degrees(verdict.transmission_min_cycle)
+            assert self.transmission_cycle == pytest.approx(exact, abs=over_cycle)
 
 
 Judge: TypeAlias = Callable[[FourBar, MotionTask], Findings]
@@ -90,8 +120,6 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
     theta2 = np.angle(targets - loop.p * direction3 - loop.o2)
     a, b, _ = loop.at(theta2)
     coupler = (b - a) / loop.r3
-    position_error = np.abs(a + loop.p * coupler - targets).max() / task.size
-    angle_error = np.abs(np.angle(coupler / direction3)).max()
 
     in_order = on_one_branch = False
     transmission_task = 0.0
@@ -112,8 +140,7 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
             transmission_task = loop.transmission(on_way)[1]
     turns, transmission_cycle = loop.over_the_turn()
     return Findings(
-        position_error=float(position_error),
-        angle_error=float(angle_error),
+        errors=np.abs(a + loop.p * coupler - targets) / task.size,
         in_order=in_order,
         on_one_branch=on_one_branch,
         turns=turns,
@@ -121,27 +148,15 @@ def judge(linkage: FourBar, task: MotionTask) -> Findings:
         transmission_cycle=transmission_cycle,
         lengths=loop.lengths,
         arms=loop.arms,
+        angle_error=float(np.abs(np.angle(coupler / direction3)).max()),
     )
 
 
-@dataclass(frozen=True)
-class PathFindings:
-    """Findings of the independent judge at the driver angles of a verdict: sizes and deg."""
-
-    errors: FloatArray
-    in_order: bool
-    on_one_branch: bool
-    turns: bool
-    transmission_task: float
-    transmission_cycle: float
-    lengths: FloatArray
-    arms: FloatArray
+PathJudge: TypeAlias = Callable[[FourBar, FloatArray, PathTask], Findings]
 
 
-PathJudge: TypeAlias = Callable[[FourBar, FloatArray, PathTask], PathFindings]
-
-
-def judge_path(linkage: FourBar, theta2: FloatArray, task: PathTask) -> PathFindings:
+def judge_path(linkage: FourBar, theta2: FloatArray, task: PathTask) -> Findings:
+    """At the driver angles of a verdict."""
     loop = Loop(linkage)
     a, b, _ = loop.at(theta2)
     targets = task.points[:, 0] + 1j * task.points[:, 1]
@@ -149,7 +164,7 @@ def judge_path(linkage: FourBar, theta2: FloatArray, task: PathTask) -> PathFind
     gone = 2 * np.pi if task.closed else abs(theta2[-1] - theta2[0])
     closes, worst = loop.transmission(theta2[0] + sense * np.linspace(0, gone, 3 * STEPS))
     turns, least = loop.over_the_turn()
-    return PathFindings(
+    return Findings(
         errors=np.abs(a + loop.p * (b - a) / loop.r3 - targets) / task.size,
         in_order=bool((sense * steps >= -1e-9).all() and gone <= 2 * np.pi + 1e-9),
         on_one_branch=closes,
@@ -232,14 +247,15 @@ def path_scaled() -> Callable[..., tuple[ScaledProblem, FourBar]]:
 PairsOf: TypeAlias = Callable[[ScaledProblem], Screened]
 
 
-def once(of: PairsOf) -> PairsOf:
-    """The same pairs for the same task and requirements: to trace curves takes longer than a solve."""
+def pairs_of(judged: Callable[..., Screened], reach: float, lines: int, cell: float, pairs: int) -> PairsOf:
+    """Pairs of traced dyads, judged once for a task and its requirements."""
     known: dict[tuple[bytes, str], Screened] = {}
 
     def found(scaled: ScaledProblem) -> Screened:
         key = scaled.targets.tobytes() + scaled.turns.tobytes(), repr(scaled.wanted)
         if key not in known:
-            known[key] = of(scaled)
+            dyads = trace_four_pose_curves(scaled.motion, reach=reach, lines=lines, cell=cell)
+            known[key] = judged(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=pairs)
         return known[key]
 
     return found
@@ -247,22 +263,12 @@ def once(of: PairsOf) -> PairsOf:
 
 @pytest.fixture(scope="session")
 def feasible_pairs() -> PairsOf:
-    @once
-    def of(scaled: ScaledProblem) -> Screened:
-        dyads = trace_four_pose_curves(scaled.motion, reach=6.0, lines=200, cell=0.03)
-        return screen(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=60_000)
-
-    return of
+    return pairs_of(screen, reach=6.0, lines=200, cell=0.03, pairs=60_000)
 
 
 @pytest.fixture(scope="session")
 def all_pairs() -> PairsOf:
-    @once
-    def of(scaled: ScaledProblem) -> Screened:
-        dyads = trace_four_pose_curves(scaled.motion, reach=5.0, lines=40, cell=0.1)
-        return near_misses(scaled.motion, scaled.targets[0], dyads, scaled.wanted, pairs=20_000)
-
-    return of
+    return pairs_of(near_misses, reach=5.0, lines=40, cell=0.1, pairs=20_000)
 
 
 LeastError: TypeAlias = Callable[..., Result]

@@ -68,19 +68,9 @@ def serial():
     return {name: found(name) for name in SEARCHES}
 """
 
-AT_ONCE = """
-alone = serial()
-assert "link_length up to" in alone["none"], alone["none"]
-names = list(SEARCHES)
-with ThreadPoolExecutor(3) as pool:
-    for number in range(20):  # three kinds at once, and every fourth time one kind three times
-        some = [names[(number + (k if number % 4 else 0)) % len(names)] for k in range(3)]
-        for name, text in zip(some, pool.map(found, some)):
-            assert text == alone[name], name
-"""
-
 AS_EXECUTOR = """
 alone = serial()
+assert "link_length up to" in alone["none"], alone["none"]
 for name in SEARCHES:
     with ThreadPoolExecutor(3) as pool:
         assert found(name, executor=pool, workers=3) == alone[name], name
@@ -157,13 +147,11 @@ assert not wrong, wrong
 assert min(checked) > 10, checked
 """
 
-SCRIPTS = {"at once": AT_ONCE, "as executor": AS_EXECUTOR, "async": ASYNC, "own functions": OWN_FUNCTIONS}
+SCRIPTS = {"as executor": AS_EXECUTOR, "async": ASYNC, "own functions": OWN_FUNCTIONS}
 
 
 @pytest.mark.study
-@pytest.mark.parametrize(
-    "how", [pytest.param(how, marks=pytest.mark.study) if how == "at once" else how for how in SCRIPTS]
-)
+@pytest.mark.parametrize("how", SCRIPTS)
 def test_threads_give_the_serial_lists(how: str, tmp_path: Path) -> None:
     (tmp_path / "threads.py").write_text(SEARCHES + SCRIPTS[how], encoding="utf-8")
     done = subprocess.run(

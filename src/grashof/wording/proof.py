@@ -121,7 +121,7 @@ def work_line(proof: Proof) -> str:
     if not proof.pairs:
         return f"{counted(first, 'dyad')}, each in a box of its own, {proof.seconds:.2f} s"
     if not second:
-        return f"{counted(first, 'piece')} of families of one number, {proof.pairs} in all, {halved}"
+        return f"{counted(first, 'piece')} of one-parameter families, {proof.pairs} in all, {halved}"
     return f"{first} by {second} pieces of all dyads, {counted(proof.pairs, 'pair')}, {halved}"
 
 

@@ -50,7 +50,7 @@ class Proof:
         Value of the best listed design, as judged; and the bound that no design exceeds.
     pieces : tuple of int
         First pieces of the curve, or plane, of dyads: those that may be drivers, and driven; of five poses
-        dyads; of a stroke pieces of families of one number, and 0; of points listed linkages, and 0.
+        dyads; of a stroke pieces of one-parameter families, and 0; of points listed linkages, and 0.
     pairs, levels : int
         Pairs of pieces, or pieces, that were bounded, and the number of times that the remaining ones were
         halved; of three

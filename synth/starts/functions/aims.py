@@ -54,7 +54,8 @@ class FunctionAims:
         wanted = problem.requirements.resolved(task.size)
         kind, unit = scaled.kind.generators, task.output_unit
         names, sizes = kind.sizes(wanted, unit)
-        rotatability = wanted.rotatability or Rotatability.ANY
+        rotatability, offset = wanted.rotatability or Rotatability.ANY, wanted.offset
+        lengths = [_over(each, unit) for each in sizes]
         limits = ShapeLimits(
             span=task.span[1] - task.span[0],
             caps=_caps(kind, sizes, wanted.link_ratio_max),
@@ -62,7 +63,7 @@ class FunctionAims:
             over_cycle=wanted.transmission_over is TransmissionOver.CYCLE,
             margin=None if rotatability is Rotatability.ANY else wanted.rotatability_margin + INSIDE,
             shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(rotatability, 0),
-            offset=_offset(sizes, wanted.offset, unit),
+            offset=None if offset is None else offset_rows(lengths, _over(offset, unit)),
             stroke=(-np.inf, np.inf) if wanted.stroke is None else _over(wanted.stroke, unit),
         )
         exact = problem.requirements.is_exact(task)
@@ -157,11 +158,6 @@ def _caps(kind: type[Generators], sizes: list[Limits], ratio: float) -> FloatArr
     with np.errstate(divide="ignore", invalid="ignore"):
         caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low)) - INSIDE
     return caps
-
-
-def _offset(sizes: list[Limits], offset: Limits | None, unit: float) -> FloatArray | None:
-    """Rows that keep an offset within its limits."""
-    return None if offset is None else offset_rows([_over(each, unit) for each in sizes], _over(offset, unit))
 
 
 def _over(limits: Limits, unit: float) -> Limits:

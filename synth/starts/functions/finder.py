@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -14,7 +13,7 @@ from grashof.problems import Linkage, ProblemError
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.functions.aims import FunctionAims
 from grashof.synth.starts.functions.optima import Optima
 from grashof.synth.starts.functions.pairs import KNOWN, exact_functions
@@ -30,7 +29,6 @@ FINDS = "feasible finds"
 CLOSE = 8  # of the designs that miss a requirement
 
 
-@dataclass(frozen=True)
 class Functions(DesignFinder):
     """Linkages that generate a function.
 

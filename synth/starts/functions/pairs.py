@@ -56,7 +56,8 @@ def _through(
     desired, kind, limits = aims.pairs(sense), aims.kind, aims.limits_of(driver)
     turned, output = desired.turned - desired.turned[0], desired.output - desired.output[0]
     count, pairs = len(turned), _Pairs(aims, sense, limits, desired, turned, output)
-    pinned = _pinned(aims) and count < kind.EXACT
+    offset = aims.wanted.offset  # where it is given, no sweep would find it
+    pinned = offset is not None and offset[0] == offset[1] and count < kind.EXACT
     if count > kind.EXACT or (first is not None and count > kind.LINEAR) or pinned:
         starts = function_starts(kind, desired, rng, first)
         near = fitted(desired, starts, limits.of, held=first is not None)[0]
@@ -75,12 +76,6 @@ def _through(
     if count == kind.EXACT - 1:
         return pairs.on_curve(round(CURVE * effort))
     return pairs.on_surface(round(GRID * np.sqrt(effort)), rng)
-
-
-def _pinned(aims: FunctionAims) -> bool:
-    """Whether the offset is given, so that no sweep would find it."""
-    offset = aims.wanted.offset
-    return offset is not None and offset[0] == offset[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +111,8 @@ class _Pairs:
         for _ in range(ZOOMS):
             if not len(pool):
                 break
-            at = _output_at(self.best(pool), self.desired.turned[0], between)
+            path = self.best(pool).outputs(self.desired.turned[0] + np.linspace(0.0, between, 65))
+            at = path[:, -1] - path[:, 0]
             more = self.through_and(between, (at[:, None] + step * np.linspace(-1, 1, ZOOM)).ravel())
             pool, step = self.aims.kind.joined([pool, more]), 3 * step / ZOOM
         return pool
@@ -166,13 +162,6 @@ class _Pairs:
         off = path - path[:, :1] - (desired.output - desired.output[0])
         most = max(MET, 0.5 * self.aims.problem.requirements.tolerance)
         return batch[np.abs(off).max(axis=1) < most]
-
-
-def _output_at(batch: Generators, before: float, turned: float) -> FloatArray:
-    """Output from the first pair to a place, shape (M,)."""
-    path = batch.outputs(before + np.linspace(0.0, turned, 65))
-    rotated: FloatArray = path[:, -1] - path[:, 0]
-    return rotated
 
 
 def expected_score(aims: FunctionAims, batch: Generators, sense: int) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, TypeAlias
 
@@ -17,7 +16,7 @@ from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Configurations, Screened, judge, violations_apart
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.strokes.rocker_kind import RockerKind
 from grashof.synth.starts.strokes.shaper_kind import ShaperKind
 from grashof.synth.starts.strokes.slider_kind import SliderKind
@@ -45,7 +44,6 @@ def stroke_kind_of(kind: Kind) -> type[StrokeKind]:
     return next(each for each in (RockerKind, SliderKind, ShaperKind) if isinstance(kind.dyad, each.dyad))
 
 
-@dataclass(frozen=True)
 class LimitPositions(DesignFinder):
     """All linkages with a swing, or a stroke, and a time ratio."""
 
@@ -106,13 +104,11 @@ class LimitPositions(DesignFinder):
 
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> list[Start]:
         """Of the members that keep these limits, those that miss the additional one by least, or many."""
-        return [] if key in UNSMOOTH else self._closest_to(LimitPositions(required), rng)
-
-    def _closest_to(self, required: LimitPositions, rng: np.random.Generator) -> list[Start]:
-        starts = list[Start]()
-        if required.elsewhere:
-            starts += self._chosen(_MANY) + self._anywhere(_MANY, rng)
-        return starts + required._closest(self._stretches) + required._closest(self._stretches, self)
+        if key in UNSMOOTH:
+            return []
+        asked = LimitPositions(required)
+        starts = self._chosen(_MANY) + self._anywhere(_MANY, rng) if asked.elsewhere else []
+        return starts + asked._closest(self._stretches) + asked._closest(self._stretches, self)
 
     def _closest(self, within: _Stretches, placed: LimitPositions | None = None) -> list[Start]:
         """In each of some stretches the member that is farthest inside the limits, or least outside."""

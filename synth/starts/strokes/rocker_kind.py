@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.problems import Box, Requirements
-from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, Limits
 from grashof.synth.loop.dyad import Bars, ClosingDyad, coupler_of
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, StrokeKind, across
@@ -129,42 +129,30 @@ class RockerKind(StrokeKind):
         return factor
 
     def diagonals(self, members: StrokeLinkages) -> FloatArray:
-        _, r2, r3, r4 = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, 2 * np.pi, POSITIONS))
-        b = a + np.nan_to_num(coupler_of(Bars(), 1.0, a, r3, r4, members.assembly[:, None])[0])
+        _, r2, *others = members.lengths.T[..., None]
+        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
+        b = a + np.nan_to_num(self._to_b(members, 1.0, a, *others))
         return across(np.concatenate([a, b, np.ones_like(a[:, :1])], axis=1))
 
     def put(self, members: StrokeLinkages, factor: FloatArray) -> ComplexArray:
-        ground = Ground.of(self.wanted)
-        pivots = []
-        for k, angle in enumerate(self._angle(members).tolist()):
-            r1 = float(factor[k] * members.lengths[k, 0])
-            towards = ground.direction(r1, 0.0) if np.isnan(angle) else angle
-            pivots.append(ground.pivots(r1, towards))
-        return np.array(pivots, dtype=np.complex128).reshape(-1, 2)
+        return self._pivots(members, factor * members.lengths[:, 0], np.zeros(len(members)))
 
     def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
-        ground, size = Ground.of(self.wanted), self.task.size
-        low, high = self._scales(members)
+        size, (low, high) = self.task.size, self._scales(members)
         low, high = np.maximum(low, np.minimum(size / 30, high)), np.minimum(high, np.maximum(30 * size, low))
         r1 = members.lengths[:, 0] * np.exp(rng.uniform(np.log(low), np.log(np.maximum(high, low))))
-        preferred, fixed = rng.uniform(-np.pi, np.pi, len(r1)), self._angle(members)
-        share = rng.uniform(0, 1, (len(r1), 2))
-        pivots = []
-        for k, angle in enumerate(fixed.tolist()):
-            towards = ground.direction(float(r1[k]), float(preferred[k])) if np.isnan(angle) else angle
-            pivots.append(ground.pivots(float(r1[k]), towards, share[k], room))
-        return np.array(pivots, dtype=np.complex128).reshape(-1, 2)
+        preferred, share = rng.uniform(-np.pi, np.pi, len(r1)), rng.uniform(0, 1, (len(r1), 2))
+        return self._pivots(members, r1, preferred, share, room)
 
     def moving(
         self, members: StrokeLinkages, points: ComplexArray
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
         o2, o4 = points.T[..., None]
-        _, r2, r3, r4 = (members.lengths / members.lengths[:, :1]).T[..., None] * np.abs(o4 - o2)
+        _, r2, *others = (members.lengths / members.lengths[:, :1]).T[..., None] * np.abs(o4 - o2)
         theta2 = np.stack(self.ends(members), axis=-1) + np.angle(o4 - o2)
         crank = r2 * np.exp(1j * theta2)
-        coupler, _ = coupler_of(Bars(), o4 - o2, crank, r3, r4, members.assembly[:, None])
-        return points[:, 1], o2 + crank, o2 + crank + coupler, theta2
+        a = o2 + crank
+        return points[:, 1], a, a + self._to_b(members, o4 - o2, crank, *others), theta2
 
     def in_boxes(self, a: FloatArray, b: FloatArray) -> bool:
         for box, places in ((self.wanted.a, a), (self.wanted.b, b)):
@@ -178,6 +166,29 @@ class RockerKind(StrokeKind):
         r1, r2, r3, r4 = start.lengths
         cosines = [(r3**2 + r4**2 - end**2) / (2 * r3 * r4) for end in (r1 - r2, r1 + r2)]
         return float(np.arccos(max(map(abs, cosines))))
+
+    def _pivots(
+        self,
+        members: StrokeLinkages,
+        r1: FloatArray,
+        preferred: FloatArray,
+        share: FloatArray | None = None,
+        room: Box | None = None,
+    ) -> ComplexArray:
+        """O2 and O4, (n, 2), where O2O4 has the direction that the limits fix, or one near a preferred."""
+        ground, pivots = Ground.of(self.wanted), []
+        for k, angle in enumerate(self._angle(members).tolist()):
+            length = float(r1[k])
+            towards = ground.direction(length, float(preferred[k])) if np.isnan(angle) else angle
+            pivots.append(ground.pivots(length, towards, None if share is None else share[k], room))
+        return np.array(pivots, dtype=np.complex128).reshape(-1, 2)
+
+    def _to_b(
+        self, members: StrokeLinkages, ground: ComplexArray | float, crank: ComplexArray, *lengths: FloatArray
+    ) -> ComplexArray:
+        """From A to B, (n, N), by the ground line, the crank and the lengths that follow r2."""
+        r3, r4 = lengths
+        return coupler_of(Bars(), ground, crank, r3, r4, members.assembly[:, None])[0]
 
     def _scales(self, members: StrokeLinkages) -> FloatArray:
         ground = Ground.of(self.wanted).lengths(self._angle(members))

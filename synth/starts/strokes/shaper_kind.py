@@ -8,11 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dyad import Block, ClosingDyad, coupler_of, root_or_zero
 from grashof.synth.programme.start import Start
 from grashof.synth.starts.strokes.rocker_kind import Ground, RockerKind, scales
-from grashof.synth.starts.strokes.stroke_kind import KEPT, POSITIONS, across
+from grashof.synth.starts.strokes.stroke_kind import KEPT
 from grashof.synth.theory.limit_positions import Family, StrokeLinkages, crank_shapers
 
 _LEAST = 1e-30  # scale
@@ -42,27 +42,16 @@ class ShaperKind(RockerKind):
         low, high = self._scales(members)
         return self.least(members, r1 / r2, turns, self._angle(members), [np.log(high / low)])
 
-    def diagonals(self, members: StrokeLinkages) -> FloatArray:
-        _, r2, offset = members.lengths.T[..., None]
-        a = r2 * np.exp(1j * np.linspace(0, TURN, POSITIONS))
-        places = np.concatenate(
-            [a, a + _along_rod(1.0, a, offset), np.tile([0, 1], (len(members), 1))], axis=1
-        )
-        return across(places)
-
-    def moving(
-        self, members: StrokeLinkages, points: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray, FloatArray]:
-        o2, o4 = points.T[..., None]
-        _, r2, offset = members.lengths.T[..., None] * np.abs(o4 - o2)
-        theta2 = np.stack(self.ends(members), axis=-1) + np.angle(o4 - o2)
-        crank = r2 * np.exp(1j * theta2)
-        a = o2 + crank
-        return points[:, 1], a, a + _along_rod(o4 - o2, crank, offset), theta2
-
     def worst(self, start: Start) -> float:
         r1, r2, _, offset = start.lengths
         return float(np.arccos(min(abs(offset) / abs(r1 - r2), 1.0)))
+
+    def _to_b(
+        self, members: StrokeLinkages, ground: ComplexArray | float, crank: ComplexArray, *lengths: FloatArray
+    ) -> ComplexArray:
+        """From A to B, the foot of the perpendicular from O4 on the rod."""
+        (offset,) = lengths
+        return coupler_of(Block(), ground, crank, offset, offset, 1.0, root_or_zero)[0]
 
     def _scales(self, members: StrokeLinkages) -> FloatArray:
         r1, r2, *_ = self.wanted.link_lengths
@@ -78,8 +67,3 @@ class ShaperKind(RockerKind):
         low = np.maximum(low, np.where(still, _LEAST, ends[0]))
         high = np.minimum(high, np.where(still, np.inf if zero_allowed else _LEAST**2, ends[1]))
         return np.stack([low, high])
-
-
-def _along_rod(ground: ComplexArray | float, crank: ComplexArray, offset: FloatArray) -> ComplexArray:
-    """From A to B, the foot of the perpendicular from O4 on the rod."""
-    return coupler_of(Block(), ground, crank, offset, offset, 1.0, root_or_zero)[0]

@@ -42,7 +42,7 @@ class SliderKind(StrokeKind):
         return [(partial(slider_cranks, side), False) for side in sides]
 
     def inside(self, members: StrokeLinkages) -> FloatArray:
-        wanted, stroke = self.wanted, self._stroke
+        wanted, stroke = self.wanted, self.task.size
         r2, r3, offset = members.lengths.T
         beside = np.abs(offset)
         turns = (r3 - r2 - beside) / (r2 + r3 + beside)
@@ -57,7 +57,7 @@ class SliderKind(StrokeKind):
         return self.least(members, r3 / r2, turns, angle, others)
 
     def factor(self, members: StrokeLinkages, preferred: float | FloatArray = 1.0) -> FloatArray:
-        return np.full(len(members), self._stroke)
+        return np.full(len(members), self.task.size)
 
     def diagonals(self, members: StrokeLinkages) -> FloatArray:
         r2, r3, offset = members.lengths.T[..., None]
@@ -73,14 +73,14 @@ class SliderKind(StrokeKind):
     def put_anywhere(self, members: StrokeLinkages, room: Box, rng: np.random.Generator) -> ComplexArray:
         preferred, share = rng.uniform(-np.pi, np.pi, len(members)), rng.uniform(0, 1, (2, len(members)))
         angle = self._angle(members)
-        if self._turns_freely:
+        if self.wanted.theta2_start_deg is None and self.wanted.slide_angle_deg is None:
             angle = np.where(self._room(members, preferred) >= 0, preferred, angle)
         place = []
         ends = zip((room.x, room.y), *self._room_of_o2(members, angle), strict=True)
         for axis, ((least, most), low, high) in enumerate(ends):
             low, high = np.maximum(low, np.minimum(least, high)), np.minimum(high, np.maximum(most, low))
             place.append(low + share[axis] * (high - low))
-        return _both(place[0] + 1j * place[1], self._stroke * np.exp(1j * angle))
+        return _both(place[0] + 1j * place[1], self.task.size * np.exp(1j * angle))
 
     def moving(
         self, members: StrokeLinkages, points: ComplexArray
@@ -107,19 +107,11 @@ class SliderKind(StrokeKind):
         return (last, first) if self.clockwise else (first, last)
 
     @property
-    def _stroke(self) -> float:
-        return self.task.size
-
-    @property
     def _boxed(self) -> bool:
         """Whether A or B has to be somewhere."""
         return any(
             box is not None and np.isfinite([*box.x, *box.y]).any() for box in (self.wanted.a, self.wanted.b)
         )
-
-    @property
-    def _turns_freely(self) -> bool:
-        return self.wanted.theta2_start_deg is None and self.wanted.slide_angle_deg is None
 
     def _angle(self, members: StrokeLinkages) -> FloatArray:
         """Direction of the slide, (n,), rad: as limits fix it, or else one in which there is room for O2."""
@@ -152,7 +144,7 @@ class SliderKind(StrokeKind):
 
     def _corners(self) -> list[float]:
         """Directions in which the stroke just fits into the box of B, besides that along x."""
-        box, stroke = self.wanted.b, self._stroke
+        box, stroke = self.wanted.b, self.task.size
         if box is None:
             return [0.0]
         wide, tall = (min((high - low) / stroke, 1.0) for low, high in (box.x, box.y))
@@ -168,12 +160,12 @@ class SliderKind(StrokeKind):
     def _room(self, members: StrokeLinkages, angle: FloatArray) -> FloatArray:
         """Room left to O2, strokes, in directions of the slide (n,) or (n, m)."""
         low, high = self._room_of_o2(members, angle)
-        room: FloatArray = (high - low).min(axis=0) / self._stroke
+        room: FloatArray = (high - low).min(axis=0) / self.task.size
         return np.where(room < 0, np.minimum(room + _ROUNDING, 0.0), room)
 
     def _room_of_o2(self, members: StrokeLinkages, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where O2 may lie, least and greatest x and y, each (2, ...), for A and B to be in their boxes."""
-        turned = self._stroke * np.exp(1j * angle)
+        turned = self.task.size * np.exp(1j * angle)
         wanted, ways = self.wanted, [np.zeros_like(turned)]
         boxes = [wanted.o2 or Box()]
         for box, places in zip((wanted.a, wanted.b), self._moved(members), strict=True):

@@ -1,4 +1,4 @@
-"""Which of two designs is better: equal errors, the objective, and what nobody would build."""
+"""Which of two designs is better: equal errors, the objective, and designs that are impractical."""
 
 from __future__ import annotations
 
@@ -10,9 +10,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grashof import synthesize
 from grashof.analysis import verify
-from grashof.problems import FourBar, Objective, PathTask, Problem, ProblemError, Requirements
+from grashof.problems import (
+    FourBar,
+    MotionTask,
+    Objective,
+    PathTask,
+    Problem,
+    ProblemError,
+    Requirements,
+    Rotatability,
+    TransmissionOver,
+)
 from grashof.synth import Candidate
+from grashof.synth.designs.families import caution, listed
 from grashof.synth.designs.ranking import pareto_goals, pareto_optimal, ranked, ranking_key
 from grashof.synth.designs.table import to_frame
 from grashof.wording.problem import goals
@@ -131,7 +143,8 @@ def test_ranking_keeps_the_strength_of_a_design() -> None:
 
 def test_the_user_s_own_objective_ranks() -> None:
     some = design(1, mu=50), design(2, mu=40), design(3, mu=30)
-    best_first = ranked(EXACT, some, lambda design: (design.o4[0] - design.o2[0] - 6) ** 2)
+    valued = [each.valued(lambda design: (design.o4[0] - design.o2[0] - 6) ** 2) for each in some]
+    best_first = ranked(EXACT, valued)
     assert [each.start for each in best_first] == [2, 1, 3]
     assert [each.own_objective for each in best_first] == [0, 1, 1]
     assert [each.start for each in ranked(EXACT, best_first[::-1])] == [2, 1, 3]  # they keep it
@@ -142,10 +155,10 @@ def test_the_user_s_own_objective_ranks() -> None:
 
 
 def test_an_objective_without_a_value_is_the_worst() -> None:
-    some = ranked(EXACT, (design(1), design(2)), lambda design: np.log(design.o4[0] - 5.5))
-    assert [each.start for each in some] == [2, 1]
+    valued = [each.valued(lambda design: np.log(design.o4[0] - 5.5)) for each in (design(1), design(2))]
+    assert [each.start for each in ranked(EXACT, valued)] == [2, 1]
     with pytest.raises(ProblemError, match="objective <lambda> gives 'short' on numbers"):
-        ranked(EXACT, some, lambda design: "short")
+        valued[0].valued(lambda design: "short")
 
 
 def test_other_goals_can_be_weighed() -> None:
@@ -155,3 +168,74 @@ def test_other_goals_can_be_weighed() -> None:
     assert one.objective(problem) == pytest.approx(40 / 90 - share)
     assert [goal.key for goal in pareto_goals(problem)] == ["transmission_min_task", "size", "omega4_max"]
     assert goals(problem) == "mu, size and omega4"
+
+
+FOLDING = FourBar(o2=(0, 0), o4=(4, 0), r2=1, r3=3.99, r4=1.1)
+
+
+def placed(number: int = 0, linkage: FourBar = CRANK, **figures: Any) -> Candidate:
+    """A design with these figures, elsewhere in the plane."""
+    moved = replace(linkage, o2=linkage.o2 + number, o4=linkage.o4 + number)
+    return replace(design(number, **figures), linkage=moved)
+
+
+def asking(**requirements: Any) -> Problem:
+    return replace(EXACT, requirements=replace(EXACT.requirements, **requirements))
+
+
+@pytest.mark.parametrize(
+    ("odd", "said", "allowed"),
+    [
+        ({"size": 3.1}, "3.1 times the size of the task", {"size": (0.0, 20.0)}),
+        ({"turn": 14.0}, "the driver turns by 14.0 deg alone", {"driver_rotation_deg": (1.0, 90.0)}),
+        (
+            {"cycle": 14.0},
+            "transmission angle 14.0 deg somewhere in the turn",
+            {"transmission_min_deg": 5.0, "transmission_over": TransmissionOver.CYCLE},
+        ),
+        ({"linkage": FOLDING}, "it nearly folds: 0.0089 left of its lengths", {"rotatability_margin": 0.002}),
+    ],
+)
+def test_cautions_of_a_design(odd: dict[str, Any], said: str, allowed: dict[str, Any]) -> None:
+    assert caution(EXACT, placed(**odd)) == said
+    assert caution(asking(**allowed), placed(**odd)) == ""  # the user's own limit wins
+    assert caution(replace(EXACT, objective=Objective(compactness=0.1)), placed(**odd)) == ""
+
+
+def test_a_design_that_keeps_all_has_no_caution() -> None:
+    assert caution(EXACT, placed(size=3.0, turn=15.001, cycle=15.001)) == ""
+    turning = asking(rotatability=Rotatability.ANY)
+    assert caution(turning, placed(cycle=1.0)) == caution(turning, placed(linkage=FOLDING)) == ""
+
+
+def test_doubted_designs_come_last_and_the_best_by_the_objective_says_so() -> None:
+    found = listed(
+        EXACT, [placed(1, mu=60, turn=5), placed(10, mu=50), placed(20, mu=55, size=4), placed(30, mu=45)]
+    )
+    assert [each.start for each in found] == [10, 30, 1, 20]
+    assert [bool(each.caution) for each in found] == [False, False, True, True]
+    assert [each.best_at for each in found] == ["", "", "objective", ""]
+    assert [each.best_at for each in listed(EXACT, [placed(1, mu=60), placed(10, mu=50, size=9)])] == [
+        "",
+        "",
+    ]
+
+
+@pytest.mark.slow
+def test_inverted_slider_cranks_at_90_deg_are_ranked_by_their_leverage() -> None:
+    """Their transmission angle says nothing: one whose output went 454 times as fast came third."""
+    task = MotionTask.from_degrees([[0, 0, 0], [3, 1, 40], [5, 4, 90]])
+    for kinds in ("inverted-slider-crank", ("inverted-slider-crank", "slider-crank")):
+        found = synthesize(Problem(task=task, mechanism=kinds), starts=30, enough=20)
+        upright = [
+            each
+            for each in found.candidates
+            if each.linkage.mechanism.word == "inverted-slider-crank"
+            and each.family == each.id
+            and not each.caution
+            and np.degrees(each.verdict.transmission_min_task) > 90 - 1e-7
+        ]
+        assert len(upright) > 3
+        gain = [each.values["mechanical_advantage"] for each in upright]
+        assert gain == sorted(gain, reverse=True)
+        assert gain[0] > 1

@@ -10,7 +10,8 @@ import pandas as pd
 import pytest
 
 from grashof.analysis import over_task
-from grashof.problems import DynamicsSpec, Problem
+from grashof.analysis.judge.tolerance import robustness
+from grashof.problems import DynamicsSpec, Manufacturing, Problem
 from grashof.problems.values.requirements.quantities import MEASURED
 from grashof.synth import Result
 from grashof.synth.designs.table import LISTED, NAMES, to_frame
@@ -240,3 +241,37 @@ def test_a_miss_without_a_motion_has_no_figures(luggage_result: Result) -> None:
     torn = replace(first, verdict=replace(first.verdict, branch_ok=False))
     row = to_frame(luggage_result.problem, (torn,))
     assert row[[*MOTION, *DYNAMICS]].isna().all(axis=None)
+
+
+MANUFACTURING = (
+    *("move_r1", "move_r2", "move_r3", "move_r4", "move_u", "move_v"),
+    *("worst_move", "share_within_linear", "share_within_made"),
+)
+
+MADE = Manufacturing(0.02, band=0.03)
+
+
+@pytest.fixture(scope="module")
+def made_frame(luggage_result: Result) -> pd.DataFrame:
+    problem = replace(luggage_result.problem, manufacturing=MADE)
+    return replace(luggage_result, problem=problem).to_frame()
+
+
+@pytest.mark.study
+def test_figures_of_made_linkages_are_the_analysis(made_frame: pd.DataFrame, luggage_result: Result) -> None:
+    for row, candidate in zip(
+        made_frame[list(MANUFACTURING)].to_numpy(), luggage_result.candidates, strict=True
+    ):
+        found = robustness(candidate.linkage, luggage_result.problem.task, candidate.verdict, MADE)
+        figures = [*found.moves, found.worst_move, found.share_linear, found.share_made]
+        assert row.tolist() == figures
+
+
+@pytest.mark.slow
+def test_figures_of_made_linkages_make_sense(made_frame: pd.DataFrame) -> None:
+    moves = made_frame[list(MANUFACTURING[:6])].to_numpy()
+    np.testing.assert_allclose(made_frame[["move_u", "move_v"]], 1, rtol=1e-12)
+    assert (0.02 * moves.max(axis=1) <= made_frame["worst_move"]).all()
+    assert (made_frame["worst_move"] <= 0.02 * moves.sum(axis=1) * (1 + 1e-12)).all()
+    assert made_frame["share_within_made"].between(0.01, 0.999).all()
+    np.testing.assert_allclose(made_frame["share_within_linear"], made_frame["share_within_made"], atol=0.02)

@@ -22,7 +22,7 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.ledger import Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.workers import Work
-from grashof.synth.starts.design_finder import DesignFinder
+from grashof.synth.starts.finder import DesignFinder
 
 pytestmark = pytest.mark.usefixtures("small_search")
 

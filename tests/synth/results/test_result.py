@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grashof.analysis import over_task, verify
 from grashof.problems import FourBar, NoSolutionError, Objective, Problem, TransmissionOver
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.families import listed
@@ -29,22 +28,6 @@ def with_figures(candidate: Candidate, error: float, transmission: float, size: 
         size=size,
     )
     return replace(candidate, verdict=verdict)
-
-
-def test_ranks_follow_the_objective(luggage_result: Result, luggage: Problem) -> None:
-    transmission = [c.verdict.transmission_min_task for c in ranked(luggage, luggage_result.candidates)]
-    assert transmission == sorted(transmission, reverse=True)
-    heads = [family[0] for family in luggage_result.families]
-    best_of_each = [each.verdict.transmission_min_task for each in heads if not each.caution]
-    assert best_of_each == sorted(best_of_each, reverse=True)
-    assert luggage_result.best is luggage_result.candidates[0]
-    small = replace(luggage, objective=Objective(transmission=0, compactness=1))
-    sizes = [c.verdict.size for c in ranked(small, list(luggage_result.candidates))]
-    assert sizes == sorted(sizes)
-    cycle = replace(luggage, requirements=replace(luggage.requirements, transmission_over="cycle"))
-    worst = [c.verdict.transmission_min_cycle for c in ranked(cycle, list(luggage_result.candidates))]
-    assert worst == sorted(worst, reverse=True)
-    assert worst != transmission
 
 
 def test_a_table_of_weights_adds_up(luggage_designs: Designs, luggage: Problem) -> None:
@@ -102,36 +85,6 @@ def test_pareto_marks_are_those_of_brute_force(
         assert pareto_optimal(problem, designs).tolist() == expected
 
 
-def test_real_pareto_marks(luggage_designs: Designs, luggage: Problem) -> None:
-    marks = pareto_optimal(replace(luggage, dynamics=None), luggage_designs)
-    figures = [(c.verdict.transmission_min_task, c.verdict.size) for c in luggage_designs]
-    for mark, (angle, size) in zip(marks, figures, strict=True):
-        beaten = any(a >= angle and s <= size and (a, s) != (angle, size) for a, s in figures)
-        assert mark != beaten
-    assert marks[0]  # the best transmission
-    assert marks[int(np.argmin([size for _, size in figures]))]
-    assert 2 <= marks.sum() < len(marks)
-
-
-@pytest.mark.slow
-def test_pareto_marks_with_the_torque(luggage_designs: Designs, luggage: Problem) -> None:
-    marks, without = (
-        pareto_optimal(problem, luggage_designs) for problem in (luggage, replace(luggage, dynamics=None))
-    )
-    peaks = [over_task(c.linkage, luggage, c.verdict).torque_peak for c in luggage_designs]
-    figures = [
-        (-c.verdict.transmission_min_task, c.verdict.size, peak)
-        for c, peak in zip(luggage_designs, peaks, strict=True)
-    ]
-    for mark, mine in zip(marks, figures, strict=True):
-        beaten = any(all(x <= y for x, y in zip(b, mine, strict=True)) and b != mine for b in figures)
-        assert mark != beaten
-    assert marks[without].all()  # one more goal takes no mark away
-    assert marks[int(np.argmin(peaks))]
-    assert without.sum() < marks.sum() < len(marks)
-    assert [c.values["torque_peak"] for c in luggage_designs] == peaks
-
-
 def test_an_unknown_torque_counts_as_infinite(luggage_designs: Designs, luggage: Problem) -> None:
     """As of a design without a motion that joins its targets."""
     one = luggage_designs[0]
@@ -182,15 +135,6 @@ def test_an_empty_result_says_why(luggage: Problem) -> None:
     assert len(empty) == 0
     with pytest.raises(NoSolutionError, match=r"^no design: nothing fits$"):
         _ = empty.best
-
-
-def test_verdicts_are_the_judges(luggage_result: Result, luggage: Problem) -> None:
-    """The verdict in the list is that of `verify` on the numbers of the design alone."""
-    for candidate in luggage_result.candidates[:8]:
-        again = verify(candidate.linkage, luggage.task, luggage.requirements)
-        assert again.transmission_min_task == candidate.verdict.transmission_min_task
-        assert again.size == candidate.verdict.size
-        assert again.theta2.tobytes() == candidate.verdict.theta2.tobytes()
 
 
 def test_values_show_themselves_in_one_line(luggage_result: Result) -> None:

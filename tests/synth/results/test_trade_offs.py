@@ -11,7 +11,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position, verify
-from grashof.problems import MotionTask, Objective, Problem, Requirements
+from grashof.problems import MotionTask, Problem, Requirements
 from grashof.problems.files.problem_file import problem_of
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth import Candidate, Result
@@ -108,17 +108,6 @@ def test_zones_of_the_walking_leg(objective: str, least_deg: float) -> None:
         track = solve_position(each.linkage, angle).p
         for point in result.problem.task.positions:  # over the full turn
             assert np.hypot(*(track - point).T).min() <= 6.01
-
-
-@pytest.mark.study
-def test_an_error_factor_bounds_the_error_and_lets_the_objective_decide(dshape: Result) -> None:
-    wanted = replace(dshape.problem.requirements, error_factor=1.2)
-    result = synthesize(replace(dshape.problem, requirements=wanted), effort=0.2)
-    assert errors_of(result).max() <= 1.2 * errors_of(dshape).min() * (1 + 1e-6)
-    assert mu_of(result.best) >= 65.1
-    assert mu_of(result.best) == pytest.approx(max(mu_of(each) for each in result.candidates), abs=1e-6)
-    small = replace(result.problem, objective=Objective(transmission=0, compactness=1))
-    assert synthesize(small, effort=0.2).best.verdict.size <= 334.5
 
 
 def test_more_effort_is_never_worse_and_less_is_quick(least_error: Search) -> None:

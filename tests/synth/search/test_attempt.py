@@ -1,6 +1,5 @@
 """An attempt: solved, made exact, judged; what cannot be judged is data, not an error."""
 
-import pickle
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -111,13 +110,3 @@ def test_the_solver_is_not_believed(
     monkeypatch.setattr(nonlinear_programme, "solve", lambda *_: ended)
     candidate = attempt(scaled, start, 0).candidate
     assert candidate is None or not candidate.verdict.ok
-
-
-def test_an_attempt_and_its_inputs_pickle(scaled: ScaledProblem, starts: list[Start]) -> None:
-    start = starts[0]
-    there = attempt(*pickle.loads(pickle.dumps((scaled, start, 5))))
-    back = pickle.loads(pickle.dumps(there))
-    here = attempt(scaled, start, 5)
-    assert here.candidate is not None
-    assert back.candidate.linkage == there.candidate.linkage == here.candidate.linkage
-    assert back.status == here.status

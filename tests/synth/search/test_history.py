@@ -17,13 +17,14 @@ from grashof.synth.search.workers import CRASHED, Work
 pytestmark = pytest.mark.usefixtures("small_search")
 ENDINGS = {
     "whole": ({}, StopReason.COMPLETE),
+    "in time": ({"time_limit": 1000.0}, StopReason.COMPLETE),
     "late": ({"time_limit": 1e-6}, StopReason.TIME_LIMIT),
     "stopped": ({"stop": lambda: True}, StopReason.STOPPED),
     "late, not stopped": ({"time_limit": 1e-6, "stop": lambda: False}, StopReason.TIME_LIMIT),
 }
 
 
-@pytest.mark.quick("whole", "stopped", "late, not stopped")
+@pytest.mark.quick("whole", "in time", "stopped", "late, not stopped")
 @pytest.mark.parametrize("how", ENDINGS)
 def test_the_history_states_why_the_search_ended(how: str) -> None:
     options, ending = ENDINGS[how]

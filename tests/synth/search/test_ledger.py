@@ -18,7 +18,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.chunks import arguments, chunk
 from grashof.synth.search.finder import finder_for
-from grashof.synth.search.ledger import Chunk, Leaders, Ledger, nearest_of_kinds
+from grashof.synth.search.ledger import Chunk, Leaders, Ledger, Tally, nearest_of_kinds
 
 
 @pytest.fixture(scope="module")
@@ -122,6 +122,13 @@ def designs(problem: Problem) -> list[Candidate]:
         for step in (1e-3, 6e-3, 9e-3)
     ]
     return [made[k] for k in rng.permutation(len(made))]
+
+
+def test_starts_are_numbered_on_from_chunk_to_chunk(scaled: ScaledProblem, designs: list[Candidate]) -> None:
+    ledger = Ledger(scaled, scaled.problem.search, "")
+    for _ in range(3):
+        ledger.absorb(Chunk(Tally(), (replace(designs[0], start=2),), (), solved=5, size=1))
+    assert [one.start for one in ledger.verified] == [2, 7, 12]
 
 
 @pytest.mark.quick("7", "100")

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from batched_search import points_along
 
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_motion, planted_path
@@ -33,8 +34,7 @@ TIGHT: dict[str, Any] = {
 
 def target_of(rotatability: str, over: str, order: bool = True, **wanted: Any) -> SearchTargets:
     rng = np.random.default_rng(7)
-    along = np.linspace(0, 4, 6)
-    points = np.exp(0.7j * along) * (1 + 0.2 * along) + rng.normal(0, 0.1, (6, 2)) @ np.array([1, 1j])
+    points = points_along(np.linspace(0, 4, 6), rng)
     limits = {"rotatability": rotatability, "transmission_over": over, "order": order, **wanted}
     free = np.zeros(6)
     return SearchTargets(

@@ -5,16 +5,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from batched_search import differences
 
 from grashof.analysis import solve_position
 from grashof.analysis.mechanism.mobility import rotatability
 from grashof.problems import Box, MotionTask, PathTask, Problem, Requirements
-from grashof.problems.values.arrays import FloatArray
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.closed_loop import Batch, SearchTargets
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.every_target import fitted_to_all
 from grashof.synth.starts.loop_search import (
-    Model,
     draw,
     fitting,
     improve,
@@ -47,18 +46,6 @@ def scaled_of(mechanism: str, *, poses: bool = False, timed: bool = False, **wan
     return ScaledProblem.of(Problem(task=task, mechanism=mechanism, requirements=Requirements(**wanted)))
 
 
-def differences(model: Model, batch: Batch, step: float = 1e-6) -> FloatArray:
-    """Derivative of the residuals by central differences."""
-    columns = []
-    for k in range(batch.unknowns.shape[1]):
-        ahead, behind = (
-            replace(batch, unknowns=batch.unknowns + sign * step * np.eye(batch.unknowns.shape[1])[k])
-            for sign in (1, -1)
-        )
-        columns.append((model(ahead)[1] - model(behind)[1]) / (2 * step))
-    return np.stack(columns, axis=-1)
-
-
 @pytest.mark.quick("slider-crank-False-False-full-crank", "inverted-slider-crank-True-True-any")
 @pytest.mark.parametrize("rotatability", ["full-crank", "any"])
 @pytest.mark.parametrize("timed", [False, True])
@@ -76,7 +63,7 @@ def test_derivatives_under_limits(mechanism: str, poses: bool, timed: bool, rota
     )
     batch = batch[sound]
     assert len(batch) > 20
-    analytic, numeric = model(batch)[2], differences(model, batch)
+    analytic, numeric = model(batch)[2], differences(model, batch, 1)
     # Where a limit begins to be overstepped there is a kink: all but a few numbers agree.
     off = np.abs(analytic - numeric) > 1e-4 * (1 + np.abs(numeric))
     assert off.mean() < 2e-3

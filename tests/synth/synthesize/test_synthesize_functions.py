@@ -57,19 +57,9 @@ def greatest_error(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "column"),
-    [
-        ("log10", 2),
-        ("sin", 0),
-        *(
-            pytest.param(name, column, marks=pytest.mark.study)
-            for name in REFERENCES
-            for column in range(3)
-            if (name, column) not in (("log10", 2), ("sin", 0))
-        ),
-    ],
-)
+@pytest.mark.quick("log10-2", "sin-0")
+@pytest.mark.parametrize("column", range(3))
+@pytest.mark.parametrize("name", REFERENCES)
 def test_reference_optima_are_reached(name: str, column: int) -> None:
     task, least = law_task(name), (0.0, 30.0, 40.0)[column]
     wanted = Requirements(link_ratio_max=10, transmission_min_deg=least)
@@ -216,16 +206,7 @@ def block_error(linkage: Any, start: float, sense: int, turned: FloatArray) -> F
 @pytest.mark.study
 @pytest.mark.parametrize(
     ("mechanism", "name"),
-    [
-        ("slider-crank", "log10"),
-        ("inverted-slider-crank", "sqrt"),
-        *(pytest.param("slider-crank", each, marks=pytest.mark.study) for each in SLIDES if each != "log10"),
-        *(
-            pytest.param("inverted-slider-crank", each, marks=pytest.mark.study)
-            for each in BLOCKS
-            if each != "sqrt"
-        ),
-    ],
+    [*(("slider-crank", each) for each in SLIDES), *(("inverted-slider-crank", each) for each in BLOCKS)],
 )
 def test_reference_optima_of_slides_are_reached(mechanism: str, name: str) -> None:
     slides = mechanism == "slider-crank"

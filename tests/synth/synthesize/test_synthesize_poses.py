@@ -40,10 +40,7 @@ def check_exact(result: Result, judge: Judge) -> None:
     for candidate in result.candidates:
         found = judge(candidate.linkage, task)
         assert candidate.verdict.ok
-        assert found.position_error < 1e-9
-        assert found.angle_error < 1e-9
-        assert found.in_order
-        assert found.on_one_branch
+        assert found.exact
         assert found.turns
         exact = np.degrees(candidate.verdict.transmission_min_task)
         if len(task) > 2:  # two poses can be joined either way round

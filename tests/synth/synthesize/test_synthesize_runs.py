@@ -6,7 +6,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -201,22 +201,23 @@ def test_the_problems_own_search_counts_unless_overridden(luggage: Problem) -> N
     assert executor.jobs == 3 + 4
 
 
-def test_stop_ends_the_search_between_batches(luggage: Problem) -> None:
-    executor = Inline()
-    result = synthesize(luggage, stop=lambda: executor.jobs > 2, executor=executor)
-    assert executor.jobs == 16
-    assert not result.complete
-    assert 1 <= len(result) <= 16
+Options: TypeAlias = Callable[[Inline], dict[str, Any]]
+ENDED: dict[str, tuple[Options, int]] = {
+    "between batches": (lambda executor: {"stop": lambda: executor.jobs > 2}, 16),
+    "at once": (lambda _: {"stop": lambda: True}, 2),
+    "by the time limit": (lambda _: {"time_limit": 1e-6}, 2),
+}
 
 
-def test_stopped_before_anything_was_found(luggage: Problem) -> None:
+@pytest.mark.parametrize("how", ENDED)
+def test_an_ended_search_lists_what_it_has_found(how: str, luggage: Problem) -> None:
     """Starts of a quick pass are tried, and no more where they give a design."""
-    executor = Inline()
-    result = synthesize(luggage, stop=lambda: True, executor=executor)
-    assert executor.jobs == 2
-    assert 1 <= len(result) <= 2
+    (options, solves), executor = ENDED[how], Inline()
+    result = synthesize(luggage, executor=executor, **options(executor))
+    assert executor.jobs == solves
+    assert 1 <= len(result) <= solves
     assert not result.complete
-    assert result.ended == "the search ended after 2 of 200 solves: it was stopped"
+    assert result.ended == f"the search ended after {solves} of 200 solves: it was stopped"
 
 
 def test_stopped_after_a_quick_pass_in_vain(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -235,11 +236,3 @@ def test_stopped_with_nothing(luggage: Problem) -> None:
     result = synthesize(few, stop=lambda: True)
     assert (len(result), result.complete, result.nearest) == (0, False, ())
     assert "stopped" in result.note
-
-
-def test_a_time_limit_ends_the_search(luggage: Problem) -> None:
-    executor = Inline()
-    result = synthesize(luggage, time_limit=1e-6, executor=executor)
-    assert not result.complete
-    assert executor.jobs == 2
-    assert synthesize(luggage, starts=3, time_limit=1000).complete

@@ -51,7 +51,7 @@ def test_the_best_of_a_list_is_proven_and_reported() -> None:
         "Proven: no slider-crank meets these requirements with more than 47.22 deg; number 1 has 47.20 deg."
     )
     assert proof_line(result) == line
-    assert work_line(proof).startswith("64 pieces of families of one number, ")
+    assert work_line(proof).startswith("64 pieces of one-parameter families, ")
 
 
 def test_none_is_proven_without_a_search() -> None:
