@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 from typer.testing import CliRunner
 
 import grashof.output.drawing as grashof_drawing

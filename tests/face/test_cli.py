@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from command_line import Grashof, assert_one_line, failing
+from command_runs import Grashof, assert_one_line, failing
 from refusals import rows
 
 from grashof.problems import linkage_catalogue, linkage_text, problem_text

@@ -9,7 +9,7 @@ from shutil import copytree
 
 import numpy as np
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 from matplotlib.figure import Figure
 from refusals import refusal
 from typer.testing import CliRunner

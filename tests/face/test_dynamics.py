@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from command_line import Grashof, assert_one_line
+from command_runs import Grashof, assert_one_line
 
 from grashof.analysis.judge.measures import MEASURES
 from grashof.output.run_files import write_run

@@ -17,7 +17,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 from page_parts import Parts
 
 from grashof.figures.animation import save_animation

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from command_line import Grashof, assert_one_line
+from command_runs import Grashof, assert_one_line
 
 from grashof import load
 from grashof.analysis.judge import verify

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from command_line import Grashof, assert_one_line
+from command_runs import Grashof, assert_one_line
 from page_parts import RECORD
 
 from grashof import synthesize
@@ -181,7 +181,7 @@ def test_designs_verified_by_intervals_are_stated(proven: Result, capsys: pytest
     line = enclosure_line(proven)
     assert line == (
         f"Closure and transmission angle of {len(proven)} designs verified by intervals of the driver angle, "
-        "over their whole motion."
+        "over their full motion."
     )
     assert line in search_page(proven, RECORD)
     print_table(proven)

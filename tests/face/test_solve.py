@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from command_line import Grashof, assert_one_line, failing
+from command_runs import Grashof, assert_one_line, failing
 
 from grashof.analysis import verify
 from grashof.output.run_files import write_csv, write_rows, write_run

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 from matplotlib.colors import to_hex
 
 from grashof import load, synthesize

@@ -136,6 +136,8 @@ class Problem(ReadOnly):
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
         set_fields(self, mechanism=self._kinds())
+        others = (kind for kind in self.mechanism if kind not in self.task.kinds)
+        checks.refuse([self.task.impossible(kind) for kind in others])
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")

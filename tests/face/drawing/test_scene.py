@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from six_bar_examples import SIX_BARS
+from linkages_of_rows import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.drawing.scene import Scene

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from linkages_of_rows import SIX_BARS
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.drawing.scene import CORNERS

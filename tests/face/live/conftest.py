@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from command_line import COMMAND
+from command_runs import COMMAND
 from live_pages import searched
 from shown_pages import without_complaints
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from six_bar_examples import SIX_BARS
+from linkages_of_rows import SIX_BARS
 
 from grashof.analysis import full_rotation
 from grashof.analysis.judge.planted import (

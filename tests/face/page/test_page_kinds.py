@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from linkages_of_rows import SIX_BARS
 from page_parts import RECORD
-from six_bar_examples import SIX_BARS
 
 from grashof.analysis import driver_ranges, solve_kinematics, solve_position, transmission_angle
 from grashof.analysis.cylinder.lengths import cylinder_state

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from command_line import script_done
+from command_runs import script_done
 
 SCRIPT = '''
 import os

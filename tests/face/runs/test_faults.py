@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from command_line import COMMAND, Grashof, assert_one_line, failing
+from command_runs import COMMAND, Grashof, assert_one_line, failing
 from matplotlib.animation import FuncAnimation
 from refusals import rows
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from command_line import COMMAND, Grashof, failing
+from command_runs import COMMAND, Grashof, failing
 from matplotlib.figure import Figure
 
 import grashof.figures.files as grashof_draw

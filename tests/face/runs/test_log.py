@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 
 FEW = ("solve", "luggage", "--starts", "4", "--drawings", "0")
 LINE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z (DEBUG|INFO|WARNING) grashof\.[\w.]+: \S.*")

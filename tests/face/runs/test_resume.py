@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 
 from grashof.output.folder import in_use
 

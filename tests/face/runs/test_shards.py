@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from command_line import COMMAND, Grashof
+from command_runs import COMMAND, Grashof
 
 from grashof.output.folder import in_use
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from linkages_of_rows import SIX_BARS
 from refusals import refusal
 from section_facts import extremes, facts
-from six_bar_examples import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.commands import analyse

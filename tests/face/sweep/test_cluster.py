@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from command_line import script_done
+from command_runs import script_done
 
 from grashof.sweep import sweep
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from command_line import COMMAND, assert_one_line
+from command_runs import COMMAND, assert_one_line
 from typer.testing import CliRunner
 
 from grashof.cli import app

@@ -9,7 +9,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from command_line import Grashof, assert_one_line
+from command_runs import Grashof, assert_one_line
 from typer.main import get_command
 
 from grashof.cli import app

@@ -18,9 +18,9 @@ from body_coordinates import follow, start
 from body_plans import plan_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from linkages_of_rows import SIX_BARS
 from random_linkages import six_bars
 from refusals import refusal
-from six_bar_examples import SIX_BARS
 
 from grashof.drawing.scene import bodies_of
 from grashof.problems import (

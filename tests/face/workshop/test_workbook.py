@@ -12,7 +12,7 @@ import numpy as np
 import openpyxl
 import pandas as pd
 import pytest
-from command_line import Grashof
+from command_runs import Grashof
 
 from grashof.analysis import driver_ranges, solve_position, transmission_angle
 from grashof.output.run_files import write_run

@@ -5,10 +5,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from as_found import as_found
 from circles import points_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from known_designs import as_found
 
 from grashof.analysis import output_stroke, solve_position, transmission_angle, verify
 from grashof.analysis.judge.planted import RANDOM

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from six_bar_examples import SIX_BARS
+from linkages_of_rows import SIX_BARS
 
 from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Requirements, SixBar, SliderCrank

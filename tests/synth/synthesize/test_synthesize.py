@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from share_apart import share_apart
+from known_designs import share_apart
 
 from grashof import load, synthesize
 from grashof.analysis.judge.planted import planted_motion

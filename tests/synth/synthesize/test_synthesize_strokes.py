@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stroke_figures import SLIDES
+from known_designs import SLIDES
 
 from grashof.analysis import verify
 from grashof.problems import (

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from known_designs import SLIDES
 from scipy.optimize import brentq, minimize_scalar
-from stroke_figures import SLIDES
 
 from grashof.analysis import solve_position, verify
 from grashof.analysis.mechanism.mobility import grashof_class

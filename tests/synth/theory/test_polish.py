@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from as_found import as_found
 from circles import closed, numbers_of, points_of
+from known_designs import as_found
 
 from grashof.analysis import verify
 from grashof.analysis.judge.planted import (

@@ -4,8 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
-from linkages_of_rows import row_name
-from six_bar_examples import SIX_BARS
+from linkages_of_rows import SIX_BARS, row_name
 
 from grashof.problems import FourBar, InvertedSliderCrank, ProblemError, SixBar, SliderCrank
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism

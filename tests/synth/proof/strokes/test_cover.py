@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from known_designs import SLIDES
 from numpy.typing import NDArray
-from stroke_figures import SLIDES
 
 from grashof.analysis.mechanism.mobility import rotatability
 from grashof.analysis.mechanism.stroke import output_stroke
