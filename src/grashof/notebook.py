@@ -46,7 +46,8 @@ def html(value: AnyKind | LinkageSpec | Candidate | Result) -> str:
 def _result(result: Result) -> str:
     if not result.candidates:
         proven = f"<br>{escape(said)}" if (said := proof_line(result)) else ""
-        return f"<p>No design. {escape(result.note)}{proven}</p>"
+        note = result.note or "no design"
+        return f"<p>{escape(note[0].upper() + note[1:])}.{proven}</p>"
     rows = best_rows(result)
     note = f"<p>{escape(result.note)}</p>" if result.note else ""
     lines = [*heading(result, len(result)).splitlines(), proof_line(result)]

@@ -139,8 +139,8 @@ class AnalyseOptions:
             show_default="the task motion of a design, or the full range of the driver",
         ),
     ] = None
-    fit_to_deg: Annotated[float | None, _unset("Driver angle up to which they are.")] = None
-    fit_points: Annotated[int, _option("Points through which they are.")] = FIT_POINTS
+    fit_to_deg: Annotated[float | None, _unset("Driver angle at which the fits of the paths end.")] = None
+    fit_points: Annotated[int, _option("Number of points of each fit.")] = FIT_POINTS
     dwell_deg: Annotated[
         float | None, _unset("Report how long link 4 (link 6) dwells in a band of this width.")
     ] = None

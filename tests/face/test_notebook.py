@@ -64,8 +64,8 @@ def test_a_result_shows_the_best_designs_as_the_terminal_does(few: Result) -> No
 
 
 def test_a_result_without_designs_states_the_reason(few: Result) -> None:
-    page = parsed(replace(few, candidates=(), note=f"{EVIL} is in the way"))
-    assert "".join(page.itertext()) == f"No design. {EVIL} is in the way"
+    page = parsed(replace(few, candidates=(), note=f"no design: {EVIL} is in the way"))
+    assert "".join(page.itertext()) == f"No design: {EVIL} is in the way."
 
 
 def test_a_design_shows_its_verdict(few: Result) -> None:

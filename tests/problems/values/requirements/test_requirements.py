@@ -16,6 +16,7 @@ def test_resolved_fills_in_what_depends_on_the_size() -> None:
     resolved = Requirements().resolved(5.0)
     assert resolved.link_length == (0.05, 100.0)
     assert resolved.coupler_arms == (0.0, 150.0)
+    assert (resolved.link_ratio_max, resolved.tolerance, resolved.transmission_min_deg) == (20.0, 1e-6, 0.0)
     assert resolved.o2 == resolved.o4 == resolved.a == resolved.b == Box()
     assert "o2" not in Requirements(o2=Box()).resolved(2.0).limited
 
