@@ -14,7 +14,8 @@ from importlib import import_module
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded
 
 BENCHMARKS = (
-    "catalogue", "costs", "eight_points", "kinematics", "limited", "pages", "planted", "proofs", "rounds",
+    "catalogue", "costs", "dwells", "eight_points", "kinematics", "limited", "pages", "planted", "proofs",
+    "rounds",
 )  # fmt: skip
 
 

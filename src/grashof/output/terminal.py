@@ -36,12 +36,12 @@ _PIPED_WIDTH = 140
 _WIDE = 100  # columns; narrower terminals get fewer digits
 _UNBOUNDED = 1000
 # Columns that a narrow terminal does without, first to last.
-_DROPPED = (("class",), ("O2", "O4"), ("like this",), ("best at",), ("size",), ("mu turn",))
+_DROPPED = (("class",), ("O2", "O4"), ("family size",), ("best at",), ("size",), ("mu turn",))
 _JUSTIFY: dict[str, JustifyMethod] = {
     **dict.fromkeys(("O2", "O4"), "center"),
     **dict.fromkeys(("mechanism", "class", "best at"), "left"),
 }
-_TWO_LINES = ("error rms", "like this")
+_TWO_LINES = ("error rms", "family size")
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -127,7 +127,7 @@ def plain_table() -> Table:
 def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
     """The best design of each family in cells, the best of each region first; angles in deg.
 
-    "like this" is the number of others in the family. Columns equal in all rows are left out.
+    Columns equal in all rows are left out.
     """
     front, families = pareto_optimal(result.problem, result.candidates), result.families
     place = {id(each): number for number, each in enumerate(result.candidates)}
@@ -138,7 +138,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
         *(["class"] if len(_classes(result)) == 1 else []),
         *([] if len(result.problem.mechanism) > 1 else ["mechanism"]),
         *([] if set(having("o4")) & set(result.problem.mechanism) else ["O4"]),
-        *([] if any(len(families[k]) > 1 for k in shown) else ["like this"]),
+        *([] if any(len(families[k]) > 1 for k in shown) else ["family size"]),
         *([] if len(firsts) > 1 else ["region"]),
         *([] if any(families[k][0].best_at for k in shown) else ["best at"]),
         *([] if any(families[k][0].caution for k in shown) else [CAUTION]),
@@ -147,7 +147,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
         {
             "#": f"{at[k] + 1}{'*' if front[at[k]] else ' '}",
             **_cells(result.problem, families[k][0], digits),
-            "like this": str(len(families[k]) - 1 or ""),
+            "family size": str(len(families[k])),
             "region": str(families[k][0].region or ""),
             "best at": families[k][0].best_at,
             CAUTION: families[k][0].caution,
