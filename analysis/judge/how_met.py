@@ -134,21 +134,25 @@ def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Itera
 def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements) -> Met:
     """The ends of the dwell of least band, and the turn that begins with it; anywhere where there is none."""
     sense = -1 if wanted.driver_sense == "cw" else 1
-    found = least_band(linkage, task.dwell)
+    slides = bool(linkage.mechanism.loops[-1].slide_angle)
+    found = least_band(linkage, task.dwell) if slides == (task.stroke is not None) else None
     start = 0.0 if found is None else found.start if sense > 0 else found.end
     start -= TURN * np.ceil((start - np.pi) / TURN)
     theta2, assembly = np.array([start, start + sense * task.dwell]), np.full(2, int(linkage.assembly))
-    motion, defects = TaskMotion.ordered(theta2, sense).closed(), tuple(_dwell_defects(found, task))
+    motion, defects = TaskMotion.ordered(theta2, sense).closed(), tuple(_dwell_defects(found, task, slides))
     targets = Targets.of(linkage, task, theta2, assembly)
     return Met(targets, motion, theta2, assembly, figures={"dwell": found}, defects=defects)
 
 
-def _dwell_defects(found: DwellFigures | None, task: DwellTask) -> Iterator[Defect]:
+def _dwell_defects(found: DwellFigures | None, task: DwellTask, slides: bool) -> Iterator[Defect]:
     """Misses of the swing or stroke, and a band that is too wide."""
-    if found is None:
-        yield Defect("exact", "the number of dwells over a full turn of the driver", 0, "1", 1.0)
-        return
     turns = task.stroke is None
+    if found is None:
+        what, number, allowed = "dwells over a full turn of the driver", 0, "1"
+        if slides == turns:
+            what, number, allowed = "slides as the last link", int(slides), str(int(not turns))
+        yield Defect("exact", f"the number of {what}", number, allowed, 1.0)
+        return
     (deg, unit), scale = (" in deg", np.degrees(1.0)) if turns else ("", 1.0), 1.0 if turns else task.size
     within = SWING_WITHIN * scale
     miss = (abs(found.swing - task.output_size) - within) / scale
@@ -157,7 +161,8 @@ def _dwell_defects(found: DwellFigures | None, task: DwellTask) -> Iterator[Defe
         yield Defect("exact", f"the {'swing' if turns else 'stroke'}{deg}", found.swing * unit, allowed, miss)
     if not found.band <= task.most_band:
         allowed, miss = f"up to {task.most_band * unit:.6g}", (found.band - task.most_band) / scale
-        yield Defect("exact", f"the output band in the dwell{deg}", found.band * unit, allowed, miss)
+        key = "band_deg" if turns else "band"
+        yield Defect(key, f"the output band in the dwell{deg}", found.band * unit, allowed, miss)
 
 
 HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements], Met]] = {

@@ -21,8 +21,8 @@ from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_
 from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
 from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
-from grashof.problems.values.requirements.requirements import QUANTITIES, TRAVEL_ERRORS
+from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Limit, Needs, Quantity, Scope
+from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.units import Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -91,8 +91,8 @@ class Values(Mapping[str, float]):
     @cached_property
     def made(self) -> Mapping[str, float]:
         """How the design takes inexact dimensions."""
-        if self.problem.manufacturing is None:
-            return {}
+        if self.problem.manufacturing is None or self.problem.task.dwell is not None:
+            return {}  # of a dwell the band counts, not where P is carried
         found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
         moves = zip(
             (f"move_{name}" for name in self.linkage.mechanism.dimensions), found.moves.tolist(), strict=True

@@ -8,7 +8,7 @@ has such an arc are drawn; Levenberg-Marquardt then makes the output even, and i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import NamedTuple
 
@@ -21,21 +21,25 @@ from grashof.synth.loop.chain import DYADS
 from grashof.synth.loop.dyad import Bars, as_complex, as_vector, root_or_zero
 from grashof.synth.loop.feasible import Demand, bars_between, feasible, shares_of_bars
 from grashof.synth.loop.vector import Vector
-from grashof.synth.starts.closed_loop import Batch
+from grashof.synth.starts.closed_loop import Batch, joined
 from grashof.synth.starts.loop_search import Model, improve
 
 DRAWN, ARCS, BEGUN = 20_000, 400, 600  # four-bars, those with the best arcs, and starts from these
-STAGES = ((600, 8), (200, 12), (60, 25), (20, 60))  # numbers of the best that continue, and their steps
+STAGES = ((600, 8), (200, 12), (60, 25))  # numbers of the best that continue, and their steps
+NOMINAL, MADE = 12, 20  # of the best of these, and of those with the least bands as made
+LAST, FINEST = 40, 10  # steps of these
 LONGER, SPREAD = 0.2, 1.2  # share of drivers longer than the ground link; of C, over r3
 RADII = (0.05, 10.0)  # of arcs
 DIRECTIONS = np.arange(16) * TURN / 16  # from E to D, or along the slide
 LENGTHS = np.array([0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 2.8, 4.0])  # of link 6, over what the swing needs
 OF_ONE, ARC_COUNTS = 4, 0.3  # starts from one four-bar; weight of the score of an arc
 ARC, WITHIN, ROUND, FINE = 11, 25, 48, 720  # driver angles on the arc, in the dwell, and in the turn
-STEP = 1e-7  # of differences
+STEP, WIDER, FEW = 1e-7, 1e-6, 9  # of differences, by unknowns and by dimensions; angles for the latter
 SHORT = 2e-3  # share by which samples of the turn understate how far C reaches
 SWING = 10.0  # weight of the swing at last; before that 1
 OUTSIDE, INFEASIBLE = 0.3, 0.5  # weights: of link ratios beyond limits, of lengths that must change
+# Dimensions, and the ways in which they grow.
+DIMENSIONS = (("r2", 1), ("r3", 1), ("r4", 1), ("r5", 1), ("r6", 1), ("c", 1), ("c", 1j), ("d", 1), ("d", 1j))
 NO_ERROR = 1e-24  # rad squared
 
 
@@ -69,6 +73,9 @@ class DwellLinkages:
     r6: FloatArray
     side_2: FloatArray
 
+    def __getitem__(self, index: slice) -> DwellLinkages:
+        return DwellLinkages(*(getattr(self, name)[index] for name in self.__slots__))
+
     def outputs(self, kind: DyadKind, c: ComplexArray) -> ComplexArray:
         """D-E, or the travel of the slide, where C is in `c` (..., K)."""
         d, (r5, r6, side) = self.d[..., None], (each[..., None] for each in (self.r5, self.r6, self.side_2))
@@ -76,6 +83,16 @@ class DwellLinkages:
         if kind is DyadKind.RRR:
             return as_complex(closed.across)
         return np.asarray(((c + as_complex(closed.along)) * (1j * d.conj())).real, dtype=np.complex128)
+
+    def within(self, aim: DwellAim, begins: FloatArray, count: int) -> ComplexArray:
+        """`outputs` at even driver angles of the dwell, (..., count)."""
+        theta2 = begins[..., None] + np.linspace(0, aim.dwell, count)
+        return self.outputs(aim.kind, curve((self.r2, self.r3, self.r4), self.c, self.side, theta2))
+
+    def still(self, aim: DwellAim, begins: FloatArray, count: int) -> FloatArray:
+        """The same as angles from the middle of the dwell, or travels."""
+        found = self.within(aim, begins, count)
+        return found.real if aim.slides else np.angle(found * found[..., count // 2, None].conj())
 
     def ratios(self, kind: DyadKind) -> FloatArray:
         """Longest to shortest link."""
@@ -139,27 +156,56 @@ def _reach(path: ComplexArray, d: ComplexArray) -> tuple[FloatArray, FloatArray]
     return distance.min(axis=-1), distance.max(axis=-1)
 
 
-def _residuals(aim: DwellAim, batch: Batch, round_: int, weight: float) -> FloatArray:
+class Terms(NamedTuple):
+    """What a fit counts: samples of the turn, weight of the swing, and tolerance of dimensions over r1."""
+
+    round_: int = ROUND
+    swing: float = 1.0
+    tolerance: float = 0.0
+
+
+def _residuals(aim: DwellAim, batch: Batch, terms: Terms) -> FloatArray:
     """The output within the dwell from its mean, its swing beyond the wanted one, and lengths beyond limits.
 
-    The travel of a slide counts as a share of its stroke.
+    With a tolerance also the effect of each dimension on the output, from its mean. The travel of a slide
+    counts as a share of its stroke.
     """
-    made, path = linkages(aim, batch, round_)
-    theta2 = batch.unknowns[..., 5, None] + np.linspace(0, aim.dwell, WITHIN)
-    dwell = made.outputs(aim.kind, curve((made.r2, made.r3, made.r4), made.c, made.side, theta2))
+    made, path = linkages(aim, batch, terms.round_)
+    begins = batch.unknowns[..., 5]
     turn = made.outputs(aim.kind, path)
-    if aim.slides:
-        still, way = dwell.real, turn.real
-    else:
-        middle = dwell[..., WITHIN // 2, None].conj()
-        still, way = np.angle(dwell * middle), np.angle(turn * middle)
+    middle = made.within(aim, begins, 3)[..., 1, None]
+    way = turn.real if aim.slides else np.angle(turn * middle.conj())
     swing = _highest(way) + _highest(-way)
     unit = swing if aim.slides else np.ones_like(swing)
-    rows = [(still - still.mean(axis=-1, keepdims=True)) / unit[..., None]]
+    rows = [_from_mean(made.still(aim, begins, WITHIN)) / unit[..., None]]
     if not aim.slides:
-        rows.append(weight * (swing - aim.swing)[..., None])
+        rows.append(terms.swing * (swing - aim.swing)[..., None])
+    if terms.tolerance:
+        rows += [terms.tolerance * each / unit[..., None] for each in _effects(aim, made, begins)]
     rows.append(OUTSIDE * np.maximum(np.log(made.ratios(aim.kind) / (0.98 * aim.ratio)), 0.0)[..., None])
     return np.concatenate(rows, axis=-1)
+
+
+def _from_mean(values: FloatArray) -> FloatArray:
+    rest: FloatArray = values - values.mean(axis=-1, keepdims=True)
+    return rest
+
+
+def _effects(aim: DwellAim, made: DwellLinkages, begins: FloatArray) -> list[FloatArray]:
+    """Derivatives of the output within the dwell by each dimension, from their means, (..., FEW) each.
+
+    The last, by r1, follows from the others: an angle does not depend on the scale, a travel grows with it.
+    """
+    base = made.still(aim, begins, FEW)
+    found, by_scale = list[FloatArray](), base if aim.slides else 0 * base
+    for name, way in DIMENSIONS:
+        if name == "d" and aim.slides:
+            continue
+        value = getattr(made, name)
+        slope = (replace(made, **{name: value + way * WIDER}).still(aim, begins, FEW) - base) / WIDER
+        by_scale = by_scale - (value * np.conj(way)).real[..., None] * slope
+        found.append(_from_mean(slope))
+    return [*found, _from_mean(by_scale)]
 
 
 def _highest(values: FloatArray) -> FloatArray:
@@ -172,7 +218,7 @@ def _highest(values: FloatArray) -> FloatArray:
     return highest
 
 
-def _model(aim: DwellAim, round_: int, weight: float) -> Model:
+def _model(aim: DwellAim, terms: Terms) -> Model:
     """The model for `improve`, with derivatives by differences."""
 
     def model(batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -185,7 +231,7 @@ def _model(aim: DwellAim, round_: int, weight: float) -> Model:
             np.repeat(batch.direction[:, None], width + 1, axis=1),
         )
         with np.errstate(all="ignore"):
-            rows = _residuals(aim, beside, round_, weight)
+            rows = _residuals(aim, beside, terms)
             slope = np.swapaxes(rows[:, 1:] - rows[:, :1], 1, 2) / STEP
             error = (rows[:, 0] ** 2).sum(axis=1)
         sound = np.isfinite(error) & np.isfinite(slope).all(axis=(1, 2))
@@ -194,20 +240,29 @@ def _model(aim: DwellAim, round_: int, weight: float) -> Model:
     return model
 
 
-def fitted(aim: DwellAim, batch: Batch, share: float = 1.0) -> tuple[Batch, FloatArray]:
-    """The best of a batch improved, best first, and the root mean square of their residuals.
+def fitted(aim: DwellAim, batch: Batch, tolerance: float, share: float = 1.0) -> Batch:
+    """Of a batch those of least bands, and of least bands with a tolerance of the dimensions, over r1.
 
     With a `share` of the usual numbers.
     """
-    model = _model(aim, ROUND, 1.0)
+    model = _model(aim, Terms())
     error = model(batch)[0]
     for keep, steps in STAGES:
         best = np.argsort(error, kind="stable")[: ceil(share * keep)]
         batch, error = improve(model, batch[best], steps, NO_ERROR, len(best))
-    batch, error = improve(_model(aim, FINE, SWING), batch, 15, NO_ERROR, len(batch))
-    kept = np.flatnonzero(np.isfinite(error))
-    order = kept[np.argsort(error[kept], kind="stable")]
-    return batch[order], np.sqrt(error[order] / WITHIN)
+    nominal = batch[np.argsort(error, kind="stable")[: ceil(share * NOMINAL)]]
+    found = [_settled(aim, nominal, Terms(FINE, SWING), LAST)]
+    model = _model(aim, Terms(tolerance=tolerance))
+    made = batch[np.argsort(model(batch)[0], kind="stable")[: ceil(share * MADE)]]
+    made, _ = improve(model, made, LAST, NO_ERROR, len(made))
+    found.append(_settled(aim, made, Terms(FINE, SWING, tolerance), FINEST))
+    return joined(*found)
+
+
+def _settled(aim: DwellAim, batch: Batch, terms: Terms, steps: int) -> Batch:
+    """A batch improved with fine samples of the turn; without those that do not close."""
+    batch, error = improve(_model(aim, terms), batch, steps, NO_ERROR, len(batch))
+    return batch[np.isfinite(error)]
 
 
 class Arcs(NamedTuple):

@@ -9,9 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, ProblemError, Requirements, SixBar, Task
+from grashof.problems import Box, Linkage, ProblemError, Requirements, SixBar, Task
+from grashof.problems.values.arrays import ComplexArray
+from grashof.problems.values.box import ANYWHERE
 from grashof.problems.values.linkages.mechanism import DyadKind
-from grashof.problems.values.linkages.mechanisms import ROWS
+from grashof.problems.values.tasks.dwell_task import DWELL_HOSTS
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.loop.feasible import Demand
 from grashof.synth.programme.start import Proposal, Round
@@ -26,6 +28,7 @@ FINDS = "feasible finds"
 # Beyond what is required, for peaks between samples: deg of transmission angle; shares of ratio and margin.
 SPARE_DEG, SPARE = 0.05, 1e-3
 LEAST_DEG = 1.0
+USUAL_TOLERANCE = 2e-4  # of r1, or of the stroke, where a problem states none
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,7 @@ class Dwells(DesignFinder):
     """Dwell linkages of least band, round by round from other four-bars."""
 
     beginning: ClassVar[str] = "looking for coupler curves with an arc"
-    exhausted: ClassVar[str] = "further rounds find the same dwells"
+    exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
     rounds_a_pass: ClassVar[int] = ROUNDS
 
     @staticmethod
@@ -68,8 +71,7 @@ class Dwells(DesignFinder):
         """The best of some thousand four-bars with arcs."""
         if number >= ROUNDS:
             return None
-        batch, _ = fitted(self.aim, drawn(self.aim, rng))
-        found = self._linkages(batch)
+        found = self._linkages(fitted(self.aim, drawn(self.aim, rng), self._tolerance))
         return Round(found, {FINDS: len(found)})
 
     def follow(self, design: Candidate) -> Sequence[Proposal]:
@@ -79,74 +81,94 @@ class Dwells(DesignFinder):
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> Sequence[Proposal]:
         """Some of one round."""
         del required, key
-        batch, _ = fitted(self.aim, drawn(self.aim, rng), FEW)
-        return self._linkages(batch)
-
-    def _linkages(self, batch: Batch) -> list[Linkage]:
-        """Those of a batch as linkages of the problem."""
-        with np.errstate(all="ignore"):
-            found, path = linkages(self.aim, batch, 720)
-            travel = found.outputs(self.aim.kind, path).real
-        made = list[Linkage]()
-        for k in range(len(batch)):
-            scale = self._scale(found, k, float(np.ptp(travel[k])))
-            try:
-                made.append(self._linkage(found, k, scale))
-            except ProblemError:  # numbers beyond the floats
-                continue
-        return made
-
-    def _scale(self, found: DwellLinkages, k: int, stroke: float) -> float:
-        """Length of r1: by the stroke, or else so that limits of lengths are met where they can be."""
-        if self.task.stroke is not None:
-            return self.task.stroke / stroke
-        low, high = 0.0, np.inf
-        for name, length in {
-            "r1": 1.0,
-            **{name: float(getattr(found, name)[k]) for name in _LENGTHS},
-        }.items():
-            limits = getattr(self.wanted, name, None) or self.wanted.link_length
-            if limits is not None:
-                low, high = max(low, limits[0] / length), min(high, limits[1] / length)
-        return float(np.clip(self.task.size, low, max(low, high)))
-
-    def _linkage(self, found: DwellLinkages, k: int, scale: float) -> Linkage:
-        """One linkage; P is C."""
-        turned = self.wanted.angle_of("ground_angle_deg") or 0.0
-        turn = np.exp(1j * turned)
-        o2 = self._o2
-        ground = scale * turn
-        row = ROWS[self.scaled.problem.mechanism[0]][0]
-        c = _xy(scale * found.c[k])
-        given: dict[str, Any] = {name: scale * float(getattr(found, name)[k]) for name in _LENGTHS}
-        side = int(found.side_2[k])
-        if self.aim.slides:  # E ahead of C: the other assembly is the same slide in the other direction
-            along = side * -1j * found.d[k] * turn
-            given |= {"offset_2": side * given.pop("r6"), "slide_angle_2": float(np.angle(along))}
-            side = 1
-        else:
-            given["d"] = _xy(o2 + ground * found.d[k])
-        return SixBar(
-            _xy(o2),
-            _xy(o2 + ground),
-            c=c,
-            coupler_point=c,
-            assembly=int(found.side[k]),
-            assembly_2=side,
-            hosts=row.dyads[1].hosts,
-            point_link=3,
-            **given,
-        )
+        return self._linkages(fitted(self.aim, drawn(self.aim, rng), self._tolerance, FEW))
 
     @property
-    def _o2(self) -> complex:
-        """The middle of the area for O2; the origin where it may be anywhere."""
-        box = self.wanted.o2
-        sides = [(0.0, 0.0)] * 2 if box is None else [box.x, box.y]
-        return complex(*(sum(side) / 2 if np.isfinite(side).all() else 0.0 for side in sides))
+    def _tolerance(self) -> float:
+        """The tolerance of dimensions as a share of the ground link, of a slide of its stroke."""
+        made = self.scaled.problem.manufacturing
+        if made is None:
+            return USUAL_TOLERANCE
+        lengths = self.wanted.r1
+        size = self.task.size if lengths is None or self.aim.slides else lengths[1]
+        return made.length_tolerance / size
+
+    def _linkages(self, batch: Batch) -> list[Linkage]:
+        """Those of a batch as linkages of the problem, best first."""
+        with np.errstate(all="ignore"):
+            found, path = linkages(self.aim, batch, 720)
+            made = [self._placed(found, k, path[k]) for k in range(len(batch))]
+        return [each for each in made if each is not None]
+
+    def _placed(self, found: DwellLinkages, k: int, path: ComplexArray) -> Linkage | None:
+        """One linkage where limits want it; P is C. None where its numbers are beyond the floats."""
+        scale, turn, o2 = self._place(found, k, path)
+        ground = scale * turn
+        c, side = _xy(scale * found.c[k]), int(found.side_2[k])
+        given: dict[str, Any] = {name: scale * float(getattr(found, name)[k]) for name in _LENGTHS}
+        if self.aim.slides:  # E ahead of C: the other assembly is the same slide in the other direction
+            along = side * -1j * found.d[k] * turn
+            given |= {
+                "offset_2": side * given.pop("r6"),
+                "slide_angle_2": float(np.angle(along)),
+                "assembly_2": 1,
+            }
+        else:
+            given |= {"d": _xy(o2 + ground * found.d[k]), "assembly_2": side}
+        given |= {"c": c, "coupler_point": c, "assembly": int(found.side[k]), "point_link": 3}
+        try:
+            return SixBar(_xy(o2), _xy(o2 + ground), **given, hosts=DWELL_HOSTS)
+        except ProblemError:
+            return None
+
+    def _place(self, found: DwellLinkages, k: int, path: ComplexArray) -> tuple[float, complex, complex]:
+        """Length and direction of the ground, and O2, by the limits of lengths, size, pivots and angles."""
+        wanted = self.wanted
+        boxes = [None if box == ANYWHERE else box for box in (wanted.o2, wanted.o4)]
+        out = found[k : k + 1].outputs(self.aim.kind, path[None])[0]
+        low, high = self._scales(found, k, path, out)
+        scale = self.task.stroke / float(np.ptp(out.real)) if self.task.stroke else self.task.size
+        first, second = (0j if box is None else _inside(box, 0j) for box in boxes)
+        turned = wanted.angle_of("ground_angle_deg")
+        if turned is None and None not in boxes and first != second:
+            turned = float(np.angle(second - first))
+            scale = abs(second - first) if self.task.scale_free else scale
+        elif turned is None and wanted.ground_angle_deg is not None:
+            turned = float(np.radians(np.mean(wanted.ground_angle_deg)))
+        scale = float(np.clip(scale, low, max(low, high))) if self.task.scale_free else scale
+        turn = complex(np.exp(1j * (turned or 0.0)))
+        if boxes[1] is None:
+            return scale, turn, first
+        o2 = _inside(boxes[1], first + scale * turn) - scale * turn
+        return scale, turn, o2 if boxes[0] is None else _inside(boxes[0], o2)
+
+    def _scales(
+        self, found: DwellLinkages, k: int, path: ComplexArray, out: ComplexArray
+    ) -> tuple[float, float]:
+        """Least and greatest length of the ground by the limits of lengths and size."""
+        wanted, bars = self.wanted, _LENGTHS[:-1] if self.aim.slides else _LENGTHS
+        lengths = {"r1": 1.0} | {name: float(getattr(found, name)[k]) for name in bars}
+        limits = [(getattr(wanted, name) or wanted.link_length, length) for name, length in lengths.items()]
+        pins = [path, [0.0, 1.0], found.r2[k] * np.array([1, 1j, -1, -1j])]
+        pins += [] if self.aim.slides else [[found.d[k]], found.d[k] + out]
+        reached = np.concatenate(pins)
+        limits.append((wanted.size, float(np.hypot(np.ptp(reached.real), np.ptp(reached.imag)))))
+        low, high = 0.0, np.inf
+        for limit, length in limits:
+            if limit is not None:
+                low, high = max(low, limit[0] / length), min(high, limit[1] / length)
+        return low, high
 
 
 _LENGTHS = ("r2", "r3", "r4", "r5", "r6")
+
+
+def _inside(box: Box, near: complex) -> complex:
+    """The middle of a box; along an axis on which it is open, the place in it nearest to another."""
+    places = []
+    for (low, high), at in zip((box.x, box.y), (near.real, near.imag), strict=True):
+        places.append((low + high) / 2 if np.isfinite(high - low) else min(max(at, low), high))
+    return complex(*places)
 
 
 def _xy(z: complex) -> tuple[float, float]:

@@ -18,15 +18,15 @@ DISTINCT = 0.0125
 def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     """The numbers that distinguish designs, all in length: O2, O4, r2, r3, r4, u, v; shape (..., 9).
 
-    Of six-bars all parameters but signs; a direction has the length of all links together.
-
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
-    where one is given: from the middle of the task they do not depend on the origin of the user.
+    where one is given: from the middle of the task they do not depend on the origin of the user. Of six-bars,
+    which are the same wherever they are, all parameters but signs, places from O2; a direction has the length
+    of all links together.
     """
     middle = np.zeros(2) if origin is None else origin
     if len(linkage.mechanism.loops) > 1:
-        return _of_six_bar(linkage, middle)
+        return _of_six_bar(linkage)
     if "o4" in linkage.mechanism.ground:
         second = linkage.o4 - middle
     else:
@@ -39,11 +39,11 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     )
 
 
-def _of_six_bar(linkage: Linkage, middle: FloatArray) -> FloatArray:
+def _of_six_bar(linkage: Linkage) -> FloatArray:
     numbers = list[FloatArray]()
     for row, value in zip(linkage.mechanism.parameters, linkage.parameters, strict=True):
         if row.in_length:
-            placed = value - middle if row.kind in ("place", "station") else value
+            placed = value - linkage.o2 if row.kind in ("place", "station") else value
             numbers.append(placed if row.paired else placed[..., None])
         elif row.kind == "angle" and row.name != "body_angle":
             numbers.append(

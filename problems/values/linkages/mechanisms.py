@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from grashof.problems.values.checks import each_checked, hint, refuse
@@ -126,6 +126,12 @@ def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:
     each_checked(given, "mechanism", mechanism)
     refuse([f"mechanism has {word} {count} times" for word, count in Counter(given).items() if count > 1])
     return tuple(given)
+
+
+def spelt_out(words: Sequence[str], impossible: Callable[[str], str]) -> tuple[str, ...]:
+    """The kinds for words of a problem: "six-bar" stands for all six-bars that are not impossible, if any."""
+    able = [word for word in SIX_BARS if not impossible(word)] or SIX_BARS
+    return tuple(dict.fromkeys(kind for word in words for kind in (able if word == SIX_BAR else (word,))))
 
 
 def mechanism(word: str, where: str = "mechanism", among: Sequence[str] = (*WORDS, SIX_BAR)) -> str:

@@ -160,6 +160,13 @@ TURNING = having("o4")  # kinds whose link 4 turns
 ROCKERS = having("r4")  # those where it is a bar
 TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
 BLOCKS = tuple(kind for kind in TURNING if kind not in ROCKERS)  # kinds whose link 4 is a block on a rod
+SINGLE = tuple(ONE_LOOP)  # kinds of one loop, and those whose output turns
+OUTPUTS = tuple(kind for kind in TURNING if kind in SINGLE)
+SLIDING = (*having("slide_angle"), *having("slide_angle_2"))  # kinds with a slide on the ground
+# The quantities for structural errors of a slide, in the unit of length.
+TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
+# All quantities of an output that turns, with those of a slide in their place.
+OF_SLIDES = TRAVEL_ERRORS | {key: f"slide_{key}" for key in ("band", "band_made")}
 _DRIVEN: dict[str, Any] = {**_OVERALL, "better": -1, "needs": Needs.DYNAMICS}
 
 # In the order of the columns of candidates.csv; those that a field of `Requirements` declares follow.

@@ -13,12 +13,14 @@ import numpy as np
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, some_of, true_or_false, within
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
-    TURNING,
+    OUTPUTS,
+    SINGLE,
+    SLIDING,
+    TRAVEL_ERRORS,
     Kind,
     Limit,
     Needs,
@@ -56,9 +58,6 @@ _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _TARGETS = "from the first target to the last"
 _ADVANTAGE = "mechanical advantage"
-SLIDING = (*having("slide_angle"), *having("slide_angle_2"))  # kinds with a slide on the ground
-# The quantities for structural errors of a slide, in the unit of length.
-TRAVEL_ERRORS = {f"structural_error_{key}": f"travel_error_{key}" for key in ("max", "rms")}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +91,7 @@ class Requirements(ReadOnly):
     transmission_over : TransmissionOver
         task (the motion from first to last target) or cycle (the full turn).
     link_length : tuple of float, optional
-        (lo, hi) for all four links; r1, r2, r3, r4 override it for single ones.
+        (lo, hi) for all links; r1, r2, r3, r4 and r5, r6 of a six-bar override it for single ones.
     link_ratio_max : float
         Longest to shortest of r1..r4.
     coupler_arms : tuple of float, optional
@@ -168,10 +167,12 @@ class Requirements(ReadOnly):
     r2: Limits | None = between("r2")
     r3: Limits | None = between("r3")
     r4: Limits | None = between("r4")
+    r5: Limits | None = between("r5")
+    r6: Limits | None = between("r6")
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=tuple(ONE_LOOP)),
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=SINGLE),
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(
@@ -212,7 +213,7 @@ class Requirements(ReadOnly):
         words={"either": (-1.0, 1.0), "ccw": (1.0, 1.0), "cw": (-1.0, -1.0)},
     )
     output_swing_deg: Limits | None = between(
-        Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=TURNING),
+        Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=OUTPUTS),
         0.0,
         360.0,
     )
@@ -220,10 +221,12 @@ class Requirements(ReadOnly):
         Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=SLIDING)
     )
     time_ratio: Limits | None = between(
-        Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES), 1.0, 1e6
+        Quantity("time_ratio", "time ratio", Unit.RATIO, Scope.CYCLE, +1, about=_STROKES, kinds=SINGLE),
+        1.0,
+        1e6,
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Scope.TASK, +1, listed=False, kinds=TURNING),
+        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Scope.TASK, +1, listed=False, kinds=OUTPUTS),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -380,7 +383,7 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
 
 _DERIVED = (
     Quantity(
-        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=TURNING,
+        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=OUTPUTS,
         about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
     ),
     Quantity(

@@ -52,6 +52,22 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     ]
 
 
+def dwells_wrong(task: Task, wanted: Requirements) -> list[str]:
+    """Contradictions between a dwell and the requirements, a line each."""
+    if task.dwell is None:
+        return []
+    wrong = []
+    if wanted.exact is False:
+        wrong.append(
+            "requirements.exact is false; with dwell it must be true: the swing or stroke is always met"
+        )
+    if task.stroke is None and wanted.stroke is not None:
+        wrong.append(
+            "requirements.stroke does not go with dwell.swing_deg, whose output does not slide; remove it"
+        )
+    return wrong
+
+
 def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
     """Contradictions between a cylinder as driver and the task or requirements, a line each."""
     wrong = []

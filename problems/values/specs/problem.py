@@ -17,20 +17,18 @@ from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanisms import (
     ROWS,
-    SIX_BAR,
-    SIX_BARS,
     freedoms,
     mechanisms,
     not_had,
+    spelt_out,
 )
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import BLOCKS, ROCKERS, Needs, Quantity
+from grashof.problems.values.requirements.quantities import BLOCKS, OF_SLIDES, ROCKERS, Needs, Quantity
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
-    TRAVEL_ERRORS,
     Requirements,
     Rotatability,
 )
@@ -135,9 +133,9 @@ class Problem(ReadOnly):
         set_fields(self, requirements=self.requirements.for_task(self.task))
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
-        set_fields(self, mechanism=self._kinds())
-        others = (kind for kind in self.mechanism if kind not in self.task.kinds)
-        checks.refuse([self.task.impossible(kind) for kind in others])
+        given = mechanisms(self.mechanism or self.task.usual_mechanism)
+        set_fields(self, mechanism=spelt_out(given, self.task.impossible))
+        checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
@@ -158,23 +156,18 @@ class Problem(ReadOnly):
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
         wrong += self.requirements.contradictions(self.task)
-        if self.objective != Objective() and not self.by_objective:
+        if self.objective != Objective(**self.task.usual_objective) and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
+        wrong += task_limits.dwells_wrong(self.task, self.requirements)
         wrong += [line for kind in self.mechanism if (line := self.task.impossible(kind))]
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
         set_fields(self, task=self.task.sized(stated_size(self.requirements)))
         checks.refuse(wrong)
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
-
-    def _kinds(self) -> tuple[str, ...]:
-        """The kinds that may do it; "six-bar" stands for those that can."""
-        able = [word for word in SIX_BARS if not self.task.impossible(word)] or SIX_BARS
-        words = mechanisms(self.mechanism) if self.mechanism != () else self.task.usual_mechanism
-        return tuple(dict.fromkeys(kind for word in words for kind in (able if word == SIX_BAR else (word,))))
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""
@@ -214,9 +207,10 @@ class Problem(ReadOnly):
         return goals | {f"requirements.{name}": limit.quantity for name, limit in limited}
 
     def as_required(self, quantity: Quantity) -> Quantity:
-        """The quantity by `Requirements.as_required`; a slide's structural errors are lengths."""
-        found = self.requirements.as_required(quantity)
-        return QUANTITIES[TRAVEL_ERRORS.get(found.key, found.key)] if self.task.travels else found
+        """The quantity by `Requirements.as_required`; errors and bands of a slide are lengths."""
+        found, task = self.requirements.as_required(quantity), self.task
+        slides = task.travels or (task.dwell is not None and task.stroke is not None)
+        return QUANTITIES[OF_SLIDES.get(found.key, found.key)] if slides else found
 
     def _not_of_these_kinds(self) -> list[str]:
         """Quantities weighed or limited that none of the kinds of linkage has, a line each."""

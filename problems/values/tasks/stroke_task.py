@@ -137,7 +137,7 @@ class StrokeTask(Task):
         """The task itself: neither limit position exists without the other."""
         return self
 
-    def impossible(self, mechanism: str) -> str:
+    def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may.
 
         Examples
@@ -145,16 +145,16 @@ class StrokeTask(Task):
         >>> StrokeTask(stroke=100.0).impossible("four-bar")
         'stroke.stroke is of a slide; a four-bar has a swing, stroke.swing_deg'
         """
-        if line := Task.impossible(self, mechanism):
+        if line := Task.impossible(self, word):
             return line
-        given, dyad = f"stroke.time_ratio is {self.time_ratio:.6g}; it must be", closing_dyad(mechanism)
+        given, dyad = f"stroke.time_ratio is {self.time_ratio:.6g}; it must be", closing_dyad(word)
         if dyad is DyadKind.RRP:
             if self.stroke is None:
                 return "stroke.swing_deg is of a rocker; a slider-crank has a slide, stroke.stroke"
             most, whose = MOST_SLIDE_RATIO, "a slider-crank, whose crank would not turn fully"
         else:
             if self.swing is None:
-                return f"stroke.stroke is of a slide; {with_article(mechanism)} has a swing, stroke.swing_deg"
+                return f"stroke.stroke is of a slide; {with_article(word)} has a swing, stroke.swing_deg"
             swings = f"swings by {np.degrees(self.swing):.6g} deg"
             if dyad is DyadKind.RPR:
                 # In both limit positions the crank is perpendicular to the rod.

@@ -240,11 +240,11 @@ class Task(ReadOnly, ABC):
         """Weights of the goals where a problem does not state an objective, as `Objective` takes them."""
         return {}
 
-    def impossible(self, mechanism: str) -> str:
+    def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        if mechanism in self.kinds:
+        if word in self.kinds:
             return ""
-        return f'mechanism is {mechanism}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
+        return f'mechanism is {word}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
 
     @property
     def output_unit(self) -> float:

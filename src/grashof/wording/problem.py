@@ -89,7 +89,8 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  kept out of {counted(len(wanted.keep_out), 'area')}: {names}")
     if problem.manufacturing is not None:
         made = problem.manufacturing
-        lines.append(f"  made to within {made.length_tolerance:g}{unit}, band {made.band:g}{unit}")
+        band = "" if problem.task.dwell is not None else f", band {made.band:g}{unit}"
+        lines.append(f"  made to within {made.length_tolerance:g}{unit}{band}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
     if problem.driver is not None:

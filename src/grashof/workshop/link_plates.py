@@ -104,6 +104,10 @@ def link_plates(
         spots = np.concatenate([np.array(list(holes.values())), *cut.values()])
         farthest = max(link.labels[2:] or link.labels[1:], key=lambda name: float(np.hypot(*holes[name])))
         _refuse_length(f"{link.labels[0]}-{farthest}", float(np.ptp(spots, axis=0).max()), sizes)
+        if any(
+            name != _P and np.allclose(at, holes.get(_P, np.inf), atol=1e-9) for name, at in holes.items()
+        ):
+            del holes[_P]  # P is one of the joints
         if note := _without_room(link, holes, cut, sizes):
             notes.append(note)
             del holes[_P]

@@ -147,6 +147,7 @@ def test_the_examples_above_use_every_requirement() -> None:
         re.sub(sliding, "", EVERY_LIMIT),
         re.sub(driven, "", of_all_kinds),
         WITH_CYLINDER,
+        'kind = "dwell"\n[dwell]\ndwell_deg = 90\nswing_deg = 45\n[requirements]\nr5 = [1, 2]\nr6 = [2, 3]\n',
     ):
         given, names = problem(text).requirements, set(tomllib.loads(text)["requirements"])
         assert [name for name in names if getattr(given, name) == getattr(Requirements(), name)] == []

@@ -56,10 +56,9 @@ def test_dwells_of_the_recipe(case: tuple[float, ...]) -> None:
     slides = not swing
     kind = DyadKind.RRP if slides else DyadKind.RRR
     aim = DwellAim(kind, np.radians(dwell), np.radians(swing), Demand.turning(np.radians(mu), 1e-3), ratio)
-    batch, error = fitted(aim, drawn(aim, np.random.default_rng(0)))
+    batch = fitted(aim, drawn(aim, np.random.default_rng(0)), 2e-4)
     found, _ = linkages(aim, batch, 720)
-    assert len(batch) >= 10
-    assert (np.diff(error) >= 0).all()
+    assert len(batch) >= 20
     assert (found.ratios(kind) <= ratio).all()
     bands = []
     for k in range(len(batch)):
