@@ -17,6 +17,7 @@ from scipy.special import expit, logit
 
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.synth.loop.chain import DYADS
 from grashof.synth.loop.dyad import Bars, as_complex, as_vector, root_or_zero
 from grashof.synth.loop.feasible import Demand, bars_between, feasible, shares_of_bars
@@ -26,8 +27,8 @@ from grashof.synth.starts.loop_search import Model, improve
 
 DRAWN, ARCS, BEGUN = 20_000, 400, 600  # four-bars, those with the best arcs, and starts from these
 STAGES = ((600, 8), (200, 12), (60, 25))  # numbers of the best that continue, and their steps
-NOMINAL, MADE = 12, 20  # of the best of these, and of those with the least bands as made
-LAST, FINEST = 40, 10  # steps of these
+NOMINAL, MADE = 20, 16  # of the best of these, and of those with the least bands as made
+LAST, FINEST = 60, 15  # steps of these
 LONGER, SPREAD = 0.2, 1.2  # share of drivers longer than the ground link; of C, over r3
 RADII = (0.05, 10.0)  # of arcs
 DIRECTIONS = np.arange(16) * TURN / 16  # from E to D, or along the slide
@@ -251,7 +252,8 @@ def fitted(aim: DwellAim, batch: Batch, tolerance: float, share: float = 1.0) ->
         best = np.argsort(error, kind="stable")[: ceil(share * keep)]
         batch, error = improve(model, batch[best], steps, NO_ERROR, len(best))
     nominal = batch[np.argsort(error, kind="stable")[: ceil(share * NOMINAL)]]
-    found = [_settled(aim, nominal, Terms(FINE, SWING), LAST)]
+    nominal, _ = improve(model, nominal, LAST, NO_ERROR, len(nominal))
+    found = [_settled(aim, nominal, Terms(FINE, SWING), FINEST)]
     model = _model(aim, Terms(tolerance=tolerance))
     made = batch[np.argsort(model(batch)[0], kind="stable")[: ceil(share * MADE)]]
     made, _ = improve(model, made, LAST, NO_ERROR, len(made))
@@ -260,9 +262,13 @@ def fitted(aim: DwellAim, batch: Batch, tolerance: float, share: float = 1.0) ->
 
 
 def _settled(aim: DwellAim, batch: Batch, terms: Terms, steps: int) -> Batch:
-    """A batch improved with fine samples of the turn; without those that do not close."""
+    """A batch improved with fine samples of the turn; those that close, with the swing and the link ratio."""
     batch, error = improve(_model(aim, terms), batch, steps, NO_ERROR, len(batch))
-    return batch[np.isfinite(error)]
+    batch = batch[np.isfinite(error)]
+    with np.errstate(all="ignore"):
+        off = _residuals(aim, batch, Terms(FINE))[:, WITHIN]  # of a slide the ratio of links alone
+        sound = (np.abs(off) < 0.9 * SWING_WITHIN) | aim.slides
+        return batch[sound & (linkages(aim, batch)[0].ratios(aim.kind) <= aim.ratio)]
 
 
 class Arcs(NamedTuple):
