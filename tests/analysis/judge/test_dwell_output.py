@@ -6,8 +6,9 @@ from body_coordinates import follow, start
 from body_plans import plan_of
 from random_linkages import six_bars
 
+from grashof.analysis import verify
 from grashof.analysis.judge.dwell_output import least_band, made_band
-from grashof.problems import SixBar, load_linkage
+from grashof.problems import DwellTask, Requirements, SixBar, load_linkage
 
 GRID = 720
 
@@ -83,3 +84,12 @@ def test_tolerances_widen_the_band_by_the_root_of_the_sum_of_squares(row: str) -
 def test_a_driver_that_does_not_turn_has_no_dwell() -> None:
     stopped = load_linkage("dwell-six-bar").changed(r5=40.0)
     assert least_band(stopped, 1.0) is None
+
+
+def test_the_other_kind_of_output_is_a_miss() -> None:
+    task = DwellTask.from_degrees(dwell_deg=90, stroke=10)
+    verdict = verify(load_linkage("dwell-six-bar"), task, Requirements())
+    assert verdict.dwell is None
+    assert [str(each) for each in verdict.defects] == [
+        "exact: the number of slides as the last link is 0, allowed: 1"
+    ]

@@ -8,10 +8,13 @@ import pytest
 from body_coordinates import follow, start
 from body_plans import plan_of
 
-from grashof.problems import DwellTask, Manufacturing, Problem, Requirements, SixBar
+from grashof.analysis import verify
+from grashof.problems import Box, DwellTask, Manufacturing, Problem, Requirements, SixBar
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.synth import Result, synthesize
+from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain, restored
+from grashof.synth.starts.dwells import Dwells
 
 STEPS = 1440
 WANTED = Requirements(transmission_min_deg=40, link_ratio_max=10)
@@ -88,6 +91,24 @@ def test_a_record_keeps_them(found: Result) -> None:
         assert again.linkage == one.linkage
         assert again.linkage.mechanism == one.linkage.mechanism
         assert again.verdict.dwell == one.verdict.dwell
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"r1": (100, 100), "o4": Box((200, 210), (100, 110))},
+        {"r1": (100, 100), "o2": Box((50, np.inf)), "ground_angle_deg": 30.0},
+        {"o2": Box((0, 0), (0, 0)), "o4": Box((30, 31), (40, 41))},
+        {"size": (500, 600)},
+        {"r6": (40, 50)},
+    ],
+)
+def test_limits_place_and_scale_the_linkage(limits: dict[str, Any]) -> None:
+    problem = Problem(task=TASKS["swing"], requirements=replace(WANTED, **limits))
+    scaled = ScaledProblem.of(problem)
+    found = Dwells(scaled).closest_to(scaled, "size", np.random.default_rng(1))
+    verdicts = [verify(one, problem.task, problem.requirements) for one in found if isinstance(one, SixBar)]
+    assert sum(one.ok for one in verdicts) >= 3
 
 
 @pytest.mark.slow

@@ -79,3 +79,21 @@ def test_six_bar_stands_for_the_kinds_that_the_task_suits() -> None:
         ProblemError, match=r'^mechanism is watt-1; of kind = "path" it must be four-bar, slider-crank'
     ):
         Problem(task=PathTask([[0, 0], [1, 0], [2, 1]]), mechanism="watt-1")
+
+
+REFUSED = """
+exact = false | requirements.exact is false; with dwell it must be true: the swing or stroke is always met
+stroke = [70, 90] | requirements.stroke does not go with dwell.swing_deg, whose output does not slide; remove it
+theta2_start_deg = 70 | requirements.theta2_start_deg does not apply to a dwell; remove it
+output_swing_deg = [40, 50] | requirements.output_swing_deg does not go with mechanism stephenson-3; only
+    four-bar and inverted-slider-crank have it
+"""
+
+
+@pytest.mark.parametrize(("text", "line"), rows(REFUSED))
+def test_requirements_that_do_not_apply_are_refused(text: str, line: str, tmp_path: object) -> None:
+    dwell = 'kind = "dwell"\n[dwell]\ndwell_deg = 90\nswing_deg = 45\n[requirements]\n'
+    (file := tmp_path / "bad.toml").write_text(dwell + text + "\n")  # type: ignore[operator]
+    with pytest.raises(ProblemError) as refused:
+        load(str(file))
+    assert str(refused.value).splitlines() == [f"{file}: {line}"]
