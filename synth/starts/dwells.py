@@ -133,8 +133,6 @@ class Dwells(DesignFinder):
         if turned is None and None not in boxes and first != second:
             turned = float(np.angle(second - first))
             scale = abs(second - first) if self.task.scale_free else scale
-        elif turned is None and wanted.ground_angle_deg is not None:
-            turned = float(np.radians(np.mean(wanted.ground_angle_deg)))
         scale = float(np.clip(scale, low, max(low, high))) if self.task.scale_free else scale
         turn = complex(np.exp(1j * (turned or 0.0)))
         if boxes[1] is None:

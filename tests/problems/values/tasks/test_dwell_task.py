@@ -83,7 +83,8 @@ def test_six_bar_stands_for_the_kinds_that_the_task_suits() -> None:
 
 REFUSED = """
 exact = false | requirements.exact is false; with dwell it must be true: the swing or stroke is always met
-stroke = [70, 90] | requirements.stroke does not go with dwell.swing_deg, whose output does not slide; remove it
+stroke = [70, 90] | requirements.stroke does not go with dwell.swing_deg, whose output does not slide;
+    remove it
 theta2_start_deg = 70 | requirements.theta2_start_deg does not apply to a dwell; remove it
 output_swing_deg = [40, 50] | requirements.output_swing_deg does not go with mechanism stephenson-3; only
     four-bar and inverted-slider-crank have it
