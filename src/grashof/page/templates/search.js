@@ -11,6 +11,7 @@ class SearchPage extends MovingPage {
     this.output = designs[0].function !== undefined && new Curves($("#output"));
     this.error = this.output && new Curves($("#error"));
     this.torque = designs[0].torque && new Curves($("#torque"), { onPick: turnTo });
+    this.dwell = $("#dwell") && new Curves($("#dwell"), { onPick: turnTo });
     this.scatter = $("#scatter") && new Scatter($("#scatter"), { columns: axes, designs, onPick: choose });
     this.comparison = new Comparison($("#compare"), {
       scene,
@@ -66,8 +67,17 @@ class SearchPage extends MovingPage {
   }
 
   curves(design) {
-    showTravel(design, this.scene.closed, this.transmission, this.torque);
+    const travel = showTravel(design, this.scene.closed, this.transmission, this.torque);
     if (this.output) this.outputs(design);
+    if (this.dwell) this.rests(design, travel);
+  }
+
+  // The last link, or the slide, which stands still between the marks.
+  rests(design, { places, states, options }) {
+    const values = outputsOf(states);
+    const [unit, label] = states[0].slide === undefined ? ["deg", "last link"] : [this.scene.unit, "slide"];
+    const panel = { title: "Output", unit, driver: "driver angle theta2 (deg)", places, angles: places };
+    this.dwell.show({ ...panel, series: [{ label, values }] }, options);
   }
 
   // Wanted and generated output of a function, and the error between them.
@@ -88,6 +98,7 @@ class SearchPage extends MovingPage {
     const degrees = state.theta2 * DEG;
     this.transmission.mark(degrees, [state.mu * DEG]);
     if (this.torque) this.torque.mark(degrees);
+    if (this.dwell) this.dwell.mark(degrees);
     super.moved(state);
   }
 
@@ -150,7 +161,7 @@ class SearchPage extends MovingPage {
   saves() {
     const design = () => `${this.found ? "design" : "closest-miss"}-${this.design.figures.rank}`;
     const heading = () => `${$("h1").textContent}, ${$("#named").textContent} (${this.design.id})`;
-    const plots = { transmission: this.transmission, output: this.output, error: this.error, torque: this.torque };
+    const plots = { transmission: this.transmission, output: this.output, error: this.error, torque: this.torque, dwell: this.dwell };
     for (const [key, picture] of Object.entries(plots).filter((entry) => entry[1])) {
       const title = { transmission: "transmission angle", error: "structural error" }[key] || key;
       offerSaves($(`#${key} .save`), title, () => fileName(this.name, design(), key), {
