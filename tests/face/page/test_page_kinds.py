@@ -209,3 +209,14 @@ def test_the_page_states_its_kind(page_of: Callable[[str], Path]) -> None:
     assert "slider-crank, r2 1, r3 3, offset -0.5 mm" in text
     data = json.loads(text.split('id="data">')[1].split("</script>")[0])
     assert data["designs"][0]["linkage"]["mechanism"] == "slider-crank"
+
+
+@pytest.mark.parametrize("name", ["stephenson-3", "press of a stephenson-3", "watt-2 on the output"])
+def test_the_output_of_a_six_bar_has_no_jumps(window: Page, name: str) -> None:
+    linkage, theta2 = SIX_BARS[name], np.linspace(0, 2 * np.pi, 37)
+    outputs = "outputsOf(angles.map((each) => positionOf(linkage, each)))"
+    found = np.array(evaluated(window, outputs, linkage, theta2)[0])
+    state = solve_position(linkage, theta2)
+    expected = state.travel if linkage.mechanism.slides else np.degrees(np.unwrap(state.theta6))
+    np.testing.assert_allclose(found - found[0], expected - expected[0], atol=1e-9)
+    assert np.ptp(found) > 0.1

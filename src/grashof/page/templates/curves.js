@@ -163,14 +163,5 @@ function showTravel(design, closed, transmission, torque) {
   return { places, states, options };
 }
 
-// Travels of the slide, or angles of the last link in deg without jumps.
-function outputsOf(states) {
-  if (states[0].slide !== undefined) return states.map(({ slide }) => slide);
-  const last = Math.max(...Object.keys(states[0]).map((key) => Number(key.match(/^theta(\d)$/)?.[1] || 0)));
-  const angles = states.map((state) => state[`theta${last}`]);
-  for (let k = 1; k < angles.length; k++) angles[k] = angles[k - 1] + wrapped(angles[k] - angles[k - 1]);
-  return angles.map((angle) => angle * DEG);
-}
-
 const isRising = (places) =>
   places.every((place, k) => k === 0 || (place !== null && place >= places[k - 1]));

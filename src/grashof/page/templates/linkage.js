@@ -36,6 +36,15 @@ function positionOf(linkage, theta2, assembly = linkage.assembly) {
   return state;
 }
 
+// Travels of the slide, or angles of the last link in deg without jumps.
+function outputsOf(states) {
+  if (states[0].slide !== undefined) return states.map(({ slide }) => slide);
+  const last = Math.max(...Object.keys(states[0]).map((key) => Number(key.match(/^theta(\d)$/)?.[1] || 0)));
+  const angles = states.map((state) => state[`theta${last}`]);
+  for (let k = 1; k < angles.length; k++) angles[k] = angles[k - 1] + wrapped(angles[k] - angles[k - 1]);
+  return angles.map((angle) => angle * DEG);
+}
+
 // How far P goes for a radian of the driver; null in a dead position, where that has no limit. B of a bar or a slide has no
 // velocity along `across`; a rod turns so that it keeps passing O4.
 function pointSpeed(linkage, state) {
