@@ -62,7 +62,7 @@ class Verdict:
     transmission_min_task, transmission_min_cycle : float, rad
         Worst min(mu, pi - mu) over the task motion and over the turn.
     size : float, length
-        Diagonal of the box around O2, O4 and all that A, B and P reach in it.
+        Diagonal of the box around the pivots and all that joints and P reach in it.
     defects : tuple of Defect
         Empty for a design that meets all requirements.
     cylinder : Cylinder, optional

@@ -146,7 +146,9 @@ def _of_dwell(key: str, words: str) -> tuple[Quantity, Quantity]:
 
 
 _BAND = "output band in the dwell"
-_BOX = "diagonal of the box around O2, O4 and all that A, B and P reach from the first target to the last"
+_BOX = (
+    "diagonal of the box around the pivots and all that joints and P reach from the first target to the last"
+)
 _FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
 _RMS = " (root mean square)"
 _ALL = f"error of positions and angles{_RMS}"

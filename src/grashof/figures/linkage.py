@@ -84,7 +84,10 @@ def plot_linkage(
         names.setdefault(tuple(place), name.upper())  # P may coincide with a joint
     parts.name_points(ax, {name: np.array(place) for place, name in names.items()})
     last = "target" if subject.problem is not None and theta2 is None else "position"
-    heading = f"light to dark: first to last {last}" if len(positions) > 1 else None
+    ends = f"first to last {last}"
+    if subject.problem is not None and subject.problem.task.dwell is not None:
+        ends = "over the dwell"
+    heading = f"light to dark: {ends}" if len(positions) > 1 else None
     ax.legend(loc="best", title=heading, title_fontsize="small", fontsize="small")
     return ax
 
