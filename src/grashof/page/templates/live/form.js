@@ -5,7 +5,9 @@ const GOALS = [
   ["torque", "low peak torque"],
   ["point_speed_max", "low speed of P"],
   ["point_acceleration_max", "low acceleration of P"],
+  ["band_made", "small band with tolerances"],
 ];
+const OF_DWELLS = ["band_made", "transmission", "compactness", "torque"];
 const AS_STATED = "as the file says"; // several goals, weighed
 const MECHANISMS = [
   ["four-bar", "four-bar"],
@@ -139,6 +141,11 @@ class Form {
     const unit = document.length_unit || "";
     this.table();
     for (const node of $$("[data-unit]", root)) node.textContent = unit ? ` (${unit})` : "";
+    const dwell = task.kind === "dwell"; // six-bars alone, and goals of its own
+    $("[data-mechanisms]", root).closest("fieldset").hidden = dwell;
+    for (const option of $("[name=objective]", root).options) {
+      option.hidden = dwell ? !OF_DWELLS.includes(option.value) : option.value === "band_made";
+    }
     const kinds = [document.mechanism || "four-bar"].flat();
     for (const box of $$("[name=mechanism]", root)) box.checked = kinds.includes(box.value);
     this.select($("[name=objective]", root), this.goal());
@@ -156,7 +163,8 @@ class Form {
   }
 
   goal() {
-    const wanted = (this.task.document.objective || {}).maximise ?? "transmission";
+    const usual = this.task.kind === "dwell" ? "band_made" : "transmission";
+    const wanted = (this.task.document.objective || {}).maximise ?? usual;
     return typeof wanted === "string" ? wanted : AS_STATED;
   }
 
