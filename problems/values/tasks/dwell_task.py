@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Literal, Self
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import finite_number, noted, number_within, refuse, size_number
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.tasks.output_task import OutputTask
 from grashof.problems.values.value_bases import set_fields
 
 DWELLS_DEG, SWINGS_DEG = np.array([1.0, 350.0]), np.array([0.1, 179.0])
@@ -25,11 +25,11 @@ DWELLING = tuple(
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class DwellTask(Task):
+class DwellTask(OutputTask):
     """A dwell of the last link of a six-bar, and its swing or stroke over a full turn of the driver.
 
-    Its two targets are the ends of the dwell. The dwell may lie anywhere in the turn; where the linkage is is
-    free, and without a stroke so is the scale.
+    Its two targets are the ends of the dwell, which may lie anywhere in the turn. The position of the linkage
+    is free, and so is its scale unless a stroke is given.
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ class DwellTask(Task):
 
     kind: ClassVar[Literal["dwell"]] = "dwell"
     target: ClassVar[Literal["end of the dwell"]] = "end of the dwell"
-    no_cylinder: ClassVar[str] = "whose driver turns all round"
     usual_mechanism: ClassVar[tuple[str, ...]] = DWELLING
     kinds: ClassVar[tuple[str, ...]] = DWELLING
+    limits_size = False  #: A dwell has no size to compare with.
     without: ClassVar[tuple[str, ...]] = (
         "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
         "worst_move", "share_within_linear", "share_within_made", "theta2_start",
@@ -92,10 +92,7 @@ class DwellTask(Task):
         with noted(wrong):
             kept["dwell"] = _angle(dwell, DWELLS_DEG, "dwell_deg")
         with noted(wrong):
-            if (swing is None) == (stroke is None):
-                both = "both swing_deg and" if stroke is not None else "neither swing_deg nor"
-                either = "it must be one of the two: swing_deg for a rocker, stroke for a slide"
-                raise ProblemError(f"dwell has {both} stroke; {either}")
+            self.refuse_both(swing, stroke)
             if swing is not None:
                 kept["swing"] = _angle(swing, SWINGS_DEG, "swing_deg")
                 if band is not None:
@@ -132,41 +129,6 @@ class DwellTask(Task):
         return cls(dwell=dwell or 0.0, swing=swing, stroke=stroke, band=of_angle if of_swing else band)
 
     @property
-    def positions(self) -> FloatArray:
-        """Free at both ends of the dwell, shape (2, 2)."""
-        return np.full((2, 2), np.nan)
-
-    @property
-    def size(self) -> float:
-        """The stroke of a slide; otherwise a length from the requirements (`sized`), or 1."""
-        return self.reference if self.stroke is None else self.stroke
-
-    @property
-    def angle_length(self) -> float:
-        """The size: no target has an angle."""
-        return self.size
-
-    @property
-    def scale_free(self) -> bool:
-        """Whether linkages of any size perform it."""
-        return self.stroke is None
-
-    @property
-    def limits_size(self) -> bool:
-        """False: a dwell has no size to compare with."""
-        return False
-
-    @property
-    def returns(self) -> bool:
-        """False: the last target is the other end of the dwell."""
-        return False
-
-    @property
-    def exact_by_default(self) -> bool:
-        """Yes: the swing, or the stroke, is met."""
-        return True
-
-    @property
     def most_band(self) -> float:
         """The band, stated or by default, rad or length."""
         return USUAL_BAND * self.output_size if self.band is None else self.band
@@ -179,16 +141,6 @@ class DwellTask(Task):
     def exact_for(self, freedoms: int) -> bool:  # noqa: ARG002
         """Yes, whatever the kind."""
         return True
-
-    def sized(self, reference: float) -> Self:
-        """The same with another length that counts as the size where the scale is free."""
-        made = replace(self)
-        set_fields(made, reference=reference)
-        return made
-
-    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> DwellTask:  # noqa: ARG002
-        """The task itself: neither end exists without the other."""
-        return self
 
     @property
     def usual_objective(self) -> dict[str, float]:

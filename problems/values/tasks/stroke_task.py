@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Literal, Self
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import finite_number, noted, refuse, size_number, with_article
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import INVERTED, closing_dyad
+from grashof.problems.values.tasks.output_task import OutputTask
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.value_bases import set_fields
 
@@ -23,7 +24,7 @@ _SAME_RATIO = 1e-6  # share by which a time ratio may differ from that of a swin
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
-class StrokeTask(Task):
+class StrokeTask(OutputTask):
     """Swing of a rocker, or stroke of a slide, and its time ratio.
 
     Its two targets are the limit positions, where driver and coupler are in line: the slow stroke goes
@@ -52,11 +53,7 @@ class StrokeTask(Task):
 
     kind: ClassVar[Literal["stroke"]] = "stroke"
     target: ClassVar[Literal["limit position"]] = "limit position"
-    no_cylinder: ClassVar[str] = "whose driver turns all round"
     in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
-
-    returns = False  #: The last target is the other limit position.
-    exact_by_default = True  #: Swing or stroke and time ratio are met.
 
     swing: float | None
     stroke: float | None
@@ -72,10 +69,7 @@ class StrokeTask(Task):
         kept: dict[str, Any] = {"timing": None, "closed": True, "within": None, "reference": 1.0}
         wrong: list[str] = []
         with noted(wrong):
-            if (swing is None) == (stroke is None):
-                both = "both swing_deg and" if stroke is not None else "neither swing_deg nor"
-                either = "it must be one of the two: swing_deg for a rocker, stroke for a slide"
-                raise ProblemError(f"stroke has {both} stroke; {either}")
+            self.refuse_both(swing, stroke)
             kept["swing"] = None if swing is None else _swing(swing)
             kept["stroke"] = None if stroke is None else size_number(stroke, "stroke.stroke")
         with noted(wrong):
@@ -93,29 +87,9 @@ class StrokeTask(Task):
         return cls(swing=swing_deg, stroke=stroke, time_ratio=time_ratio)
 
     @property
-    def positions(self) -> FloatArray:
-        """Free in both limit positions, shape (2, 2)."""
-        return np.full((2, 2), np.nan)
-
-    @property
     def driver_rotation(self) -> float:
         """Of the slow stroke, rad: half a turn or more."""
         return float(2 * np.pi * self.time_ratio / (self.time_ratio + 1))
-
-    @property
-    def size(self) -> float:
-        """The stroke of a slide; otherwise a length from the requirements (`sized`), or 1."""
-        return self.reference if self.stroke is None else self.stroke
-
-    @property
-    def angle_length(self) -> float:
-        """The size: no target has an angle."""
-        return self.size
-
-    @property
-    def scale_free(self) -> bool:
-        """Whether linkages of any size perform it."""
-        return self.stroke is None
 
     @property
     def limits_size(self) -> bool:
@@ -126,16 +100,6 @@ class StrokeTask(Task):
     def usual_margin(self) -> float:
         """None for a slide: it is tan²(mu / 2), so that near the greatest time ratios there is hardly any."""
         return USUAL_MARGIN if self.stroke is None else 0.0
-
-    def sized(self, reference: float) -> Self:
-        """The same with another length that counts as the size where the scale is free."""
-        made = replace(self)
-        set_fields(made, reference=reference)
-        return made
-
-    def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> StrokeTask:  # noqa: ARG002
-        """The task itself: neither limit position exists without the other."""
-        return self
 
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may.
