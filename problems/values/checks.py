@@ -266,7 +266,7 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
 def rising_rows(
     values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two", turn: bool = False
 ) -> Rows:
-    """Checked rows, described by `means`, of so many columns; the first, in `rising`, have to rise.
+    """Checked rows, described by `means`, of that many columns; the first, in `rising`, have to rise.
 
     Of a `turn` the first is an angle (deg), which has to cover a turn, and the last row ends as the first.
     """

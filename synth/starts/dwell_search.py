@@ -158,7 +158,7 @@ def _reach(path: ComplexArray, d: ComplexArray) -> tuple[FloatArray, FloatArray]
 
 
 class Terms(NamedTuple):
-    """What a fit counts: samples of the turn, weight of the swing, and tolerance of dimensions over r1."""
+    """Terms of a fit: samples of the turn, weight of the swing, and tolerance of dimensions over r1."""
 
     round_: int = ROUND
     swing: float = 1.0
@@ -300,7 +300,7 @@ class Arcs(NamedTuple):
 
 
 class Dyads(NamedTuple):
-    """Dyads (n, M) on n arcs: how far from what is wanted, the last unknowns, and their assemblies."""
+    """Dyads (n, M) on n arcs: their distance from the aim, last unknowns, and assemblies."""
 
     cost: FloatArray
     unknowns: FloatArray  # (n, M, K)

@@ -56,7 +56,7 @@ class Dwells(DesignFinder):
 
     @cached_property
     def aim(self) -> DwellAim:
-        """What the batched search looks for."""
+        """The aim of the batched search."""
         wanted, slides = self.wanted, self.task.swing is None
         transmission = np.radians(max(wanted.transmission_min_deg, LEAST_DEG) + SPARE_DEG)
         return DwellAim(

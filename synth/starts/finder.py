@@ -1,4 +1,4 @@
-"""What all kinds of search have in common: starts for a programme, or finished designs."""
+"""The common part of all kinds of search: starts for a programme, or finished designs."""
 
 from __future__ import annotations
 

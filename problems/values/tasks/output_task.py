@@ -1,4 +1,4 @@
-"""What tasks have in common that state an output alone: the swing of a link, or the stroke of a slide."""
+"""The common part of tasks that state an output alone: the swing of a link, or the stroke of a slide."""
 
 from __future__ import annotations
 

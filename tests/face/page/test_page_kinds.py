@@ -42,7 +42,7 @@ LINKAGES: dict[str, Linkage] = ONE_LOOP | SIX_BARS
 
 
 def evaluated(window: Page, formula: str, linkage: Linkage, theta2: FloatArray, more: Any = None) -> Any:
-    """What a formula of the scripts of the pages gives for a `linkage` at every `angle`."""
+    """The values of a formula of the pages' scripts for a `linkage` at every `angle`."""
     scripts = script_of(("kinds.js", "linkage.js"))
     every = f"([linkage, angles, more]) => {{ {scripts} return angles.map((angle) => {formula}); }}"
     window.goto("about:blank")
