@@ -133,7 +133,7 @@ class ClosingDyad(ABC):
         """Change of the output as B, held by link 3, is moved by a vector; times the lever."""
 
     def reach(self, sizes: Sized, angle: Any) -> Any:
-        """The square of A-O4, which decides the transmission angle, with O2A at an angle from the ground line."""
+        """The square of A-O4, which decides the transmission angle; O2A at an angle from the ground line."""
         return (sizes.r1 - sizes.r2) ** 2 + 4 * sizes.r1 * sizes.r2 * np.sin(angle / 2) ** 2
 
     def along_ground(self, sizes: Sized) -> tuple[Any, Any]:
