@@ -198,7 +198,7 @@ def test_an_analysis_shows_every_curve_and_figure() -> None:
 def test_what_figures_are_taken_over_is_said(few: Result) -> None:
     parts = Parts(page_of(few))
     example = {column["label"]: column["about"] for column in parts.data["columns"]}
-    assert example["size"].startswith("diagonal of the box around O2, O4")
+    assert example["size"].startswith("diagonal of the box around the pivots")
     assert example["peak torque, task"] == example["peak force, task"] == "from the first target to the last"
     assert set(example.values()) - {""} <= {*parts.values("title")}
     abouts = {value["key"]: value["about"] for value in parts.data["values"]}
