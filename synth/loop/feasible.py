@@ -8,8 +8,8 @@ demanded there, without trial and error.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TypeAlias
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -29,6 +29,7 @@ class Demand:
     margin: Numbers = 0.0  # of a driver that turns fully, as `ClosingDyad.margins` has it, below 1
     least: Numbers = -1.0  # cosine of phi
     most: Numbers = 1.0
+    transmitting: tuple[Numbers, Numbers] | None = None  # such cosines where the angle counts; by default all
 
     @classmethod
     def turning(cls, transmission: Numbers = 0.0, margin: Numbers = 0.0) -> Demand:
@@ -43,11 +44,13 @@ class Demand:
         least, most = np.minimum(*ends), np.maximum(*ends)
         return cls(transmission, 0.0, np.where(stretched, -1.0, least), np.where(folded, 1.0, most))
 
+    def over(self, other: Demand) -> Demand:
+        """The same with the transmission angle of another one, over its range alone."""
+        return replace(self, transmission=other.transmission, transmitting=(other.least, other.most))
+
     def diagonals(self, r2: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Least and greatest distance A-O4 with r1 = 1, by the law of cosines."""
-        # (1 - r2)^2 + 2 r2 (1 - cos phi), which loses no digits where r2 is near 1
-        near, far = (np.sqrt((1 - r2) ** 2 + 2 * r2 * (1 - cosine)) for cosine in (self.most, self.least))
-        return near, far
+        """Least and greatest distance A-O4 with r1 = 1."""
+        return _diagonals(r2, self.least, self.most)
 
     def crank(self, share: FloatArray, longer_driver: BoolArray, narrowest: Numbers) -> FloatArray:
         """r2 with r1 = 1, so that the least of the `diagonals` is at least that share of the greatest.
@@ -60,6 +63,13 @@ class Demand:
         shorter = share / (bound + np.sqrt(bound**2 - 1))
         r2: FloatArray = np.where(longer_driver, 1 / shorter, shorter)
         return r2
+
+
+def _diagonals(r2: FloatArray, least: Numbers, most: Numbers) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest distance A-O4, by the law of cosines."""
+    # (1 - r2)^2 + 2 r2 (1 - cos phi), which loses no digits where r2 is near 1
+    near, far = (np.sqrt((1 - r2) ** 2 + 2 * r2 * (1 - cosine)) for cosine in (most, least))
+    return near, far
 
 
 def _passes(low: Numbers, high: Numbers, at: float) -> BoolArray:
@@ -93,24 +103,34 @@ def _of_bars(shares: FloatArray, longer_driver: BoolArray, demand: Demand) -> Si
     more = (1 + margin) / (1 - margin)
     of_angle = np.maximum(sine / cosine, more * sine)
     of_margin = np.maximum(2 * margin / (1 - margin), margin * (1 + 1 / cosine))
+    if demand.transmitting is not None:  # over a range of its own the angle does not limit r2 like that
+        of_angle = 0.0 * of_angle
     r2 = demand.crank(shares[..., 0], longer_driver, np.maximum(of_angle, of_margin))
     near, far = demand.diagonals(r2)
-    return Sizes(np.ones_like(r2), r2, *bars_between(near, far, shares[..., 1:], demand))
+    within = None if demand.transmitting is None else _diagonals(r2, *demand.transmitting)
+    return Sizes(np.ones_like(r2), r2, *bars_between(near, far, shares[..., 1:], demand, within))
 
 
 def bars_between(
-    near: FloatArray, far: FloatArray, shares: FloatArray, demand: Demand
+    near: FloatArray,
+    far: FloatArray,
+    shares: FloatArray,
+    demand: Demand,
+    transmitting: tuple[FloatArray, FloatArray] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths of two bars that close diagonals from `near` to `far`, from shares (..., 2); see `_of_bars`.
 
-    NaN where no two bars do.
+    The transmission angle counts at diagonals within `transmitting`, by default all. NaN where no two bars
+    do.
     """
-    shortest, longest = _inverse_totals(near, far, demand)
+    limits = _BarLimits.of(near, far, demand, transmitting or (near, far))
+    shortest, longest = limits.inverse_totals
     with np.errstate(invalid="ignore"):
         total = 1 / (shortest + shares[..., 0] * np.where(longest <= shortest, longest - shortest, np.nan))
-    low, high = _differences(near, far, total, demand)
-    side = 2 * shares[..., 1] - 1
-    difference = np.copysign(low + np.abs(side) * (high - low), side)
+        low, high = limits.differences(total)
+        side = 2 * shares[..., 1] - 1
+        room = np.where(low <= high, high - low, np.nan)
+    difference = np.copysign(low + np.abs(side) * room, side)
     return (total + difference) / 2, (total - difference) / 2
 
 
@@ -119,8 +139,9 @@ def shares_of_bars(
 ) -> FloatArray:
     """The shares from which `bars_between` makes two bars, (..., 2); outside 0 to 1 where it cannot."""
     total, difference = bars[0] + bars[1], bars[0] - bars[1]
-    shortest, longest = _inverse_totals(near, far, demand)
-    low, high = _differences(near, far, total, demand)
+    limits = _BarLimits.of(near, far, demand, (near, far))
+    shortest, longest = limits.inverse_totals
+    low, high = limits.differences(total)
     side = (np.abs(difference) - low) / (high - low)
     side = np.where(side < 0, np.inf, side)
     return np.stack(
@@ -128,30 +149,43 @@ def shares_of_bars(
     )
 
 
-def _inverse_totals(near: FloatArray, far: FloatArray, demand: Demand) -> tuple[FloatArray, FloatArray]:
-    """1 / T of the shortest and of the longest sum T."""
-    margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
-    sine, cosine = np.sin(half), np.cos(half)
-    more = (1 + margin) / (1 - margin)
-    room = near - margin * far
-    # where the lower limit of |D| meets the upper one by the angle, and by the margin
-    by_angle = np.sqrt(((far * cosine) ** 2 - (near * sine) ** 2) / (cosine**2 - sine**2))
-    square, middle = (margin * sine) ** 2 + cosine**2, margin * room * sine**2
-    by_margin = (middle + np.sqrt(middle**2 + square * (far**2 - (room * sine) ** 2))) / square
-    least = np.maximum(more * far, np.maximum(by_angle, by_margin))
-    return 1 / least, np.maximum(sine / near, margin / room)
+class _BarLimits(NamedTuple):
+    """Limits of the sum T and the difference D of two bars; see `_of_bars`."""
 
+    far: FloatArray
+    near_mu: FloatArray  # least and greatest diagonal at which the transmission angle counts
+    far_mu: FloatArray
+    margin: Numbers
+    sine: Numbers  # of half the transmission angle
+    cosine: Numbers
+    room: FloatArray  # near - margin far
 
-def _differences(
-    near: FloatArray, far: FloatArray, total: FloatArray, demand: Demand
-) -> tuple[FloatArray, FloatArray]:
-    """Bounds of |D| for a sum T."""
-    margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
-    sine, cosine = np.sin(half), np.cos(half)
-    room = near - margin * far
-    low = np.sqrt(np.maximum(far**2 - (total * cosine) ** 2, 0.0)) / np.maximum(sine, 1e-300)
-    high = np.minimum(np.sqrt(np.maximum(near**2 - (total * sine) ** 2, 0.0)) / cosine, room - margin * total)
-    return low, high
+    @classmethod
+    def of(
+        cls, near: FloatArray, far: FloatArray, demand: Demand, transmitting: tuple[FloatArray, FloatArray]
+    ) -> _BarLimits:
+        """The limits of bars over diagonals from `near` to `far`."""
+        margin, half = np.asarray(demand.margin), np.asarray(demand.transmission) / 2
+        return cls(far, *transmitting, margin, np.sin(half), np.cos(half), near - margin * far)
+
+    @property
+    def inverse_totals(self) -> tuple[FloatArray, FloatArray]:
+        """1 / T of the shortest and of the longest sum T."""
+        far, near_mu, far_mu, margin, sine, cosine, room = self
+        # where the lower limit of |D| meets the upper one by the angle, and by the margin
+        by_angle = np.sqrt(((far_mu * cosine) ** 2 - (near_mu * sine) ** 2) / (cosine**2 - sine**2))
+        square, middle = (margin * sine) ** 2 + cosine**2, margin * room * sine**2
+        root = np.maximum(middle**2 + square * (far_mu**2 - (room * sine) ** 2), 0.0)
+        by_margin = (middle + np.sqrt(root)) / square
+        least = np.maximum((1 + margin) / (1 - margin) * far, np.maximum(by_angle, by_margin))
+        return 1 / least, np.maximum(sine / near_mu, margin / room)
+
+    def differences(self, total: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Bounds of |D| for a sum T."""
+        below = np.sqrt(np.maximum(self.far_mu**2 - (total * self.cosine) ** 2, 0.0))
+        above = np.sqrt(np.maximum(self.near_mu**2 - (total * self.sine) ** 2, 0.0)) / self.cosine
+        low = below / np.maximum(self.sine, 1e-300)
+        return low, np.minimum(above, self.room - self.margin * total)
 
 
 def _of_slider(shares: FloatArray, _longer: BoolArray, demand: Demand) -> Sizes:

@@ -9,7 +9,7 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import located, whole_number
 from grashof.synth.programme.start import Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.dwells import Dwells
+from grashof.synth.starts.six_bars.dwells import Dwells
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.finder import DesignFinder, Finder, StartFinder
 from grashof.synth.starts.functions.finder import Functions

@@ -14,7 +14,7 @@ from grashof.problems.values.linkages.linkage import Linkage
 from grashof.synth import Result, synthesize
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain, restored
-from grashof.synth.starts.dwells import Dwells
+from grashof.synth.starts.six_bars.dwells import Dwells
 
 STEPS = 1440
 WANTED = Requirements(transmission_min_deg=40, link_ratio_max=10)

@@ -6,7 +6,7 @@ import pytest
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.synth.loop.feasible import Demand
-from grashof.synth.starts.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
+from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 
 TURN = 2 * np.pi
 
