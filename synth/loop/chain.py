@@ -49,33 +49,50 @@ def chained(
     `given` has lengths, offsets and angles by the names of the parameters, and points of links as vectors;
     `driver` is the unit vector along O2A, with O2 in the origin.
     """
-    nothing = 0.0 * driver.x
-    start = Vector(nothing, nothing)
-    frames = {1: Frame(start, Vector(nothing + 1.0, nothing)), 2: Frame(start, driver)}
-    squares = []
-    for number, (loop, assembly) in enumerate(zip(mechanism.loops, assemblies, strict=True)):
-        c = frames[loop.dyad.hosts[0]].point(given[loop.c]) if number else given["r2"] * driver
-        first, second, square = _closed(loop, given, c, frames, assembly, root)
+    frames, squares = _grounded(driver), []
+    for loop, assembly in zip(mechanism.loops, assemblies, strict=True):
+        first, second, square = _closed(loop, given, frames, assembly, root)
         frames[loop.links[0]], frames[loop.links[1]] = first, second
         squares.append(square)
     return Chain(frames, squares)
 
 
+def gap_of(mechanism: Mechanism, given: Mapping[str, Any], driver: Vector, assemblies: Sequence[Any]) -> Any:
+    """The distance C-D that the last dyad closes; of a slide on the ground that of C from its line through O2.
+
+    The distance from a slide counts to its left. Arguments as of `chained`; lengths of the last dyad may lack.
+    """
+    frames = _grounded(driver)
+    *earlier, last = mechanism.loops
+    for loop, assembly in zip(earlier, assemblies, strict=False):
+        frames[loop.links[0]], frames[loop.links[1]], _ = _closed(loop, given, frames, assembly, np.sqrt)
+    c, ground = _hosted(last, given, frames)
+    return np.sqrt((c - ground).square) if last.pinned else c.dot(ground)
+
+
+def _grounded(driver: Vector) -> dict[int, Frame]:
+    """The frames of links 1 and 2."""
+    nothing = 0.0 * driver.x
+    start = Vector(nothing, nothing)
+    return {1: Frame(start, Vector(nothing + 1.0, nothing)), 2: Frame(start, driver)}
+
+
+def _hosted(loop: LoopNames, given: Mapping[str, Any], frames: Mapping[int, Frame]) -> tuple[Vector, Vector]:
+    """C, and D or the unit vector across a slide, to its left."""
+    on_c, on_d = loop.dyad.hosts
+    c = frames[on_c].point(given[loop.c]) if loop.c != "a" else given["r2"] * frames[2].along
+    if loop.pinned:
+        return c, frames[on_d].point(given[loop.d])
+    angle = given[loop.slide_angle]
+    return c, Vector(-np.sin(angle), np.cos(angle))
+
+
 def _closed(
-    loop: LoopNames,
-    given: Mapping[str, Any],
-    c: Vector,
-    frames: Mapping[int, Frame],
-    assembly: Any,
-    root: Root,
+    loop: LoopNames, given: Mapping[str, Any], frames: Mapping[int, Frame], assembly: Any, root: Root
 ) -> tuple[Frame, Frame, Any]:
     """The two links of a dyad, and the square of its closure."""
     dyad = DYADS[loop.dyad.kind]
-    if loop.pinned:
-        ground = frames[loop.dyad.hosts[1]].point(given[loop.d])
-    else:
-        angle = given[loop.slide_angle]
-        ground = Vector(-np.sin(angle), np.cos(angle))
+    c, ground = _hosted(loop, given, frames)
     lengths = [given[name] for name in (*loop.bars, *filter(None, [loop.offset]))]
     r3, r4 = lengths if len(lengths) == 2 else (0.0, lengths[0])
     closed = dyad.closed(ground, c, r3, r4, assembly, root)
