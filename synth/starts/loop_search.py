@@ -35,6 +35,7 @@ from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 # Consecutive steps that reduce the error by less than this share end the work on a linkage.
 LOOK, STALL = 5, 1e-3
 HEAVY = 1e4  # damping under which no step is worth trying
+AHEAD, BENT = 0.1, 0.75  # share of a step at which its bend is measured; greatest share of a correction
 DETOUR = (0.1, 1.5)  # driver rotation of a detour, as a share of all others
 PULL = 0.03  # sizes of error that overstepping a limit by one unit counts as, where fit comes first
 
@@ -144,12 +145,18 @@ def judged(scaled: ScaledProblem, target: SearchTargets, placed: Placed, directi
 
 
 def improve(
-    model: Model, batch: Batch, steps: int, tolerance: float, until: int = 1
+    model: Model,
+    batch: Batch,
+    steps: int,
+    tolerance: float,
+    until: int = 1,
+    missed: Callable[[Batch], FloatArray] | None = None,
 ) -> tuple[Batch, FloatArray]:
     """Levenberg-Marquardt on every linkage of a batch, and the errors (n,) in sizes squared.
 
     At most `steps`; stops as soon as `until` linkages have no greater error than `tolerance`, in sizes
-    squared. For models see `fitting` and `within_limits`.
+    squared. For models see `fitting` and `within_limits`. With `missed`, the residuals alone, steps are
+    bent along the valley (geodesic acceleration, Transtrum & Sethna 2012), which pays where it is narrow.
     """
     raise_if_overdue()
     result = replace(batch, unknowns=batch.unknowns.copy())
@@ -157,7 +164,10 @@ def improve(
     damping, marked, least = np.full(len(batch), 1e-2), error, error.copy()
     rows = np.arange(len(batch))
     for number in range(1, steps + 1):
-        tried = replace(batch, unknowns=batch.unknowns + _step(residual, jacobian, damping))
+        step = _step(residual, jacobian, damping)
+        if missed is not None:
+            step = _bent(batch, step, residual, jacobian, damping, missed)
+        tried = replace(batch, unknowns=batch.unknowns + step)
         new_error, new_residual, new_jacobian = model(tried)
         better = new_error < error
         batch = replace(batch, unknowns=np.where(better[:, None], tried.unknowns, batch.unknowns))
@@ -190,6 +200,24 @@ def _step(residual: FloatArray, jacobian: FloatArray, damping: FloatArray) -> Fl
     normal[~sound], slope[~sound] = one, 0.0
     step: FloatArray = np.clip(-np.linalg.solve(normal, slope[..., None])[..., 0], -1.5, 1.5)
     return step
+
+
+def _bent(
+    batch: Batch,
+    step: FloatArray,
+    residual: FloatArray,
+    jacobian: FloatArray,
+    damping: FloatArray,
+    missed: Callable[[Batch], FloatArray],
+) -> FloatArray:
+    """Steps with their second-order correction, where that is shorter by `BENT`."""
+    beside = missed(replace(batch, unknowns=batch.unknowns + AHEAD * step))
+    bend = 2 / AHEAD * ((beside - residual) / AHEAD - (jacobian @ step[..., None])[..., 0])
+    second = _step(bend, jacobian, damping) / 2
+    scale = np.sqrt(np.einsum("srm,srm->sm", jacobian, jacobian))
+    far, near = (np.linalg.norm(scale * each, axis=1) for each in (second, step))
+    bent: FloatArray = step + np.where((far < BENT * near)[:, None], second, 0.0)
+    return bent
 
 
 def project(

@@ -7,9 +7,10 @@ projection, see `loop_search`). Loops close by construction.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from grashof.synth.starts.closed_loop import (
     driver_angles,
 )
 from grashof.synth.starts.loop_search import drawn_gaps, improve, project
-from grashof.synth.starts.six_bars.shapes import ENDS, Made, Shapes
+from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
 
 LONGER = 0.4  # share of drivers longer than the ground link
 NO_ERROR = 1e-20  # sizes squared
@@ -53,114 +54,160 @@ def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Gener
     )
 
 
-@dataclass(frozen=True, slots=True)
+class Along:
+    """A vector of a link at every target as complex numbers, and its derivatives by all unknowns."""
+
+    def __init__(self, vector: Vector, angles: _Angles) -> None:
+        self._vector, self._angles = vector, angles
+
+    @cached_property
+    def value(self) -> ComplexArray:
+        """Shape (n, N)."""
+        x, y = self._vector.x, self._vector.y
+        return np.broadcast_to(as_complex(Vector(_value(x), _value(y))), self._angles.shape)
+
+    @cached_property
+    def slope(self) -> ComplexArray:
+        """Shape (n, N, M)."""
+        by_angle, by_ends = self._angles.slopes
+        if not isinstance(self._vector.x, Dual):  # a slide stands still
+            return np.zeros(by_angle.shape, dtype=np.complex128)
+        slope = self._vector.x.slope + 1j * self._vector.y.slope
+        width = slope.shape[-1] - ENDS - 1
+        by_every = slope[..., -1:] * by_angle
+        by_every[..., :width] += slope[..., :width]
+        if by_ends is not None:
+            by_every += slope[..., width : width + ENDS] @ by_ends
+        return by_every
+
+
+def _value(each: Any) -> Any:
+    return each.value if isinstance(each, Dual) else each
+
+
+class _Angles:
+    """The driver angles of a batch (n, N), and those at the ends of the task motion (n, 2), ascending."""
+
+    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
+        self._target, self._shapes, self._batch = target, shapes, batch
+        self.theta2 = driver_angles(target, batch.unknowns[:, shapes.width :], batch.direction)
+        self._at_ends = np.where(batch.direction[:, None] < 0, [-1, 0], [0, -1])
+        self.ends = np.take_along_axis(self.theta2, self._at_ends, axis=1)
+        self.shape = self.theta2.shape
+
+    @cached_property
+    def slopes(self) -> tuple[FloatArray, FloatArray | None]:
+        """Their derivatives by all unknowns, (n, N, M), and those of the ends where shapes depend on these."""
+        by_angle = by_angles(self._target, self._batch, self._shapes.width)
+        by_ends = np.take_along_axis(by_angle, self._at_ends[..., None], axis=1)
+        return by_angle, by_ends if self._shapes.by_ends else None
+
+
 class Carried:
-    """The link that carries P, and the last one, at every target; derivatives by all unknowns."""
+    """The link that carries P, and the last one, at every target."""
 
-    made: Made  # dimensions
-    origin: ComplexArray  # (n, N)
-    along: ComplexArray  # (n, N)
-    output: ComplexArray  # (n, N), direction of the last link
-    by_origin: ComplexArray  # (n, N, M)
-    by_along: ComplexArray
-    by_output: ComplexArray
-    direction: FloatArray  # (n,), sense of the driver
-    closes: BoolArray  # (n,)
-
-    @classmethod
-    def of(cls, target: SearchTargets, shapes: Shapes, batch: Batch) -> Carried:
+    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
         """Close the loops of every linkage at every target."""
-        width = shapes.width
-        theta2 = driver_angles(target, batch.unknowns[:, width:], batch.direction)
-        by_angle = by_angles(target, batch, width)
-        ends = np.array([0, -1])
-        order = np.where(batch.direction[:, None] < 0, ends[::-1], ends)
-        rows = np.arange(len(batch))[:, None]
-        made = shapes.made(batch.unknowns[:, :width], batch.longer_driver, batch.assembly, theta2[rows, order])
-        at = Dual(theta2, np.eye(made.columns)[-1][None, None])
-        driver = Vector(np.cos(at), np.sin(at))
-        chain = chained(shapes.mechanism, made.given, driver, list(batch.assembly.T[..., None]))
-        row, frames = shapes.mechanism, chain.frames
-        vectors = (*frames[row.carries], frames[row.loops[-1].links[1]].along)
-        by_ends = by_angle[rows, order]
-        values, slopes = zip(*(_by_all(each, by_angle, by_ends) for each in vectors), strict=True)
-        closes = np.isfinite(np.concatenate(values, axis=1)).all(axis=1)
-        return cls(made, *values, *slopes, batch.direction, closes)
-
-
-def _by_all(vector: Vector, by_angle: FloatArray, by_ends: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """A vector as complex numbers (n, N), and their derivatives by all unknowns (n, N, M)."""
-    places = by_angle.shape[:2]
-    if not isinstance(vector.x, Dual):  # a slide stands still
-        return np.full(places, as_complex(vector)), np.zeros(by_angle.shape, dtype=np.complex128)
-    value = as_complex(Vector(vector.x.value, vector.y.value))
-    slope = vector.x.slope + 1j * vector.y.slope
-    width = slope.shape[-1] - ENDS - 1
-    by_every = slope[..., -1:] * by_angle
-    by_every[..., :width] += slope[..., :width]
-    by_every += slope[..., width : width + ENDS] @ by_ends
-    return np.broadcast_to(value, places), by_every
+        angles, row = _Angles(target, shapes, batch), shapes.mechanism
+        free = batch.unknowns[:, : shapes.width]
+        self.made = shapes.made(free, batch.longer_driver, batch.assembly, angles.ends)
+        theta2 = Dual(angles.theta2, np.eye(self.made.columns)[-1][None, None])
+        driver = Vector(np.cos(theta2), np.sin(theta2))
+        frames = chained(row, self.made.given, driver, list(batch.assembly.T[..., None])).frames
+        vectors = *frames[row.carries], frames[row.loops[-1].links[1]].along
+        self.by_origin, self.by_along, self.by_output = (Along(vector, angles) for vector in vectors)
+        self.direction = batch.direction  # (n,), sense of the driver
+        self.origin, self.along, self.output = (each.value for each in (self.by_origin, self.by_along, self.by_output))
+        self.closes: BoolArray = np.isfinite(self.origin * self.along * self.output).all(axis=1)
 
 
 def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
-    """The best of a batch improved, best first, and their errors (n,), sizes squared.
-
-    The errors are those of positions, angles of the body and outputs, where the targets have them.
-    """
-
-    def model(some: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            at = Carried.of(target, shapes, some)
-            rows = [part for each in (_places, _turns, _outputs) if (part := each(target, at)) is not None]
-        residual, slope = (np.concatenate(each, axis=1) for each in zip(*rows, strict=True))
-        error = np.where(at.closes, (residual**2).sum(axis=1), np.inf)
-        return np.where(np.isfinite(error), error, np.inf), residual, slope
-
+    """The best of a batch improved, best first, and their errors (n,), sizes squared."""
+    model = Fitting(target, shapes)
     error = model(batch)[0]
     for keep, steps in STAGES:
         best = np.argsort(error, kind="stable")[:keep]
-        batch, error = improve(model, batch[best], steps, NO_ERROR, until)
+        batch, error = improve(model, batch[best], steps, NO_ERROR, until, missed=model.missed)
     order = np.argsort(error, kind="stable")
     return batch[order], error[order]
 
 
-def _places(target: SearchTargets, at: Carried) -> tuple[FloatArray, FloatArray] | None:
-    """From P to the points, weighted (n, 2N), with derivatives (Kaufman's); None without points."""
-    if not target.weights.any():
-        return None
+@dataclass(frozen=True, slots=True)
+class Fitting:
+    """The model of a search: errors of positions, angles of the body and outputs, where targets have them."""
+
+    target: SearchTargets
+    shapes: Shapes
+
+    def __call__(self, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Squared errors (n,), misses (n, R) and their derivatives (n, R, M)."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            at = Carried(self.target, self.shapes, batch)
+            parts = self._parts(at)
+            missed = np.concatenate([part.missed for part in parts], axis=1)
+            error = np.where(at.closes, (missed**2).sum(axis=1), np.inf)
+            slope = np.concatenate([part.slope() for part in parts], axis=1)
+        return np.where(np.isfinite(error), error, np.inf), missed, slope
+
+    def missed(self, batch: Batch) -> FloatArray:
+        """The misses alone."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            parts = self._parts(Carried(self.target, self.shapes, batch))
+            return np.concatenate([part.missed for part in parts], axis=1)
+
+    def _parts(self, at: Carried) -> list[_Part]:
+        target = self.target
+        given = (target.weights.any(), _places), (target.has_angles, _turns), (target.outputs is not None, _outputs)
+        return [part(target, at) for asked, part in given if asked]
+
+
+class _Part(NamedTuple):
+    """Some misses (n, R), and what gives their derivatives (n, R, M)."""
+
+    missed: FloatArray
+    slope: Callable[[], FloatArray]
+
+
+def _places(target: SearchTargets, at: Carried) -> _Part:
+    """From P to the points, weighted, with derivatives of Kaufman's."""
     root = np.sqrt(target.weights)
     z, q, *_ = project(target, at)
     missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * root
-    slope = (z[:, 1:2, None] * at.by_origin + z[:, 2:, None] * at.by_along) * root[:, None]
-    slope -= q @ (np.swapaxes(q.conj(), 1, 2) @ slope)
-    return (
-        np.concatenate([missed.real, missed.imag], axis=1),
-        -np.concatenate([slope.real, slope.imag], axis=1),
-    )
+
+    def slope() -> FloatArray:
+        moved = (z[:, 1:2, None] * at.by_origin.slope + z[:, 2:, None] * at.by_along.slope) * root[:, None]
+        moved -= q @ (np.swapaxes(q.conj(), 1, 2) @ moved)
+        return -np.concatenate([moved.real, moved.imag], axis=1)
+
+    return _Part(np.concatenate([missed.real, missed.imag], axis=1), slope)
 
 
-def _turns(target: SearchTargets, at: Carried) -> tuple[FloatArray, FloatArray] | None:
-    """Angles of the body missed, weighted (n, N), with derivatives; None where none is given."""
-    if not target.has_angles:
-        return None
-    by_turn = (at.along.conj()[..., None] * at.by_along).imag
-    return body_turns(target, at)[0], by_body_turns(target, by_turn)
+def _turns(target: SearchTargets, at: Carried) -> _Part:
+    """Angles of the body missed, weighted."""
+
+    def slope() -> FloatArray:
+        return by_body_turns(target, (at.along.conj()[..., None] * at.by_along.slope).imag)
+
+    return _Part(body_turns(target, at)[0], slope)
 
 
-def _outputs(target: SearchTargets, at: Carried) -> tuple[FloatArray, FloatArray] | None:
-    """Outputs missed with the best zero (n, N), with derivatives; None where the targets have none."""
-    if target.outputs is None:
-        return None
+def _outputs(target: SearchTargets, at: Carried) -> _Part:
+    """Outputs missed with the best zero."""
     sense = at.direction[:, None]
     off = sense * np.unwrap(np.angle(at.output), axis=1) - target.outputs
-    slope = sense[..., None] * (at.output.conj()[..., None] * at.by_output).imag
-    return off - off.mean(axis=1, keepdims=True), slope - slope.mean(axis=1, keepdims=True)
+
+    def slope() -> FloatArray:
+        turned = sense[..., None] * (at.output.conj()[..., None] * at.by_output.slope).imag
+        centred: FloatArray = turned - turned.mean(axis=1, keepdims=True)
+        return centred
+
+    return _Part(off - off.mean(axis=1, keepdims=True), slope)
 
 
 def linkages(target: SearchTargets, shapes: Shapes, batch: Batch) -> list[Linkage]:
     """Linkages of a batch where they fit best, in the frame of the targets."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        at = Carried.of(target, shapes, batch)
+        at = Carried(target, shapes, batch)
         z = project(target, at)[0] if target.weights.any() else np.tile([0j, 1, 0], (len(batch), 1))
         body_angle = body_turns(target, at)[1]
     made = list[Linkage]()

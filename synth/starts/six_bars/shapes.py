@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,11 @@ class Shapes:
     def width(self) -> int:
         """Number of columns."""
         return FIRST + sum(1 + row.paired for row in self.later)
+
+    @property
+    def by_ends(self) -> bool:
+        """Whether they depend on the ends of the task motion."""
+        return not self.turning or (self.transmission > 0 and not self.over_turn)
 
     def drawn(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Random free numbers, (count, width)."""
@@ -95,11 +101,18 @@ class Made:
         both = np.concatenate([self.free, self.ends], axis=1)
         return Dual(both[:, [k]], np.eye(self.columns)[k][None, None])
 
-    def _dual(self, values: FloatArray, slopes: FloatArray, at: Sequence[int]) -> Dual:
-        """Values (n,) with slopes (n, k) by some of the columns."""
-        slope = np.zeros((len(values), 1, self.columns))
-        slope[:, 0, list(at)] = slopes
-        return Dual(values[:, None], slope)
+    def _made(self, found: Differences, column: int, at: Sequence[int], inner: Sequence[Dual] = ()) -> Dual:
+        """A value of a function of `inner` numbers, and of the columns `at`."""
+
+        def slope() -> FloatArray:
+            by = found.slopes[:, column, None]
+            total = np.zeros((len(by), 1, self.columns))
+            total[..., list(at)] = by[..., len(inner) :]
+            for k, each in enumerate(inner):
+                total += by[..., [k]] * each.slope
+            return total
+
+        return Dual(found.values[:, [column]], slope)
 
     def _first_loop(self) -> None:
         loop, ends = self.shapes.mechanism.loops[0], range(self.shapes.width, self.shapes.width + ENDS)
@@ -111,12 +124,11 @@ class Made:
             sizes = feasible(dyad, expit(free), longer, self._demand(low, high))
             return np.stack([sizes.r2, sizes.r3, sizes.r4], axis=-1)
 
-        at = [*range(FIRST), *ends]
-        values, slopes = by_differences(lengths, np.concatenate([self.free[:, :FIRST], self.ends], axis=1))
+        found = Differences(lengths, np.concatenate([self.free[:, :FIRST], self.ends], axis=1))
         names = "r2", *(loop.bars if len(loop.bars) == 2 else ("", "")), loop.offset
         for name, column in zip(names, (0, 1, 2, 2), strict=True):
             if name:
-                self.given[name] = self._dual(values[:, column], slopes[:, column], at)
+                self.given[name] = self._made(found, column, [*range(FIRST), *ends])
 
     def _demand(self, low: FloatArray, high: FloatArray) -> Demand:
         """The demand on the first loop, for ends of the motion from the ground line."""
@@ -125,7 +137,7 @@ class Made:
         if not shapes.turning:
             return task
         turn = Demand.turning(shapes.transmission * shapes.over_turn, shapes.margin)
-        return turn if shapes.over_turn or not shapes.transmission else turn.over(task)
+        return turn.over(task) if shapes.by_ends else turn
 
     def _later_loop(self) -> None:
         loop, place = self.shapes.mechanism.loops[-1], FIRST
@@ -138,12 +150,9 @@ class Made:
         extremes, at = self._extremes(), (self.shapes.width - 2, self.shapes.width - 1)
         numbers = np.concatenate([each.value for each in extremes] + [self.free[:, at]], axis=1)
         bars = self._between_slides if loop.dyad.slides else self._between_pins
-        values, slopes = by_differences(bars, numbers)
+        found = Differences(bars, numbers)
         for column, name in enumerate((*loop.bars, *filter(None, [loop.offset]))):
-            slope = sum(
-                slopes[:, [column], k, None] * each.slope for k, each in enumerate(extremes)
-            ) + self._dual(values[:, column], slopes[:, column, -2:], at).slope
-            self.given[name] = Dual(values[:, [column]], slope)
+            self.given[name] = self._made(found, column, at, extremes)
 
     def _between_pins(self, numbers: FloatArray) -> FloatArray:
         near, far, near_mu, far_mu, first, second = np.moveaxis(numbers, -1, 0)
@@ -169,7 +178,7 @@ class Made:
         shapes, turn = self.shapes, np.arange(SAMPLES) * TURN / SAMPLES
         share = np.arange(SAMPLES) / (SAMPLES - 1)
         every = [turn] if shapes.turning else []
-        every += [] if shapes.turning and (shapes.over_turn or not shapes.transmission) else [share]
+        every += [share] if shapes.by_ends else []
         found = []
         for way in every:
             round_turn = way is turn
@@ -197,9 +206,16 @@ def _plain(each: Any) -> Any:
     return each.value if isinstance(each, Dual) else each
 
 
-def by_differences(function: Function, numbers: FloatArray) -> tuple[FloatArray, FloatArray]:
+class Differences:
     """Values (n, m) of a function of (n, ..., k) numbers, and their derivatives (n, m, k) by differences."""
-    steps = STEP * np.eye(numbers.shape[1])
-    beside = function(numbers[:, None] + np.concatenate([steps, -steps, np.zeros((1, len(steps)))]))
-    up, down, here = np.split(beside, [len(steps), 2 * len(steps)], axis=1)
-    return here[:, 0], np.swapaxes(up - down, 1, 2) / (2 * STEP)
+
+    def __init__(self, function: Function, numbers: FloatArray) -> None:
+        self.function, self.numbers = function, numbers
+        self.values = function(numbers[:, None])[:, 0]
+
+    @cached_property
+    def slopes(self) -> FloatArray:
+        """Of second order."""
+        steps = STEP * np.eye(self.numbers.shape[1])
+        up, down = (self.function(self.numbers[:, None] + sign * steps) for sign in (1, -1))
+        return np.swapaxes(up - down, 1, 2) / (2 * STEP)
