@@ -124,7 +124,7 @@ class Carried:
 def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared."""
     model = Fitting(target, shapes)
-    error = model(batch)[0]
+    error = model.errors(batch)
     for keep, steps in STAGES:
         best = np.argsort(error, kind="stable")[:keep]
         batch, error = improve(model, batch[best], steps, NO_ERROR, until, missed=model.missed)
@@ -142,12 +142,14 @@ class Fitting:
     def __call__(self, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Squared errors (n,), misses (n, R) and their derivatives (n, R, M)."""
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            at = Carried(self.target, self.shapes, batch)
-            parts = self._parts(at)
+            parts = self._parts(Carried(self.target, self.shapes, batch))
             missed = np.concatenate([part.missed for part in parts], axis=1)
-            error = np.where(at.closes, (missed**2).sum(axis=1), np.inf)
             slope = np.concatenate([part.slope() for part in parts], axis=1)
-        return np.where(np.isfinite(error), error, np.inf), missed, slope
+            return _squared(missed), missed, slope
+
+    def errors(self, batch: Batch) -> FloatArray:
+        """Squared errors alone."""
+        return _squared(self.missed(batch))
 
     def missed(self, batch: Batch) -> FloatArray:
         """The misses alone."""
@@ -159,6 +161,11 @@ class Fitting:
         target = self.target
         given = (target.weights.any(), _places), (target.has_angles, _turns), (target.outputs is not None, _outputs)
         return [part(target, at) for asked, part in given if asked]
+
+
+def _squared(missed: FloatArray) -> FloatArray:
+    """Sums of squares (n,), infinite where loops are open."""
+    return np.nan_to_num((missed**2).sum(axis=1), nan=np.inf, posinf=np.inf)
 
 
 class _Part(NamedTuple):
