@@ -6,9 +6,9 @@ symbols a row or a bound of the programme. The judge's measure of the same key s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 from itertools import permutations
 from operator import attrgetter
 from typing import Any, TypeAlias
@@ -200,7 +200,24 @@ INVERTED: Formulas = {
     "output_swing": (Part("output swing", lambda d: _swing(d, _block_angle(d))),),
     "time_ratio": (Part("time ratio", lambda d: (1 - d.double_crank) * _ratio_of(_block_angle(d))),),
 }
-LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "link_ratio"}  # ratios count, not differences
+def of_six_bars(lengths: Sequence[str]) -> Formulas:
+    """Formulas of six-bars with links of these lengths; `ap` and `bp` lead from both joints of P's link."""
+    links = [Part(name, attrgetter(name)) for name in lengths]
+
+    def extreme(of: Callable[[Any, Any], Any]) -> Callable[[View], Any]:
+        return lambda d: reduce(of, (link.of(d) for link in links))
+
+    return {
+        **_lengths(extreme(np.maximum), extreme(np.minimum), *links),
+        "coupler_arms": FORMULAS["coupler_arms"],
+        **{
+            key: FORMULAS[key]
+            for key in ("o2", "o4", "a", "b", "ground_angle", "theta2_start", "driver_sense", "driver_rotation")
+        },
+    }
+
+
+LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "r5", "r6", "link_ratio"}  # ratios count, not differences
 
 
 def parts_of(limited: Collection[str], *formulas: Formulas) -> Iterator[tuple[str, Part]]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
-from grashof.synth.quantities.formulas import Part, parts_of, range_of
+from grashof.synth.quantities.formulas import Formulas, Part, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
@@ -34,11 +34,14 @@ class SearchTargets:
     closed: bool = False  # the task motion is a full turn
     # (N,), rad: rotation of the last link from the first target, in the driver's sense
     outputs: FloatArray | None = None
+    formulas: Formulas | None = None  # by default those of the kind
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        limited = parts_of(self.wanted.limited, self.kind.formulas)
+        limited = parts_of(
+            self.wanted.limited, self.kind.formulas if self.formulas is None else self.formulas
+        )
         rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
         object.__setattr__(self, "limited", rows)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -121,18 +121,24 @@ def oversteps(target: SearchTargets, at: Placement) -> tuple[FloatArray, FloatAr
     Lengths of links and their ratio by their logarithms, places and coupler arms in sizes, angles in rad, the
     transmission by |cos mu|.
     """
-    rows = [*_limit_rows(target, at), *_transmission_rows(target, at.relative)]
+    rows = [*limit_rows(target, at), *_transmission_rows(target, at.relative)]
     over = np.concatenate([row.value for row in rows], axis=1)
-    by_unknowns, first = np.zeros((*over.shape, at.by_theta3.shape[2])), 0
+    return over, slopes_of(rows, over.shape[1], at.by_theta3.shape[2])
+
+
+def slopes_of(rows: Sequence[Dual], width: int, unknowns: int) -> FloatArray:
+    """Derivatives of rows (n, width, unknowns); those without a value have none."""
+    slopes, first = np.zeros((len(rows[0].value), width, unknowns)), 0
     for row in rows:
         last = first + row.value.shape[1]
         if row.value.any():
-            by_unknowns[:, first:last] = row.slope
+            slopes[:, first:last] = row.slope
         first = last
-    return over, by_unknowns
+    return slopes
 
 
-def _limit_rows(target: SearchTargets, at: Placement) -> Iterator[Dual]:
+def limit_rows(target: SearchTargets, at: View) -> Iterator[Dual]:
+    """Excess over limits that have a formula, of what is named by `SearchTargets.limited`."""
     for name, part, (low, high) in target.limited:
         if part.fixed:
             continue

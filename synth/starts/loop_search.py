@@ -229,14 +229,14 @@ def project(
     q, r = np.linalg.qr(np.where(at.closes[:, None, None], basis, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.swapaxes(q.conj(), 1, 2) @ (target.points * root)
-        z = _back_substituted(r, share)
+        z = back_substituted(r, share)
         residual = target.points * root - (q @ share[..., None])[..., 0]
         error = (np.abs(residual) ** 2).sum(axis=1)
     sound = at.closes & np.isfinite(error) & np.isfinite(z).all(axis=1)
     return z, q, r, np.where(sound, error, np.inf)
 
 
-def _back_substituted(r: ComplexArray, right: ComplexArray) -> ComplexArray:
+def back_substituted(r: ComplexArray, right: ComplexArray) -> ComplexArray:
     """Solution of r x = right for upper triangular r (n, 3, 3); right (n, 3) or (n, 3, M)."""
     r = r if right.ndim == 2 else r[..., None]
     z2 = right[:, 2] / r[:, 2, 2]
@@ -257,7 +257,7 @@ def fitting(target: SearchTargets) -> Model:
             residual, slope = missed_places(target, loop, z, by_theta2, by_theta3)
             share = np.swapaxes(q.conj(), 1, 2) @ slope
             slope -= q @ share
-            at = Placement(target, loop, by_theta2, by_theta3, z, -_back_substituted(r, share))
+            at = Placement(target, loop, by_theta2, by_theta3, z, -back_substituted(r, share))
             return _joined(target, at, residual, slope, PULL, error)
 
     return model

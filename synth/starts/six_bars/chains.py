@@ -9,36 +9,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from grashof.problems import Linkage, ProblemError
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems import Linkage, ProblemError, Rotatability
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanisms import linkage_of
-from grashof.synth.loop.chain import chained
 from grashof.synth.loop.dual import Dual
-from grashof.synth.loop.dyad import as_complex
 from grashof.synth.loop.vector import Vector
-from grashof.synth.starts.closed_loop import (
-    Batch,
-    SearchTargets,
-    body_turns,
-    by_angles,
-    by_body_turns,
-    driver_angles,
-)
+from grashof.synth.starts.closed_loop import Batch, SearchTargets, body_turns, by_body_turns
+from grashof.synth.starts.limit_residuals import limit_rows, slopes_of
 from grashof.synth.starts.loop_search import drawn_gaps, improve, project
-from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
+from grashof.synth.starts.six_bars.carried import Carried, Placing
+from grashof.synth.starts.six_bars.limits import SixBarView
+from grashof.synth.starts.six_bars.shapes import Shapes
 
-LONGER = 0.4  # share of drivers longer than the ground link
-NO_ERROR = 1e-20  # sizes squared
-STAGES = ((400, 8), (100, 15), (30, 150))  # numbers of the best that continue, and their steps
+LONGER = 0.4  # share of drivers longer than the ground link, where either will do
+LONGER_ONES = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}
+SENSES = {"ccw": [1.0], "cw": [-1.0]}
+NO_ERROR = 1e-22  # sizes squared
+# Numbers of the best that continue, their steps, and the weight of limits, in sizes.
+STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
 
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
     """Random linkages."""
+    wanted = target.wanted
     first = rng.uniform(-np.pi, np.pi, (count, 1))
     angles = [first]
     if not target.timed:  # the last gap is the rest of the turn
@@ -48,86 +45,18 @@ def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Gener
         angles += [gaps, np.log(rng.uniform(low, 4, (count, 1)))]
     return Batch(
         unknowns=np.concatenate([shapes.drawn(rng, count), *angles], axis=1),
-        longer_driver=rng.random(count) < LONGER,
+        longer_driver=rng.random(count) < LONGER_ONES.get(wanted.rotatability, LONGER),
         assembly=rng.choice([-1.0, 1.0], (count, len(shapes.mechanism.loops))),
-        direction=rng.choice([-1.0, 1.0], count),
+        direction=rng.choice(SENSES.get(wanted.driver_sense, [-1.0, 1.0]), count),
     )
-
-
-class Along:
-    """A vector of a link at every target as complex numbers, and its derivatives by all unknowns."""
-
-    def __init__(self, vector: Vector, angles: _Angles) -> None:
-        self._vector, self._angles = vector, angles
-
-    @cached_property
-    def value(self) -> ComplexArray:
-        """Shape (n, N)."""
-        x, y = self._vector.x, self._vector.y
-        return np.broadcast_to(as_complex(Vector(_value(x), _value(y))), self._angles.shape)
-
-    @cached_property
-    def slope(self) -> ComplexArray:
-        """Shape (n, N, M)."""
-        by_angle, by_ends = self._angles.slopes
-        if not isinstance(self._vector.x, Dual):  # a slide stands still
-            return np.zeros(by_angle.shape, dtype=np.complex128)
-        slope = self._vector.x.slope + 1j * self._vector.y.slope
-        width = slope.shape[-1] - ENDS - 1
-        by_every = slope[..., -1:] * by_angle
-        by_every[..., :width] += slope[..., :width]
-        if by_ends is not None:
-            by_every += slope[..., width : width + ENDS] @ by_ends
-        return by_every
-
-
-def _value(each: Any) -> Any:
-    return each.value if isinstance(each, Dual) else each
-
-
-class _Angles:
-    """The driver angles of a batch (n, N), and those at the ends of the task motion (n, 2), ascending."""
-
-    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
-        self._target, self._shapes, self._batch = target, shapes, batch
-        self.theta2 = driver_angles(target, batch.unknowns[:, shapes.width :], batch.direction)
-        self._at_ends = np.where(batch.direction[:, None] < 0, [-1, 0], [0, -1])
-        self.ends = np.take_along_axis(self.theta2, self._at_ends, axis=1)
-        self.shape = self.theta2.shape
-
-    @cached_property
-    def slopes(self) -> tuple[FloatArray, FloatArray | None]:
-        """Their derivatives by all unknowns, (n, N, M), and those of the ends where shapes depend on these."""
-        by_angle = by_angles(self._target, self._batch, self._shapes.width)
-        by_ends = np.take_along_axis(by_angle, self._at_ends[..., None], axis=1)
-        return by_angle, by_ends if self._shapes.by_ends else None
-
-
-class Carried:
-    """The link that carries P, and the last one, at every target."""
-
-    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
-        """Close the loops of every linkage at every target."""
-        angles, row = _Angles(target, shapes, batch), shapes.mechanism
-        free = batch.unknowns[:, : shapes.width]
-        self.made = shapes.made(free, batch.longer_driver, batch.assembly, angles.ends)
-        theta2 = Dual(angles.theta2, np.eye(self.made.columns)[-1][None, None])
-        driver = Vector(np.cos(theta2), np.sin(theta2))
-        frames = chained(row, self.made.given, driver, list(batch.assembly.T[..., None])).frames
-        vectors = *frames[row.carries], frames[row.loops[-1].links[1]].along
-        self.by_origin, self.by_along, self.by_output = (Along(vector, angles) for vector in vectors)
-        self.direction = batch.direction  # (n,), sense of the driver
-        self.origin, self.along, self.output = (each.value for each in (self.by_origin, self.by_along, self.by_output))
-        self.closes: BoolArray = np.isfinite(self.origin * self.along * self.output).all(axis=1)
 
 
 def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared."""
-    model = Fitting(target, shapes)
-    error = model.errors(batch)
-    for keep, steps in STAGES:
-        best = np.argsort(error, kind="stable")[:keep]
-        batch, error = improve(model, batch[best], steps, NO_ERROR, until, missed=model.missed)
+    for keep, steps, weight in STAGES:
+        model = Fitting(target, shapes, weight)
+        batch = batch[np.argsort(model.errors(batch), kind="stable")[:keep]]
+        batch, error = improve(model, batch, steps, NO_ERROR, until, missed=model.missed)
     order = np.argsort(error, kind="stable")
     return batch[order], error[order]
 
@@ -138,6 +67,7 @@ class Fitting:
 
     target: SearchTargets
     shapes: Shapes
+    weight: float = 0.0  # of limits: an excess by one unit counts as an error of so many sizes
 
     def __call__(self, batch: Batch) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Squared errors (n,), misses (n, R) and their derivatives (n, R, M)."""
@@ -159,8 +89,18 @@ class Fitting:
 
     def _parts(self, at: Carried) -> list[_Part]:
         target = self.target
-        given = (target.weights.any(), _places), (target.has_angles, _turns), (target.outputs is not None, _outputs)
-        return [part(target, at) for asked, part in given if asked]
+        placing = Placing(target, at) if target.weights.any() else None
+        parts = [] if placing is None else [_places(target, at, placing)]
+        parts += [_turns(target, at)] if target.has_angles else []
+        parts += [_outputs(target, at)] if target.outputs is not None else []
+        rows = [*limit_rows(target, SixBarView(self.shapes, at, placing))] if self.weight and target.limited else []
+        if rows:
+            over = np.concatenate([row.value for row in rows], axis=1)
+            width = at.unknowns.count
+            parts.append(
+                _Part(self.weight * over, lambda: self.weight * slopes_of(rows, over.shape[1], width))
+            )
+        return parts
 
 
 def _squared(missed: FloatArray) -> FloatArray:
@@ -175,16 +115,14 @@ class _Part(NamedTuple):
     slope: Callable[[], FloatArray]
 
 
-def _places(target: SearchTargets, at: Carried) -> _Part:
+def _places(target: SearchTargets, at: Carried, placing: Placing) -> _Part:
     """From P to the points, weighted, with derivatives of Kaufman's."""
-    root = np.sqrt(target.weights)
-    z, q, *_ = project(target, at)
-    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * root
+    z = placing.z
+    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * np.sqrt(target.weights)
 
     def slope() -> FloatArray:
-        moved = (z[:, 1:2, None] * at.by_origin.slope + z[:, 2:, None] * at.by_along.slope) * root[:, None]
-        moved -= q @ (np.swapaxes(q.conj(), 1, 2) @ moved)
-        return -np.concatenate([moved.real, moved.imag], axis=1)
+        rest = placing.rest
+        return -np.concatenate([rest.real, rest.imag], axis=1)
 
     return _Part(np.concatenate([missed.real, missed.imag], axis=1), slope)
 

@@ -34,13 +34,13 @@ def planted(name: str, count: int) -> tuple[Linkage, FloatArray]:
 def targets(count: int, **given: Any) -> SearchTargets:
     nothing = np.zeros(count)
     fields: dict[str, Any] = dict.fromkeys(("points", "weights", "turns", "turn_weights", "timing"), nothing)
-    return SearchTargets(**fields | given, wanted=Requirements(), kind=FOUR_BAR)
+    return SearchTargets(**fields | given, wanted=Requirements(), kind=FOUR_BAR, formulas={})
 
 
 def found(name: str, target: SearchTargets, seed: int = 1) -> list[Linkage]:
     """Those of no error to speak of."""
     shapes = Shapes(EVERY[name].mechanism)
-    batch, error = fitted(target, shapes, draw(target, shapes, 60_000, np.random.default_rng(seed)), 6)
+    batch, error = fitted(target, shapes, draw(target, shapes, 3000, np.random.default_rng(seed)), 6)
     return linkages(target, shapes, batch[error < 1e-18])
 
 

@@ -1,0 +1,122 @@
+"""The link that carries P, and the last one, of many linkages at their targets, with derivatives."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.loop.chain import chained
+from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import as_complex
+from grashof.synth.loop.vector import Vector
+from grashof.synth.starts.closed_loop import Batch, SearchTargets, by_angles, driver_angles
+from grashof.synth.starts.loop_search import back_substituted, project
+from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
+
+
+class Along:
+    """A vector of a link at every target as complex numbers, and its derivatives by all unknowns."""
+
+    def __init__(self, vector: Vector, unknowns: Unknowns) -> None:
+        self._vector, self._unknowns = vector, unknowns
+
+    @cached_property
+    def value(self) -> ComplexArray:
+        """Shape (n, N)."""
+        x, y = (each.value if isinstance(each, Dual) else each for each in (self._vector.x, self._vector.y))
+        return np.broadcast_to(as_complex(Vector(x, y)), self._unknowns.theta2.shape)
+
+    @cached_property
+    def slope(self) -> ComplexArray:
+        """Shape (n, N, M)."""
+        if not isinstance(self._vector.x, Dual):  # a slide stands still
+            return np.zeros(self._unknowns.by_angle.shape, dtype=np.complex128)
+        return self._unknowns.slope(self._vector.x.slope + 1j * self._vector.y.slope)
+
+
+class Unknowns:
+    """The driver angles of a batch, (n, N) at the targets and (n, 2) at the ends of the task motion, ascending.
+
+    Derivatives by the columns of `Made` become those by all M unknowns.
+    """
+
+    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
+        self._target, self._shapes, self._batch = target, shapes, batch
+        self.theta2 = driver_angles(target, batch.unknowns[:, shapes.width :], batch.direction)
+        self._at_ends = np.where(batch.direction[:, None] < 0, [-1, 0], [0, -1])
+        self.ends = np.take_along_axis(self.theta2, self._at_ends, axis=1)
+
+    @property
+    def count(self) -> int:
+        """Their number."""
+        return self._batch.unknowns.shape[1]
+
+    @cached_property
+    def by_angle(self) -> FloatArray:
+        """Derivatives of the driver angles, (n, N, M)."""
+        return by_angles(self._target, self._batch, self._shapes.width)
+
+    def slope(self, by_columns: Any) -> Any:
+        """Derivatives by all unknowns (n, N, M), or (n, 1, M) of what no target affects."""
+        width = self._shapes.width
+        if by_columns.shape[1] == self.theta2.shape[1]:
+            by_every = by_columns[..., -1:] * self.by_angle
+        else:
+            by_every = np.zeros((*by_columns.shape[:2], self.count), by_columns.dtype)
+        by_every[..., :width] += by_columns[..., :width]
+        if self._shapes.by_ends:
+            by_ends = np.take_along_axis(self.by_angle, self._at_ends[..., None], axis=1)
+            by_every += by_columns[..., width : width + ENDS] @ by_ends
+        return by_every
+
+
+class Carried:
+    """The link that carries P, and the last one, at every target."""
+
+    def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
+        """Close the loops of every linkage at every target."""
+        self.unknowns, row = Unknowns(target, shapes, batch), shapes.mechanism
+        free, ends = batch.unknowns[:, : shapes.width], self.unknowns.ends
+        self.made = shapes.made(free, batch.longer_driver, batch.assembly, ends)
+        theta2 = Dual(self.unknowns.theta2, np.eye(self.made.columns)[-1][None, None])
+        driver = Vector(np.cos(theta2), np.sin(theta2))
+        self.frames = chained(row, self.made.given, driver, list(batch.assembly.T[..., None])).frames
+        vectors = *self.frames[row.carries], self.frames[row.loops[-1].links[1]].along
+        every = [Along(vector, self.unknowns) for vector in vectors]
+        self.by_origin, self.by_along, self.by_output = every
+        self.direction = batch.direction  # (n,), sense of the driver
+        self.origin, self.along, self.output = (each.value for each in every)
+        self.closes: BoolArray = np.isfinite(self.origin * self.along * self.output).all(axis=1)
+
+
+class Placing:
+    """Where linkages fit the points best: z0, z1, z2 (n, 3), which are solved for."""
+
+    def __init__(self, target: SearchTargets, at: Carried) -> None:
+        self._target, self._at, self._root = target, at, np.sqrt(target.weights)
+        self.z, self._q, self._r, _ = project(target, at)
+
+    @cached_property
+    def moved(self) -> ComplexArray:
+        """Derivatives of P, weighted, with z held, (n, N, M)."""
+        z, at = self.z[:, None], self._at
+        moved = z[..., 1:2] * at.by_origin.slope + z[..., 2:] * at.by_along.slope
+        return moved * self._root[:, None]
+
+    @cached_property
+    def share(self) -> ComplexArray:
+        """The part of them that z takes up, (n, 3, M)."""
+        return np.swapaxes(self._q.conj(), 1, 2) @ self.moved
+
+    @property
+    def by_z(self) -> ComplexArray:
+        """Derivatives of z, (n, 3, M), for small errors (Kaufman's)."""
+        return -back_substituted(self._r, self.share)
+
+    @property
+    def rest(self) -> ComplexArray:
+        """Derivatives of P, weighted, as z follows, (n, N, M)."""
+        return self.moved - self._q @ self.share
