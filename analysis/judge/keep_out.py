@@ -155,7 +155,7 @@ def _body_depth(area: Area, linkage: Linkage, outline: FloatArray, assembly: Int
 
     def at(theta2: FloatArray, rounds: int) -> FloatArray:
         state = solve_position(linkage, theta2, assembly)
-        p, turn = state.p @ np.array([1, 1j]), np.exp(1j * (state.theta3 + linkage.body_angle))
+        p, turn = state.p @ np.array([1, 1j]), np.exp(1j * (state.carrying + linkage.body_angle))
         found, closed = np.full(len(theta2), -np.inf), np.isfinite(p + turn)
         p, turn = p[closed, None], turn[closed, None]
         begin = p + turn * corner

@@ -274,10 +274,13 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
 
 
 def _arms(values: Values) -> dict[str, FloatArray]:
-    arm = complex(*values.linkage.coupler_point)
-    arms = {"A-P": np.abs([arm])}
-    if _has_b(values.linkage):
-        arms["B-P"] = np.abs([arm - complex(values.linkage.r3)])
+    """From P to the joints of the link that carries it."""
+    arm, kind = complex(*values.linkage.coupler_point), values.linkage.mechanism
+    loop = next(each for each in kind.loops if kind.carries in each.links)
+    side = loop.links.index(kind.carries)
+    arms = {f"{(loop.c, loop.d)[side].upper()}-P": np.abs([arm])}
+    for bar in loop.bars[side : side + 1]:
+        arms[f"{loop.e.upper()}-P"] = np.abs([arm - float(getattr(values.linkage, bar))])
     return arms
 
 

@@ -90,7 +90,7 @@ def planted_motion(
 ) -> tuple[MotionTask, Any]:
     """A motion task, and a full-crank linkage that does it exactly, in order, on one assembly."""
     linkage, state, timing = _planted(rng, poses, timed, mechanism)
-    return MotionTask(state.p, state.theta3 + linkage.body_angle, timing=timing), linkage
+    return MotionTask(state.p, state.carrying + linkage.body_angle, timing=timing), linkage
 
 
 def planted_path(

@@ -138,7 +138,7 @@ def yield_monte_carlo(
         shift = state.p - nominal.p
         moves2 = shift[..., 0] ** 2 + shift[..., 1] ** 2
         if task.has_angle.any():
-            turned = turned_from(state.theta3, nominal.theta3)
+            turned = turned_from(state.carrying, nominal.carrying)
             moves2 += (task.angle_length * turned) ** 2
         within += int(np.count_nonzero(possible & (moves2.max(axis=0) <= band**2)))  # NaN is not within
     return within / len(errors)

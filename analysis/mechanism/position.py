@@ -53,6 +53,16 @@ class Position:
             found |= zip((first, first + 1), loop.closed.angles, strict=True)
         return found
 
+    @property
+    def carrying(self) -> FloatArray:
+        """Direction of the link that carries P, and with it the body, shape (...), rad."""
+        return self.angles[self.linkage.mechanism.carries]
+
+    @property
+    def last(self) -> FloatArray:
+        """Direction of the last link, the output, shape (...), rad."""
+        return self.angles[self.linkage.mechanism.loops[-1].links[1]]
+
     @cached_property
     def margins(self) -> tuple[FloatArray, ...]:
         """Sine of the transmission angle of each loop, with the sign of the assembly, shape (...)."""

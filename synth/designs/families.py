@@ -55,11 +55,12 @@ def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
     share one of its dyads and its transmission angle, which that dyad then decides.
     """
     middle, first = middle_of(problem.task), np.arange(len(best_first))
+    placed = problem.task.has_position.any()
     for alike_in_kind in by_kind([candidate.linkage for candidate in best_first]):
         mine, kind = np.array(alike_in_kind), best_first[alike_in_kind[0]].linkage.mechanism
-        signatures = np.array([signature(best_first[k].linkage, middle) for k in mine])
+        signatures = np.array([signature(best_first[k].linkage, middle if placed else None) for k in mine])
         alike = best_alike(problem.task, signatures, kind)
-        if not kind.slides and problem.task.limits_size:
+        if kind is FourBar.mechanism and problem.task.limits_size:
             heads = np.flatnonzero(alike == np.arange(len(mine)))
             akin = _akin([best_first[k] for k in mine[heads]], problem.task.size)
             alike = heads[akin][np.searchsorted(heads, alike)]
@@ -99,13 +100,13 @@ def best_alike(task: Task, signatures: FloatArray, kind: Mechanism = FourBar.mec
     All members of a family are like its best one; a design like another member alone is not in it.
     Signatures (n, 9), best first, have pivots measured from the middle of the task.
     """
-    maps = symmetries(task)
+    one_loop = len(kind.loops) == 1
+    maps = symmetries(task) if one_loop else symmetries(task)[:1]
     best = np.arange(len(signatures))
     left = best.copy()
     while left.size:
         first, left = left[0], left[1:]
         one = signatures[first]
-        one_loop = len(kind.loops) == 1
         cognates = one_loop and not kind.slides and not (task.has_angle.any() or task.has_output.any())
         curves = same_curve(one, task.is_timed) if cognates else one[None]
         near = left[_alike_in_shape(curves, signatures[left])] if one_loop else left

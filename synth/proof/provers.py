@@ -25,7 +25,7 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
 
     With `at_least`, deg, it only decides whether a design has that much.
     """
-    found = (prover(scaled, proving, at_least) for prover in _PROVERS)
+    found = (prover(scaled, proving, at_least) for prover in _PROVERS if scaled.one_loop)
     return next((bounds for bounds in found if bounds is not None), None)
 
 
@@ -41,6 +41,8 @@ def bounds_after(
 
     `before` are the bounds proven before it, and `designs` its designs.
     """
+    if not scaled.one_loop:
+        return None
     best = max((one.values[quantity_of(scaled.problem).key] for one in designs), default=0.0)
     pairs = bounds_of_pairs(scaled, proving, float(best))
     if pairs is not None:
@@ -52,5 +54,5 @@ def bounds_after(
 
 def certified_of(scaled: ScaledProblem) -> Certified | None:
     """All dyads of five whole poses or five pairs of a function; None for other problems."""
-    found = (each(scaled) for each in (certified_poses, certified_functions))
+    found = (each(scaled) for each in (certified_poses, certified_functions) if scaled.one_loop)
     return next((dyads for dyads in found if dyads is not None), None)

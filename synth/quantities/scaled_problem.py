@@ -10,6 +10,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.loop.dyad import direction_of
 from grashof.synth.quantities.frame import Frame
@@ -55,6 +56,7 @@ class ScaledProblem:
         kind = kind_of(problem)
         by_dyads = (
             kind.dyad.bars > 1
+            and problem.mechanism[0] in ONE_LOOP
             and exact
             and task.is_whole
             and not task.is_timed
@@ -98,8 +100,13 @@ class ScaledProblem:
 
     @property
     def has_targets(self) -> bool:
-        """Whether a programme has targets in the plane: a position or an angle."""
-        return self.problem.task.in_plane
+        """Whether a programme has targets in the plane, a position or an angle, and covers the mechanism."""
+        return self.problem.task.in_plane and self.one_loop
+
+    @property
+    def one_loop(self) -> bool:
+        """Whether the linkages have a single loop."""
+        return self.problem.mechanism[0] in ONE_LOOP
 
     @property
     def by_descent(self) -> bool:

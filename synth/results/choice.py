@@ -32,8 +32,11 @@ def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
     ledger = ledgers[-1]
     with run.timed("choosing"):
         if not (scaled.has_targets or scaled.exact):
-            problem = scaled.problem
-            found = within_factor(problem, ledger.best, ledger.least)
+            problem, every = scaled.problem, ledger.best
+            if scaled.bounded and problem.task.in_plane:  # found without zones
+                again = judged_in_time(scaled, [each for one in ledgers for each in one.verified])
+                every = ranked(problem, [one for one in again if one.verdict.ok])
+            found = within_factor(problem, every, ledger.least)
             named = tuple(replace(one, best_at=best_at(problem, one, ledger.least)) for one in found)
             return Chosen(named, ledger.rejected, 0)
         if scaled.bounded:

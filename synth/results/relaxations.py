@@ -136,7 +136,10 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     eased = replace(scaled.of_problem(problem), constraints=asked.constraints)
     under_it = judged_again(eased, found.candidate)
     # solved under the relaxed requirement, to be certain
-    (made,) = run.solve(eased, [Start.of_linkage(eased, under_it.linkage, under_it.verdict)], 0)
+    start: Proposal = under_it.linkage
+    if eased.has_targets:
+        start = Start.of_linkage(eased, under_it.linkage, under_it.verdict)
+    (made,) = run.solve(eased, [start], 0)
     if not made.verified:
         return found
     candidate = judged_again(scaled, made.verified[0])

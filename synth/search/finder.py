@@ -9,16 +9,18 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import located, whole_number
 from grashof.synth.programme.start import Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.six_bars.dwells import Dwells
 from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.finder import DesignFinder, Finder, StartFinder
 from grashof.synth.starts.functions.finder import Functions
 from grashof.synth.starts.least_squares import LeastSquares
 from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
+from grashof.synth.starts.six_bars.dwells import Dwells
+from grashof.synth.starts.six_bars.finder import SixBars
 from grashof.synth.starts.strokes.limit_positions import LimitPositions
 
 # The first that suits a problem is taken; the last suits all.
 KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
+    SixBars,
     Functions,
     LimitPositions,
     Dwells,

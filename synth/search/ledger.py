@@ -18,7 +18,7 @@ from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt, Outcome
-from grashof.synth.theory.distinct import DISTINCT, apart, signature
+from grashof.synth.theory.distinct import DISTINCT, apart, origin_of, signature
 
 FRUITLESS = 64  # solves without a verified exact design after which the search ends
 STALE = 20  # consecutive rounds without a new exact design after which it ends
@@ -103,7 +103,7 @@ class Leaders:
 
     def add(self, candidates: Iterable[Candidate]) -> None:
         """Add designs."""
-        origin = self.problem.task.middle
+        origin = origin_of(self.problem.task)
         for candidate in candidates:
             number, numbers = len(self._every), signature(candidate.linkage, origin)
             if number == len(self._signatures):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from grashof.problems import Linkage
+from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 
@@ -20,13 +20,13 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
 
     Of slider kinds the offset in place of r4; of a slider-crank the slide's direction, of length r2 + r3, in
     place of O4, of an inverted one nothing in place of r3. Pivots are measured from `origin`, shape (2,),
-    where one is given: from the middle of the task they do not depend on the origin of the user. Of six-bars,
-    which are the same wherever they are, all parameters but signs, places from O2; a direction has the length
-    of all links together.
+    where one is given: from the middle of the task they do not depend on the origin of the user. Of six-bars
+    all parameters but signs, without an origin places from O2; a direction has the length of all links
+    together.
     """
     middle = np.zeros(2) if origin is None else origin
     if len(linkage.mechanism.loops) > 1:
-        return _of_six_bar(linkage)
+        return _of_six_bar(linkage, linkage.o2 if origin is None else origin)
     if "o4" in linkage.mechanism.ground:
         second = linkage.o4 - middle
     else:
@@ -39,11 +39,16 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     )
 
 
-def _of_six_bar(linkage: Linkage) -> FloatArray:
+def origin_of(task: Task) -> FloatArray | None:
+    """The middle of a task, shape (2,); None where no target has a position: its designs may lie anywhere."""
+    return task.middle if task.has_position.any() else None
+
+
+def _of_six_bar(linkage: Linkage, origin: FloatArray) -> FloatArray:
     numbers = list[FloatArray]()
     for row, value in zip(linkage.mechanism.parameters, linkage.parameters, strict=True):
         if row.in_length:
-            placed = value - linkage.o2 if row.kind in ("place", "station") else value
+            placed = value - origin if row.kind in ("place", "station") else value
             numbers.append(placed if row.paired else placed[..., None])
         elif row.kind == "angle" and row.name != "body_angle":
             numbers.append(

@@ -37,7 +37,7 @@ def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool
     """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
     if task.travels:
         return state.travel
-    moved: FloatArray = way_of(task, direction) * (np.unwrap(state.theta4) if unwrapped else state.theta4)
+    moved: FloatArray = way_of(task, direction) * (np.unwrap(state.last) if unwrapped else state.last)
     return moved
 
 
@@ -60,7 +60,7 @@ def begins(
     (rad), unless the start is given. ProblemError for a linkage whose output does not move as the task's
     does.
     """
-    if task.travels == linkage.mechanism.loops[0].pinned:
+    if task.travels == linkage.mechanism.loops[-1].pinned:
         way = "slides" if task.travels else "turns"
         raise ProblemError(
             f"mechanism {linkage.mechanism.word} has no output that {way}; the function requires one"
@@ -169,7 +169,7 @@ class _Search:
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.driver_turns)
             loops, _ = close(self.linkage.mechanism, operands_of(self.linkage), state.theta2)
-            first = move(loops, STEADY, dead_below=0.0)[0][0].orders[0]
+            first = move(loops, STEADY, dead_below=0.0)[0][-1].orders[0]
             rate = first.travel if self.task.travels else first.turn4
             if not np.isfinite(rate).all():  # a dead position
                 break

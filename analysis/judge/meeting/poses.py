@@ -36,10 +36,11 @@ def nearest_to_poses(linkage: Linkage, task: Task) -> Targets:
     over all driver angles finds the lowest valleys.
     """
     turned = np.exp(1j * (task.angles - linkage.body_angle))
-    a = task.positions @ np.array([1, 1j]) - complex(*linkage.coupler_point) * turned - complex(*linkage.o2)
+    origin = task.positions @ np.array([1, 1j]) - complex(*linkage.coupler_point) * turned
     own = int(linkage.assembly)
     signs = np.broadcast_to(np.array([[own], [-own]]), (2, len(task)))
-    guess = np.where(task.has_position & task.has_angle, np.angle(a), 0.0)
+    whole = task.has_position & task.has_angle & (linkage.mechanism.carries == 3)  # whose origin is A
+    guess = np.where(whole, np.angle(origin - complex(*linkage.o2)), 0.0)
     angle = np.broadcast_to(_into_ranges(driver_ranges(linkage), guess), signs.shape)
     angle, miss = _descend(linkage, task, angle, signs)
     if not _met(miss, task):

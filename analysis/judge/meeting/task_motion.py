@@ -38,7 +38,7 @@ class Targets:
         state = solve_position(linkage, theta2, assembly)
         gap = state.p - task.positions
         distance = np.nan_to_num(np.hypot(gap[:, 0], gap[:, 1]), nan=np.inf)
-        turned = np.abs(turned_from(state.theta3 + linkage.body_angle, task.angles))
+        turned = np.abs(turned_from(state.carrying + linkage.body_angle, task.angles))
         return cls(
             theta2,
             assembly,
@@ -53,7 +53,7 @@ def misses(linkage: Linkage, task: Task, theta2: FloatArray, assembly: IntArray)
     gap = state.p - task.positions
     miss: FloatArray = np.where(task.has_position, gap[..., 0] ** 2 + gap[..., 1] ** 2, 0.0)
     if task.has_angle.any():
-        off = turned_from(state.theta3, task.angles - linkage.body_angle)
+        off = turned_from(state.carrying, task.angles - linkage.body_angle)
         miss = miss + np.where(task.has_angle, task.angle_length * off, 0.0) ** 2
     return np.nan_to_num(miss, nan=np.inf, posinf=np.inf)
 

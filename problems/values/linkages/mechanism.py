@@ -315,5 +315,6 @@ MECHANISMS = (
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (2, 1))), carries=5),
     Mechanism("watt-2", (_PINS, Dyad(_RRP, (4, 1))), carries=5),
 )
-# Kinds of one loop by their words: those that problems may name. The first is the default.
+WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in files and tables
+# Kinds of one loop by their words. The first is the default.
 ONE_LOOP = {row.word: row for row in MECHANISMS if len(row.dyads) == 1}

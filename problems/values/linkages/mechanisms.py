@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from grashof.problems.values.checks import each_checked, hint, refuse
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Parameter
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, DyadKind, Mechanism, Parameter
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
 
 FOUR_BAR, SLIDER_CRANK, INVERTED = ONE_LOOP
-WORDS = tuple(dict.fromkeys(row.word for row in MECHANISMS))  # in files and tables
 ROWS = {word: tuple(row for row in MECHANISMS if row.word == word) for word in WORDS}
 SIX_BAR, SIX_BARS = (
     "six-bar",
@@ -82,11 +81,10 @@ def closing_dyad(kind: str) -> DyadKind:
     return ROWS[kind][0].dyads[0].kind
 
 
-def freedoms(kind: str) -> int:
-    """The number of dimensions of a linkage of a kind, without the angle of the guided body."""
+def freedoms(kinds: Iterable[Mechanism]) -> int:
+    """The least number of dimensions of linkages of some kinds, without the angle of the guided body."""
     every = (
-        [row for row in one.parameters if row.kind != "sign" and row.name != "body_angle"]
-        for one in ROWS[kind]
+        [row for row in one.parameters if row.kind != "sign" and row.name != "body_angle"] for one in kinds
     )
     return min(sum(1 + row.paired for row in rows) for rows in every)
 

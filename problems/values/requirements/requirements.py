@@ -93,9 +93,9 @@ class Requirements(ReadOnly):
     link_length : tuple of float, optional
         (lo, hi) for all links; r1, r2, r3, r4 and r5, r6 of a six-bar override it for single ones.
     link_ratio_max : float
-        Longest to shortest of r1..r4.
+        Longest to shortest of r1..r4, of a six-bar r1..r6.
     coupler_arms : tuple of float, optional
-        (lo, hi) for the distances A-P and B-P.
+        (lo, hi) for the distances of P from the joints of its link: A-P and B-P, of a six-bar C-P and E-P.
     o2, o4 : Box, optional
         Where this ground pivot may lie.
     a, b : Box, optional
@@ -172,7 +172,7 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False, kinds=SINGLE),
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
         usual=(0.0, 30.0),
     )
     link_ratio_max: float = limit(

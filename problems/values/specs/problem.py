@@ -171,7 +171,7 @@ class Problem(ReadOnly):
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""
-        fewest = min(freedoms(kind) for kind in self.mechanism)
+        fewest = min(freedoms(self.task.rows(kind) or ROWS[kind]) for kind in self.mechanism)
         exact = self.task.exact_for(fewest)
         if self.requirements.exact is not None or exact == self.task.exact_by_default:
             return self.requirements

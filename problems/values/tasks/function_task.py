@@ -77,8 +77,8 @@ def _refuse_turns(angles: FloatArray, key: str) -> None:
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
 LAW_PAIRS = 41  # of a law fitted over its full range
-MOST_EXACT = 5
-_SLIDING = 8  # freedoms of slider kinds
+MOST_EXACT, MOST_OF_SIX_BARS = 5, 9
+_SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -316,8 +316,11 @@ class FunctionTask(Task):
     def exact_for(self, freedoms: int) -> bool:
         """Whether every pair can be met: up to five, since the starts and three lengths are free.
 
-        An inverted slider-crank, whose output is also a rotation, has one free length less.
+        An inverted slider-crank, whose output is also a rotation, has one free length less. Of six-bars up to
+        nine.
         """
+        if freedoms > _FOUR_BAR:
+            return len(self) <= MOST_OF_SIX_BARS
         return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002

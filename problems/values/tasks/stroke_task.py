@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import finite_number, noted, refuse, size_number, with_article
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.mechanism import DyadKind
+from grashof.problems.values.linkages.mechanism import ONE_LOOP, DyadKind
 from grashof.problems.values.linkages.mechanisms import INVERTED, closing_dyad
 from grashof.problems.values.tasks.output_task import OutputTask
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
@@ -53,6 +53,7 @@ class StrokeTask(OutputTask):
 
     kind: ClassVar[Literal["stroke"]] = "stroke"
     target: ClassVar[Literal["limit position"]] = "limit position"
+    kinds: ClassVar[tuple[str, ...]] = tuple(ONE_LOOP)
     in_degrees: ClassVar[tuple[str, ...]] = ("swing",)
 
     swing: float | None

@@ -13,12 +13,13 @@ import numpy.typing as npt
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.errors import listing
 from grashof.problems.values.extent import span
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanism import MECHANISMS, WORDS, Mechanism
 from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly
 
 _SAME = 1e-12  # sizes, rad
+_FOUR_BAR_CURVES = ((2, 1), (4, 1))  # hosts of six-bars whose link 5 leads P as a four-bar does
 USUAL_MARGIN = 1e-3  # of full rotation
 _Row = TypeVar("_Row")
 
@@ -37,7 +38,7 @@ class Task(ReadOnly, ABC):
     target: ClassVar[str]  # word for a target in messages
     usual_rotatability: ClassVar[str] = "full-crank"  # where requirements do not state one
     usual_mechanism: ClassVar[tuple[str, ...]] = ("four-bar",)  # where a problem does not state one
-    kinds: ClassVar[tuple[str, ...]] = tuple(ONE_LOOP)  # of linkages that are searched for it
+    kinds: ClassVar[tuple[str, ...]] = WORDS  # of linkages that are searched for it
     without: ClassVar[tuple[str, ...]] = ()  # quantities and parts that do not apply to it
     no_cylinder: ClassVar[str] = ""  # why a cylinder cannot be its driver; empty if it can
     in_degrees: ClassVar[tuple[str, ...]] = ("angle_within", "timing")  # fields that files have in degrees
@@ -240,10 +241,35 @@ class Task(ReadOnly, ABC):
         """Weights of the goals where a problem does not state an objective, as `Objective` takes them."""
         return {}
 
+    def rows(self, word: str) -> tuple[Mechanism, ...]:
+        """The mechanisms of a word among which linkages for it are searched.
+
+        Of six-bars for points and poses those with P on any link that does not turn about the ground, without
+        the ones whose P traces the coupler curve of a four-bar, unless the driver is timed.
+        """
+        every = tuple(row for row in MECHANISMS if row.word == word)
+        if not every or len(every[0].loops) == 1:
+            return every
+        pinned = tuple(row for row in every if not row.loops[-1].dyad.slides)
+        if not self.in_plane:
+            return pinned
+        return tuple(
+            replace(row, carries=link)
+            for row in pinned
+            if self.is_timed or row.loops[-1].dyad.hosts not in _FOUR_BAR_CURVES
+            for host, link in zip(row.loops[-1].dyad.hosts, row.loops[-1].links, strict=True)
+            if host != 1
+        )
+
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        if word in self.kinds:
+        if word in self.kinds and self.rows(word):
             return ""
+        if word in self.kinds:
+            return (
+                f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
+                "it must be four-bar, or another six-bar"
+            )
         return f'mechanism is {word}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
 
     @property

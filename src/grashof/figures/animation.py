@@ -219,7 +219,7 @@ def _carried(subject: Subject, state: Position) -> list[Placement]:
     if subject.problem is None:
         return []
     task = subject.problem.task
-    angles = state.theta3 + subject.linkage.body_angle
+    angles = state.carrying + subject.linkage.body_angle
     poses = zip(state.p, angles.tolist(), strict=True)
     found = [parts.body_outline(task, place, angle) for place, angle in poses]
     return [

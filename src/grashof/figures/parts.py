@@ -164,7 +164,7 @@ def draw_task(axes: Axes, subject: Subject) -> None:
     if subject.problem is None or subject.verdict is None:
         return
     state = solve_position(subject.linkage, subject.verdict.theta2, subject.verdict.assembly)
-    draw_targets(axes, subject.problem.task, state.p, state.theta3 + subject.linkage.body_angle)
+    draw_targets(axes, subject.problem.task, state.p, state.carrying + subject.linkage.body_angle)
 
 
 def draw_targets(axes: Axes, task: Task, places: FloatArray, angles: FloatArray) -> None:

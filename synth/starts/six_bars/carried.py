@@ -92,6 +92,15 @@ class Carried:
         self.closes: BoolArray = np.isfinite(self.origin * self.along * self.output).all(axis=1)
 
 
+    @property
+    def reached(self) -> ComplexArray:
+        """The places of all joints at the targets, (n, K)."""
+        frames, given = self.frames, self.made.given
+        places = [frames[link].origin for link in (2, 3, 4, 5, 6)]
+        places += [frames[4].origin + given["r4"] * frames[4].along, frames[5].origin + given["r5"] * frames[5].along]
+        return np.concatenate([Along(each, self.unknowns).value for each in places], axis=1)
+
+
 class Placing:
     """Where linkages fit the points best: z0, z1, z2 (n, 3), which are solved for."""
 

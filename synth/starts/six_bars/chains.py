@@ -28,7 +28,7 @@ from grashof.synth.starts.six_bars.shapes import Shapes
 LONGER = 0.4  # share of drivers longer than the ground link, where either will do
 LONGER_ONES = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}
 SENSES = {"ccw": [1.0], "cw": [-1.0]}
-NO_ERROR = 1e-22  # sizes squared
+NO_ERROR = 1e-22  # sizes squared, or rad squared
 # Numbers of the best that continue, their steps, and the weight of limits, in sizes.
 STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
 
@@ -149,11 +149,16 @@ def _outputs(target: SearchTargets, at: Carried) -> _Part:
     return _Part(off - off.mean(axis=1, keepdims=True), slope)
 
 
-def linkages(target: SearchTargets, shapes: Shapes, batch: Batch) -> list[Linkage]:
-    """Linkages of a batch where they fit best, in the frame of the targets."""
+def linkages(
+    target: SearchTargets, shapes: Shapes, batch: Batch, place: Callable[[Carried], ComplexArray] | None = None
+) -> list[Linkage]:
+    """Linkages of a batch where they fit best, in the frame of the targets.
+
+    Without points `place` gives z0, z1, z2 (n, 3).
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         at = Carried(target, shapes, batch)
-        z = project(target, at)[0] if target.weights.any() else np.tile([0j, 1, 0], (len(batch), 1))
+        z = project(target, at)[0] if place is None else place(at)
         body_angle = body_turns(target, at)[1]
     made = list[Linkage]()
     for k in np.flatnonzero(at.closes):

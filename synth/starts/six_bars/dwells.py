@@ -9,9 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.problems import Box, Linkage, ProblemError, Requirements, SixBar, Task
+from grashof.problems import Linkage, ProblemError, Requirements, SixBar, Task
 from grashof.problems.values.arrays import ComplexArray
-from grashof.problems.values.box import ANYWHERE
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.tasks.dwell_task import DWELL_HOSTS
 from grashof.synth.designs.candidate import Candidate
@@ -21,6 +20,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
 from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.six_bars.placing import place_of
 
 ROUNDS = 3
 FEW = 0.25  # of the work of a round, where the reason for an empty list is looked for
@@ -122,51 +122,17 @@ class Dwells(DesignFinder):
             return None
 
     def _place(self, found: DwellLinkages, k: int, path: ComplexArray) -> tuple[float, complex, complex]:
-        """Length and direction of the ground, and O2, by the limits of lengths, size, pivots and angles."""
-        wanted = self.wanted
-        boxes = [None if box == ANYWHERE else box for box in (wanted.o2, wanted.o4)]
+        """Length and direction of the ground, and O2."""
         out = found[k : k + 1].outputs(self.aim.kind, path[None])[0]
-        low, high = self._scales(found, k, path, out)
-        scale = self.task.stroke / float(np.ptp(out.real)) if self.task.stroke else self.task.size
-        first, second = (0j if box is None else _inside(box, 0j) for box in boxes)
-        turned = wanted.angle_of("ground_angle_deg")
-        if turned is None and None not in boxes and first != second:
-            turned = float(np.angle(second - first))
-            scale = abs(second - first) if self.task.scale_free else scale
-        scale = float(np.clip(scale, low, max(low, high))) if self.task.scale_free else scale
-        turn = complex(np.exp(1j * (turned or 0.0)))
-        if boxes[1] is None:
-            return scale, turn, first
-        o2 = _inside(boxes[1], first + scale * turn) - scale * turn
-        return scale, turn, o2 if boxes[0] is None else _inside(boxes[0], o2)
-
-    def _scales(
-        self, found: DwellLinkages, k: int, path: ComplexArray, out: ComplexArray
-    ) -> tuple[float, float]:
-        """Least and greatest length of the ground by the limits of lengths and size."""
-        wanted, bars = self.wanted, _LENGTHS[:-1] if self.aim.slides else _LENGTHS
+        bars = _LENGTHS[:-1] if self.aim.slides else _LENGTHS
         lengths = {"r1": 1.0} | {name: float(getattr(found, name)[k]) for name in bars}
-        limits = [(getattr(wanted, name) or wanted.link_length, length) for name, length in lengths.items()]
         pins = [path, [0.0, 1.0], found.r2[k] * np.array([1, 1j, -1, -1j])]
         pins += [] if self.aim.slides else [[found.d[k]], found.d[k] + out]
-        reached = np.concatenate(pins)
-        limits.append((wanted.size, float(np.hypot(np.ptp(reached.real), np.ptp(reached.imag)))))
-        low, high = 0.0, np.inf
-        for limit, length in limits:
-            if limit is not None:
-                low, high = max(low, limit[0] / length), min(high, limit[1] / length)
-        return low, high
+        scale = self.task.stroke / float(np.ptp(out.real)) if self.task.stroke else None
+        return place_of(self.wanted, lengths, np.concatenate(pins), self.task.size, scale)
 
 
 _LENGTHS = ("r2", "r3", "r4", "r5", "r6")
-
-
-def _inside(box: Box, near: complex) -> complex:
-    """The middle of a box; along an axis on which it is open, the place in it nearest to another."""
-    places = []
-    for (low, high), at in zip((box.x, box.y), (near.real, near.imag), strict=True):
-        places.append((low + high) / 2 if np.isfinite(high - low) else min(max(at, low), high))
-    return complex(*places)
 
 
 def _xy(z: complex) -> tuple[float, float]:

@@ -1,0 +1,152 @@
+"""Paths, poses and functions with six-bars: whole linkages, round by round, for every row of a kind."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from grashof.problems import Linkage, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.arrays import ComplexArray
+from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.quantities.formulas import of_six_bars
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.starts.closed_loop import Batch, SearchTargets
+from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.six_bars.carried import Carried
+from grashof.synth.starts.six_bars.chains import draw, fitted, linkages
+from grashof.synth.starts.six_bars.placing import place_of
+from grashof.synth.starts.six_bars.shapes import Shapes
+from grashof.synth.theory.distinct import origin_of, pick_apart, signature
+
+DRAWS = 3000
+FINDS = "feasible finds"
+EXACT_ROUNDS = 6  # for every row
+LEVELS = (20.0, 30.0, 40.0, 50.0)  # deg: transmission angles that designs are made for, too
+MET = 1e-9  # sizes, or rad: a greater error of an exact design is none
+JUDGED, EXACT_JUDGED = 10, 24  # designs of a round
+WORSE = 3.0  # times the least error of a round
+APART = 0.03  # between designs of a round, as `distinct` counts
+# Beyond what is required, for peaks between samples: deg of transmission angle; share of the margin.
+SPARE_DEG, SPARE = 0.05, 1e-3
+
+
+@dataclass(frozen=True)
+class SixBars(DesignFinder):
+    """Six-bars through targets, or of least error."""
+
+    beginning: ClassVar[str] = "looking for six-bars"
+    exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
+
+    @staticmethod
+    def suits(scaled: ScaledProblem) -> bool:
+        """Paths, poses and functions with linkages of two loops."""
+        task = scaled.problem.task
+        return not scaled.one_loop and bool(task.in_plane or task.has_output.any())
+
+    @cached_property
+    def wanted(self) -> Requirements:
+        """Resolved, in the problem's unit."""
+        task = self.scaled.problem.task
+        return self.scaled.problem.requirements.resolved(task.size, scale_free=task.scale_free)
+
+    @cached_property
+    def rows(self) -> list[Mechanism]:
+        """The rows of the kind, with P on each link that may carry it."""
+        return list(self.scaled.problem.task.rows(self.scaled.problem.mechanism[0]))
+
+    @cached_property
+    def levels(self) -> list[float]:
+        """Transmission angles that designs are made for, deg; the first is the required one."""
+        least = self.wanted.transmission_min_deg
+        return [least, *(level for level in LEVELS if level > least + 1)]
+
+    @property
+    def rounds_a_pass(self) -> int:
+        """Of exact designs several for each row; of least squares one for each row and transmission angle."""
+        return len(self.rows) * max(EXACT_ROUNDS if self.scaled.exact else 0, len(self.levels))
+
+    def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
+        """The best of some thousand linkages of one row, for one transmission angle."""
+        if number >= self.rounds_a_pass:
+            return None
+        level, place = divmod(number, len(self.rows))
+        found = self._found(self.rows[place], self.levels[level % len(self.levels)], rng, size)
+        return Round(found, {FINDS: len(found)}, size=size)
+
+    def follow(self, design: Candidate) -> Sequence[Proposal]:
+        """The design itself."""
+        return [design.linkage]
+
+    def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> Sequence[Proposal]:
+        """The best of a round for every row."""
+        del required, key
+        return [each for row in self.rows for each in self._found(row, self.levels[0], rng, 1)[:3]]
+
+    def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
+        """That no linkage came through all targets, where that was looked for."""
+        if not self.scaled.exact or counts.get(FINDS):
+            return ""
+        return f"no {self.scaled.problem.mechanism[0]} came through all targets"
+
+    def _found(self, row: Mechanism, level: float, rng: np.random.Generator, size: int) -> list[Linkage]:
+        """Distinct linkages of a row, best first, in the problem's unit."""
+        target, shapes = self.target(row), self._shapes(row, level)
+        exact = self.scaled.exact
+        with np.errstate(all="ignore"):
+            batch = draw(target, shapes, size * DRAWS, rng)
+            batch, error = fitted(target, shapes, batch, EXACT_JUDGED if exact else 1)
+            root = np.sqrt(error / len(target.points))
+            good = root <= (MET if exact else WORSE * root[0])
+            made, error = self._linkages(target, shapes, batch[good]), error[good]
+        if not made:
+            return []
+        origin = origin_of(self.scaled.problem.task)
+        signatures = np.array([signature(each, origin) for each in made])
+        score = -np.arange(len(made), dtype=np.float64)
+        picked = pick_apart(signatures, score, APART, EXACT_JUDGED if exact else JUDGED)
+        return [made[k] for k in picked]
+
+    def target(self, row: Mechanism) -> SearchTargets:
+        """The targets of the search for a row, in its frame."""
+        task, formulas = self.scaled.problem.task, of_six_bars(row.lengths)
+        if task.in_plane:
+            return replace(SearchTargets.of(self.scaled), formulas=formulas)
+        of_ratio = {"link_ratio": formulas["link_ratio"]}  # the scale is free
+        return replace(SearchTargets.of(self.scaled), formulas=of_ratio, outputs=task.outputs)
+
+    def _shapes(self, row: Mechanism, level: float) -> Shapes:
+        """Loops that close and transmit where they have to."""
+        wanted = self.wanted
+        round_turn = self.scaled.closed
+        turning = round_turn or wanted.rotatability is not Rotatability.ANY
+        over_turn = round_turn or wanted.transmission_over is TransmissionOver.CYCLE
+        return Shapes(
+            row,
+            turning=turning,
+            margin=wanted.rotatability_margin * (1 + SPARE) if turning else 0.0,
+            transmission=float(np.radians(level + SPARE_DEG)) if level else 0.0,
+            over_turn=turning and over_turn,
+        )
+
+    def _linkages(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> list[Linkage]:
+        task, frame = self.scaled.problem.task, self.scaled.frame
+        if not task.in_plane:
+            return linkages(target, shapes, batch, self._places)
+        origin = -np.array([frame.origin.real, frame.origin.imag]) / frame.scale
+        return [each.scaled(frame.scale, origin) for each in linkages(target, shapes, batch)]
+
+    def _places(self, at: Carried) -> ComplexArray:
+        """Places by the limits, (n, 3)."""
+        return np.array([self._place(at, k) for k in range(len(at.closes))]).reshape(-1, 3)
+
+    def _place(self, at: Carried, k: int) -> tuple[complex, complex, complex]:
+        row = at.made.shapes.mechanism
+        lengths = {"r1": 1.0} | {name: float(at.made.given[name].value[k, 0]) for name in row.lengths[1:]}
+        scale, turn, o2 = place_of(self.wanted, lengths, at.reached[k], self.scaled.problem.task.size)
+        return o2, scale * turn, 0j
