@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
 class Along:
     """A vector of a link at every target as complex numbers, and its derivatives by all unknowns."""
 
-    def __init__(self, vector: Vector, unknowns: Unknowns) -> None:
+    def __init__(self, vector: Vector, unknowns: Columns) -> None:
         self._vector, self._unknowns = vector, unknowns
 
     @cached_property
@@ -30,14 +30,36 @@ class Along:
         return np.broadcast_to(as_complex(Vector(x, y)), self._unknowns.theta2.shape)
 
     @cached_property
+    def columns(self) -> ComplexArray:
+        """Derivatives by the columns of `Made`, (n, N, K)."""
+        return np.asarray(self._vector.x.slope + 1j * self._vector.y.slope)
+
+    @cached_property
     def slope(self) -> ComplexArray:
-        """Shape (n, N, M)."""
+        """Derivatives by all unknowns, (n, N, M)."""
         if not isinstance(self._vector.x, Dual):  # a slide stands still
             return np.zeros(self._unknowns.by_angle.shape, dtype=np.complex128)
-        return self._unknowns.slope(self._vector.x.slope + 1j * self._vector.y.slope)
+        return np.asarray(self._unknowns.slope(self.columns))
 
 
-class Unknowns:
+class Columns(Protocol):
+    """Columns of derivatives, at driver angles (n, N)."""
+
+    theta2: FloatArray
+
+    @property
+    def count(self) -> int:
+        """Their number M."""
+
+    @property
+    def by_angle(self) -> FloatArray:
+        """Derivatives of the driver angles, (n, N, M)."""
+
+    def slope(self, by_columns: Any) -> Any:
+        """Derivatives (n, N, M), or (n, 1, M) of what no target affects, from those by the columns of `Made`."""
+
+
+class Unknowns(Columns):
     """The driver angles of a batch, (n, N) at the targets and (n, 2) at the ends of the task motion, ascending.
 
     Derivatives by the columns of `Made` become those by all M unknowns.

@@ -11,7 +11,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import View
-from grashof.synth.starts.six_bars.carried import Along, Carried, Placing
+from grashof.synth.starts.six_bars.carried import Along, Carried, Columns, Placing
 from grashof.synth.starts.six_bars.shapes import Shapes
 
 
@@ -21,8 +21,10 @@ class SixBarView(View):
     O4 = O2 + g, all lengths of the shape are times |g|, and P is z2 along its link from the origin of that.
     """
 
-    def __init__(self, shapes: Shapes, at: Carried, placing: Placing | None) -> None:
-        self._at, self._shapes, row = at, shapes, shapes.mechanism
+    def __init__(
+        self, shapes: Shapes, at: Carried, placing: Placing | None, columns: Columns | None = None
+    ) -> None:
+        self._at, self._columns, row = at, columns or at.unknowns, shapes.mechanism
         self.o2, self._ground, self.ap = self._places(placing)
         self.r1 = np.hypot(self._ground.x, self._ground.y)
         for name in row.lengths[1:]:
@@ -30,14 +32,14 @@ class SixBarView(View):
         self.o4, self.theta1 = self.o2 + self._ground, np.arctan2(self._ground.y, self._ground.x)
         bar = row.loops[-1].bars[row.carries - row.loops[-1].links[0]]
         self.bp = self.ap - self._number(at.made.given[bar]) * self._ground
-        theta2 = Dual(at.unknowns.theta2, lambda: at.unknowns.by_angle)
+        theta2 = Dual(at.unknowns.theta2, lambda: self._columns.by_angle)
         first, last = theta2.column(0), theta2.column(-1)
         self.theta2_start, self.direction = self.theta1 + first, at.direction[:, None]
         self.driver_turn = np.abs(last - first)
 
     def _places(self, placing: Placing | None) -> tuple[Vector, ...]:
         """O2, g and z2."""
-        count, width = len(self._at.direction), self._at.unknowns.count
+        count, width = len(self._at.direction), self._columns.count
         if placing is None:
             z = np.tile(np.array([0j, 1, 0]), (count, 1))
             return _vectors(z, np.zeros((count, 3, width), dtype=np.complex128))
@@ -45,7 +47,7 @@ class SixBarView(View):
 
     def _number(self, each: Dual) -> Dual:
         """A dimension with derivatives by all unknowns."""
-        return Dual(each.value, lambda: self._at.unknowns.slope(each.slope))
+        return Dual(each.value, lambda: self._columns.slope(each.slope))
 
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
@@ -60,7 +62,7 @@ class SixBarView(View):
 
     def _standing(self, of_shape: Vector) -> Vector:
         """A point of the shape where the linkage stands."""
-        at = Along(of_shape, self._at.unknowns)
+        at = Along(of_shape, self._columns)
         x, y = (Dual(getattr(at.value, part), _part(at, part)) for part in ("real", "imag"))
         placed: Vector = self.o2 + x * self._ground + y * self._ground.left
         return placed
