@@ -23,6 +23,7 @@ _BEND = np.radians(4)  # largest turn between chords
 _VISIBLE = 0.002  # share of the extent: turns between shorter chords do not count, as at a cusp
 _MOST = 2000
 _ROUNDS = 24
+_LENGTH_SAME, _LENGTH_MOST = 1e-11, 50_000  # share by which lengths may differ; samples of a turn at most
 
 
 class CouplerMotion(NamedTuple):
@@ -56,6 +57,21 @@ def coupler_curve(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """P = x + i y (...) and two derivatives by theta2; NaN where open, not finite in dead positions."""
     return coupler_motion(linkage, theta2, assembly)[:3]
+
+
+def closed_length(linkage: Linkage) -> float:
+    """The length of the coupler curve over a full turn of the driver; NaN where it does not turn fully.
+
+    By the trapezoidal rule, whose error falls exponentially on periodic functions.
+    """
+    length, count = np.inf, _FINE
+    while count <= _LENGTH_MOST:
+        theta2 = float(linkage.theta1) + np.arange(count) * TURN / count
+        before, length = length, float(np.abs(coupler_curve(linkage, theta2)[1]).mean() * TURN)
+        if not abs(length - before) > _LENGTH_SAME * length:
+            break
+        count *= 2
+    return length
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.curves.coupler_curve import closed_length
 from grashof.analysis.judge.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
@@ -79,7 +80,20 @@ def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets,
 
 def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     targets, motion = meet(linkage, task, wanted)
-    return Met(targets, motion, targets.theta2, targets.assembly)
+    most = task.most_length_ratio(linkage.mechanism)
+    if not np.isfinite(most):
+        return Met(targets, motion, targets.theta2, targets.assembly)
+    ratio = closed_length(linkage) / task.spline_length
+    defects = [] if ratio <= most else [_too_long(ratio, most)]
+    figures = {"length_ratio": ratio}
+    return Met(targets, motion, targets.theta2, targets.assembly, figures=figures, defects=tuple(defects))
+
+
+def _too_long(ratio: float, most: float) -> Defect:
+    """The defect of a curve that strays between the points; without a number where no turn closes it."""
+    what = "the length of the curve over that of the spline through the points"
+    miss = ratio / most - 1 if np.isfinite(ratio) else np.inf
+    return Defect("length_ratio_max", what, ratio, f"up to {most:.6g}", miss)
 
 
 def _as_function(linkage: Linkage, task: Task, wanted: Requirements) -> Met:

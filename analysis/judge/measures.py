@@ -244,6 +244,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **dict.fromkeys(("band", "slide_band"), partial(_of_dwell, "band")),
     **dict.fromkeys(("band_made", "slide_band_made"), _band_made),
     "swing": partial(_of_dwell, "swing"),
+    "length_ratio": attrgetter("verdict.length_ratio"),
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,

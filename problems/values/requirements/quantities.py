@@ -261,6 +261,10 @@ MEASURED: dict[str, Quantity] = {
             "swing", "swing", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL_OF_LINK, digits=4,
             full="swing of the last link over the turn",
         ),
+        Quantity(
+            "length_ratio", "length ratio", Unit.RATIO, Scope.CYCLE, -1, Needs.CLOSED,
+            about="length of the curve of P over that of the closed spline through the points, where limited",
+        ),
         *(_move(name) for name in DIMENSIONS if name not in _FIRST.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.checks import GREATEST, counted, finite_rows, task_size, true_or_false
+from grashof.problems.values.checks import (
+    GREATEST,
+    counted,
+    finite_rows,
+    number_within,
+    task_size,
+    true_or_false,
+)
 from grashof.problems.values.errors import ProblemError
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.tasks.target_checks import LEAST_ZONE, driver_timing, finite_angles, zone_sizes
 from grashof.problems.values.tasks.task import Task, some_columns
 from grashof.problems.values.value_bases import set_fields
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
+RATIOS, USUAL_RATIO = (1.0, 1e6), 1.02  # of the length of a curve to that of the spline
+
+
+def lengths_of(polygon: FloatArray) -> FloatArray:
+    """Length of a polygon up to each corner, shape (M,)."""
+    steps = np.hypot(*np.diff(polygon, axis=0).T)
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -31,12 +50,17 @@ class PathTask(Task):
         One turn of the driver takes P round all points and back to the first.
     within : float or array_like, shape (N,), length, optional
         How far each point may be missed; the objective then decides.
+    length_ratio_max : float, optional
+        Of closed paths: greatest length of the coupler curve over that of the closed cubic spline through
+        the points, so that no curve strays between them. By default 1.02 for six-bars, without limit for
+        others.
 
     Raises
     ------
     ProblemError
         Fewer than three points, numbers that are not finite or beyond 1e20, a size below 1e-20, two
-        consecutive equal points (the last may repeat the first), or a timing that is not one.
+        consecutive equal points (the last may repeat the first), a timing that is not one, or a ratio below
+        1 or of a path that is not closed.
 
     Examples
     --------
@@ -52,6 +76,7 @@ class PathTask(Task):
     timing: FloatArray | None
     closed: bool
     within: FloatArray | None
+    length_ratio_max: float | None
 
     def __init__(
         self,
@@ -60,6 +85,7 @@ class PathTask(Task):
         timing: npt.ArrayLike | None = None,
         closed: bool = False,
         within: npt.ArrayLike | None = None,
+        length_ratio_max: float | None = None,
     ) -> None:
         places = finite_rows(points, 2, "path.points", "a point [x, y]", GREATEST)
         if len(places) < 3:
@@ -69,12 +95,17 @@ class PathTask(Task):
                 f"path.points[{index}] and path.points[{index + 1}] are equal; consecutive points must differ"
             )
         size = task_size(places, "path.points")
+        if length_ratio_max is not None:
+            number_within(length_ratio_max, *RATIOS, "path.length_ratio_max")
+            if not closed:
+                raise ProblemError("path.length_ratio_max goes with path.closed = true; remove it")
         set_fields(
             self,
             closed=true_or_false(closed, "path.closed"),
             within=zone_sizes(within, len(places), "path.within", least=LEAST_ZONE * size),
             timing=driver_timing(timing, len(places), "path", "point"),
             points=places,
+            length_ratio_max=None if length_ratio_max is None else float(length_ratio_max),
         )
 
     @classmethod
@@ -85,14 +116,50 @@ class PathTask(Task):
         timing_deg: npt.ArrayLike | None = None,
         closed: bool = False,
         within: npt.ArrayLike | None = None,
+        length_ratio_max: float | None = None,
     ) -> PathTask:
         """Task with its timing in degrees, as problem files write it."""
         timing = None if timing_deg is None else np.radians(finite_angles(timing_deg, "path"))
-        return cls(points, timing=timing, closed=closed, within=within)
+        return cls(
+            points, timing=timing, closed=closed, within=within, length_ratio_max=length_ratio_max
+        )
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> PathTask:  # noqa: ARG002
         """Some of the points, moved; they have no angles."""
         return replace(self, points=positions, **some_columns(self, index, "timing", "within"))
+
+    def most_length_ratio(self, kind: Mechanism) -> float:
+        """`length_ratio_max` as it applies to a kind of linkage; infinite without a limit."""
+        if not self.closed:
+            return np.inf
+        usual = USUAL_RATIO if len(kind.loops) > 1 else np.inf
+        return usual if self.length_ratio_max is None else self.length_ratio_max
+
+    @property
+    def spline(self) -> CubicSpline:
+        """The closed cubic spline through the points over the length of their polygon, from 0 on."""
+        from scipy.interpolate import CubicSpline  # here: few problems need it
+
+        places = self.points[:-1] if self.returns else self.points
+        ring = np.concatenate([places, places[:1]])
+        return CubicSpline(lengths_of(ring), ring, bc_type="periodic")
+
+    @property
+    def spline_length(self) -> float:
+        """The length of that spline.
+
+        Examples
+        --------
+        >>> turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+        >>> ring = PathTask(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
+        >>> round(ring.spline_length / (2 * np.pi), 4)
+        1.0
+        """
+        spline = self.spline
+        nodes, weights = np.polynomial.legendre.leggauss(8)
+        half = np.diff(spline.x)[:, None] / 2
+        at = spline.x[:-1, None] + half * (1 + nodes)
+        return float((half * weights * np.linalg.norm(spline(at, 1), axis=-1)).sum())
 
     @property
     def positions(self) -> FloatArray:

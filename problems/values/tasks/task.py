@@ -65,6 +65,8 @@ class Task(ReadOnly, ABC):
     stroke: float | None = None
     #: Driver rotation over which the output stands still, rad.
     dwell: float | None = None
+    #: Greatest length of the curve over that of the closed spline through the points, where it is stated.
+    length_ratio_max: float | None = None
     #: Time of the slow stroke over that of the quick one; NaN where free.
     time_ratio: float = np.nan
 
@@ -146,6 +148,10 @@ class Task(ReadOnly, ABC):
     def sized(self, reference: float) -> Self:  # noqa: ARG002
         """The same with a length that counts as the size, where the scale is free."""
         return self
+
+    def most_length_ratio(self, kind: Mechanism) -> float:  # noqa: ARG002
+        """The greatest length of the curve of P over that of the path; infinite without a limit."""
+        return np.inf
 
     @property
     def is_timed(self) -> bool:

@@ -206,7 +206,8 @@ def _motor(spec: DynamicsSpec) -> str:
 def _targets(task: Task, unit: str) -> str:
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
-    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}"
+    ratio = "" if task.length_ratio_max is None else f", length ratio up to {task.length_ratio_max:g}"
+    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{ratio}"
 
 
 def _motion(task: Task, unit: str) -> str:

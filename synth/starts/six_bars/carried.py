@@ -7,14 +7,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
 from grashof.synth.loop.chain import chained
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import as_complex
 from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, by_angles, driver_angles
 from grashof.synth.starts.loop_search import back_substituted, project
-from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
+from grashof.synth.starts.six_bars.shapes import ENDS, Shapes, plain
 
 
 class Along:
@@ -121,6 +121,18 @@ class Carried:
         places = [frames[link].origin for link in (2, 3, 4, 5, 6)]
         places += [frames[4].origin + given["r4"] * frames[4].along, frames[5].origin + given["r5"] * frames[5].along]
         return np.concatenate([Along(each, self.unknowns).value for each in places], axis=1)
+
+
+def around(shapes: Shapes, batch: Batch, z: ComplexArray, count: int) -> ComplexArray:
+    """P at even driver angles of a turn, (n, count), of linkages at places z0, z1, z2 (n, 3)."""
+    free, theta2 = batch.unknowns[:, : shapes.width], np.arange(count) * TURN / count
+    made = shapes.made(free, batch.longer_driver, batch.assembly, np.zeros((len(batch), ENDS)))
+    driver = Vector(np.cos(theta2), np.sin(theta2))
+    row = shapes.mechanism
+    frames = chained(row, plain(made.given), driver, list(batch.assembly.T[..., None])).frames
+    origin, along = (as_complex(each) for each in frames[row.carries])
+    found: ComplexArray = z[:, :1] + z[:, 1:2] * origin + z[:, 2:] * along
+    return found
 
 
 class Placing:

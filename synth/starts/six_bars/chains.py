@@ -20,7 +20,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, body_turns, by_body_turns
 from grashof.synth.starts.limit_residuals import limit_rows, slopes_of
-from grashof.synth.starts.loop_search import drawn_gaps, improve, project
+from grashof.synth.starts.loop_search import drawn_gaps, improve
 from grashof.synth.starts.six_bars.carried import Carried, Placing
 from grashof.synth.starts.six_bars.limits import SixBarView
 from grashof.synth.starts.six_bars.shapes import Shapes
@@ -149,16 +149,10 @@ def _outputs(target: SearchTargets, at: Carried) -> _Part:
     return _Part(off - off.mean(axis=1, keepdims=True), slope)
 
 
-def linkages(
-    target: SearchTargets, shapes: Shapes, batch: Batch, place: Callable[[Carried], ComplexArray] | None = None
-) -> list[Linkage]:
-    """Linkages of a batch where they fit best, in the frame of the targets.
-
-    Without points `place` gives z0, z1, z2 (n, 3).
-    """
+def linkages(target: SearchTargets, shapes: Shapes, batch: Batch, z: ComplexArray) -> list[Linkage]:
+    """Linkages of a batch at places z0, z1, z2 (n, 3), in the frame of the targets."""
     with np.errstate(divide="ignore", invalid="ignore"):
         at = Carried(target, shapes, batch)
-        z = project(target, at)[0] if place is None else place(at)
         body_angle = body_turns(target, at)[1]
     made = list[Linkage]()
     for k in np.flatnonzero(at.closes):

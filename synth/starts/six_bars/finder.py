@@ -9,8 +9,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, Requirements, Rotatability, TransmissionOver
-from grashof.problems.values.arrays import ComplexArray
+from grashof.problems import Linkage, PathTask, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
@@ -18,13 +18,19 @@ from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.finder import DesignFinder
-from grashof.synth.starts.six_bars.carried import Carried
+from grashof.synth.starts.loop_search import project
+from grashof.synth.starts.six_bars.carried import Carried, around
 from grashof.synth.starts.six_bars.chains import draw, fitted, linkages
+from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
+from grashof.synth.starts.thinning import thinned
 from grashof.synth.theory.distinct import origin_of, pick_apart, signature
 
 DRAWS = 3000
+FEW_TARGETS = 14  # of a longer untimed task, among which linkages are found first
+CLOSED_TARGETS = 48  # places on a closed path, so that no curve fits the points alone
+ROUND = 512  # driver angles for the length of a curve
 FINDS = "feasible finds"
 EXACT_ROUNDS = 6  # for every row
 LEVELS = (20.0, 30.0, 40.0, 50.0)  # deg: transmission angles that designs are made for, too
@@ -96,14 +102,21 @@ class SixBars(DesignFinder):
 
     def _found(self, row: Mechanism, level: float, rng: np.random.Generator, size: int) -> list[Linkage]:
         """Distinct linkages of a row, best first, in the problem's unit."""
-        target, shapes = self.target(row), self._shapes(row, level)
-        exact = self.scaled.exact
+        target, shapes, exact = self.target(row), self._shapes(row, level), self.scaled.exact
         with np.errstate(all="ignore"):
-            batch = draw(target, shapes, size * DRAWS, rng)
-            batch, error = fitted(target, shapes, batch, EXACT_JUDGED if exact else 1)
+            some, index = (target, None) if target.timed else thinned(target, FEW_TARGETS)
+            batch = draw(some, shapes, size * DRAWS, rng)
+            batch, error = fitted(some, shapes, batch, EXACT_JUDGED if exact else 1)
+            if some is target:
+                at = Carried(target, shapes, batch)
+                z = self._places(at) if target.outputs is not None else project(target, at)[0]
+            else:
+                batch, z, error = fitted_to_all(target, some, shapes, batch, index)
+                target = replace(target, wanted=replace(target.wanted, order=False))
             root = np.sqrt(error / len(target.points))
-            good = root <= (MET if exact else WORSE * root[0])
-            made, error = self._linkages(target, shapes, batch[good]), error[good]
+            good = self._kept(shapes, batch, z) & (root <= MET if exact else np.isfinite(root))
+            good &= root <= WORSE * root[good].min(initial=np.inf) if not exact else True
+            made = self._linkages(target, shapes, batch[good], z[good])
         if not made:
             return []
         origin = origin_of(self.scaled.problem.task)
@@ -112,13 +125,29 @@ class SixBars(DesignFinder):
         picked = pick_apart(signatures, score, APART, EXACT_JUDGED if exact else JUDGED)
         return [made[k] for k in picked]
 
+    def _kept(self, shapes: Shapes, batch: Batch, z: ComplexArray) -> BoolArray:
+        """Linkages whose curve of P does not stray between the points, (n,)."""
+        most = self.scaled.problem.task.most_length_ratio(shapes.mechanism)
+        if not np.isfinite(most):
+            return np.ones(len(batch), dtype=bool)
+        p = around(shapes, batch, z, ROUND)
+        length = np.abs(np.diff(p, axis=1, append=p[:, :1])).sum(axis=1)
+        kept: BoolArray = length <= most * self.scaled.problem.task.spline_length / self.scaled.frame.scale
+        return kept
+
     def target(self, row: Mechanism) -> SearchTargets:
         """The targets of the search for a row, in its frame."""
         task, formulas = self.scaled.problem.task, of_six_bars(row.lengths)
-        if task.in_plane:
-            return replace(SearchTargets.of(self.scaled), formulas=formulas)
-        of_ratio = {"link_ratio": formulas["link_ratio"]}  # the scale is free
-        return replace(SearchTargets.of(self.scaled), formulas=of_ratio, outputs=task.outputs)
+        target = SearchTargets.of(self.scaled)
+        if not task.in_plane:  # the scale is free
+            of_ratio = {"link_ratio": formulas["link_ratio"]}
+            return replace(target, formulas=of_ratio, outputs=task.outputs)
+        if isinstance(task, PathTask) and task.closed and not task.is_timed and not self.scaled.exact:
+            places = self.scaled.frame.inward(even_points(task, max(CLOSED_TARGETS, len(target.points))))
+            nothing = np.zeros(len(places))
+            rest = {"turns": nothing, "turn_weights": nothing, "timing": nothing}
+            target = replace(target, points=places, weights=np.ones(len(places)), **rest)
+        return replace(target, formulas=formulas)
 
     def _shapes(self, row: Mechanism, level: float) -> Shapes:
         """Loops that close and transmit where they have to."""
@@ -134,12 +163,14 @@ class SixBars(DesignFinder):
             over_turn=turning and over_turn,
         )
 
-    def _linkages(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> list[Linkage]:
-        task, frame = self.scaled.problem.task, self.scaled.frame
-        if not task.in_plane:
-            return linkages(target, shapes, batch, self._places)
+    def _linkages(
+        self, target: SearchTargets, shapes: Shapes, batch: Batch, z: ComplexArray
+    ) -> list[Linkage]:
+        made, frame = linkages(target, shapes, batch, z), self.scaled.frame
+        if not self.scaled.problem.task.in_plane:
+            return made
         origin = -np.array([frame.origin.real, frame.origin.imag]) / frame.scale
-        return [each.scaled(frame.scale, origin) for each in linkages(target, shapes, batch)]
+        return [each.scaled(frame.scale, origin) for each in made]
 
     def _places(self, at: Carried) -> ComplexArray:
         """Places by the limits, (n, 3)."""
@@ -150,3 +181,10 @@ class SixBars(DesignFinder):
         lengths = {"r1": 1.0} | {name: float(at.made.given[name].value[k, 0]) for name in row.lengths[1:]}
         scale, turn, o2 = place_of(self.wanted, lengths, at.reached[k], self.scaled.problem.task.size)
         return o2, scale * turn, 0j
+
+
+def even_points(task: PathTask, count: int) -> FloatArray:
+    """Even places (count, 2) on the closed spline of a path, from its first point on."""
+    spline = task.spline
+    places: FloatArray = spline(np.arange(count) * spline.x[-1] / count)
+    return places

@@ -184,7 +184,7 @@ class Made:
             round_turn = way is turn
             low, high = self.ends[:, :1], self.ends[:, 1:]
             theta2 = np.broadcast_to(way, (len(low), SAMPLES)) if round_turn else low + (high - low) * way
-            gap = self._gap({name: _plain(each) for name, each in self.given.items()}, theta2)
+            gap = self._gap(plain(self.given), theta2)
             for index in (np.argmin(gap, axis=1), np.argmax(gap, axis=1)):
                 if round_turn:
                     at: Any = way[index][:, None]
@@ -199,8 +199,12 @@ class Made:
         return gap_of(self.shapes.mechanism, given, driver, list(self.sides.T[..., None]))
 
 
-def _plain(each: Any) -> Any:
+def plain(given: Mapping[str, Any]) -> dict[str, Any]:
     """Dimensions without derivatives."""
+    return {name: _plain(each) for name, each in given.items()}
+
+
+def _plain(each: Any) -> Any:
     if isinstance(each, Vector):
         return Vector(_plain(each.x), _plain(each.y))
     return each.value if isinstance(each, Dual) else each

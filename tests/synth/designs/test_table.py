@@ -27,7 +27,7 @@ torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, i
 caution, hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
 share_within_linear, share_within_made, offset, slide_angle_deg,
 assembly_2, hosts, point_link, r5, r6, c_u, c_v, d_u, d_v, offset_2, slide_angle_2_deg, dwell_from_deg,
-dwell_to_deg, band_deg, band, band_made_deg, band_made, swing_deg, move_r5, move_r6,
+dwell_to_deg, band_deg, band, band_made_deg, band_made, swing_deg, length_ratio, move_r5, move_r6,
 move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,
 cylinder_force_max

@@ -10,6 +10,8 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Requirements, SixBar, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.starts.loop_search import project
+from grashof.synth.starts.six_bars.carried import Carried
 from grashof.synth.starts.six_bars.chains import Shapes, draw, fitted, linkages
 from grashof.synth.starts.closed_loop import SearchTargets
 
@@ -41,7 +43,10 @@ def found(name: str, target: SearchTargets, seed: int = 1) -> list[Linkage]:
     """Those of no error to speak of."""
     shapes = Shapes(EVERY[name].mechanism)
     batch, error = fitted(target, shapes, draw(target, shapes, 3000, np.random.default_rng(seed)), 6)
-    return linkages(target, shapes, batch[error < 1e-18])
+    batch = batch[error < 1e-18]
+    nowhere = np.tile([0j, 1, 0], (len(batch), 1))
+    z = project(target, Carried(target, shapes, batch))[0] if target.weights.any() else nowhere
+    return linkages(target, shapes, batch, z)
 
 
 def p_of(linkage: Linkage, theta2: FloatArray) -> ComplexArray:
