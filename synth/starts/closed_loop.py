@@ -35,6 +35,7 @@ class SearchTargets:
     # (N,), rad: rotation of the last link from the first target, in the driver's sense
     outputs: FloatArray | None = None
     formulas: Formulas | None = None  # by default those of the kind
+    spare: float = 0.0  # share by which limits are narrower here
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
@@ -42,7 +43,9 @@ class SearchTargets:
         limited = parts_of(
             self.wanted.limited, self.kind.formulas if self.formulas is None else self.formulas
         )
-        rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
+        rows = tuple(
+            (name, part, narrowed(range_of(self.wanted, name, part), self.spare)) for name, part in limited
+        )
         object.__setattr__(self, "limited", rows)
 
     @classmethod
@@ -96,6 +99,16 @@ class SearchTargets:
         if self.timed:
             return self.kind.proportions + 1
         return self.kind.proportions + len(self.points) + self.wanted.order
+
+
+def narrowed(limits: Limits, share: float) -> Limits:
+    """Limits narrower by a share of their width, or of the one that there is."""
+    low, high = limits
+    if np.isfinite(high - low):
+        less = share * (high - low)
+        return low + less, high - less
+    low, high = (x + sign * share * abs(x) if np.isfinite(x) else x for x, sign in ((low, 1), (high, -1)))
+    return low, high
 
 
 @dataclass(frozen=True, slots=True)

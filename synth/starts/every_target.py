@@ -163,9 +163,7 @@ def _overstepped(
     return oversteps(target, Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z))
 
 
-def _stepped(
-    target: SearchTargets, batch: Batch, model: Linear, damping: FloatArray, shape: int
-) -> Batch:
+def _stepped(target: SearchTargets, batch: Batch, model: Linear, damping: FloatArray, shape: int) -> Batch:
     """Linkages after a damped step."""
     common, own, gap, count = model.common, model.own, model.gap, model.gap.shape[1]
     flat, transposed = _flat(common), np.swapaxes(_flat(common), 1, 2)

@@ -9,7 +9,14 @@ from typing import Any
 from grashof.problems.values.checks import each_checked, hint, refuse
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, DyadKind, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanism import (
+    MECHANISMS,
+    ONE_LOOP,
+    WORDS,
+    DyadKind,
+    Mechanism,
+    Parameter,
+)
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
 

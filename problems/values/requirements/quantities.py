@@ -17,8 +17,8 @@ import numpy as np
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, Mechanism, Parameter
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, SLIDER_CRANK, WORDS, having
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, SLIDER_CRANK, having
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import set_fields

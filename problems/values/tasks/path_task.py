@@ -120,9 +120,7 @@ class PathTask(Task):
     ) -> PathTask:
         """Task with its timing in degrees, as problem files write it."""
         timing = None if timing_deg is None else np.radians(finite_angles(timing_deg, "path"))
-        return cls(
-            points, timing=timing, closed=closed, within=within, length_ratio_max=length_ratio_max
-        )
+        return cls(points, timing=timing, closed=closed, within=within, length_ratio_max=length_ratio_max)
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> PathTask:  # noqa: ARG002
         """Some of the points, moved; they have no angles."""
@@ -145,14 +143,14 @@ class PathTask(Task):
         return CubicSpline(lengths_of(ring), ring, bc_type="periodic")
 
     @property
-    def spline_length(self) -> float:
-        """The length of that spline.
+    def path_length(self) -> float:
+        """The length of the closed spline through the points.
 
         Examples
         --------
         >>> turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
         >>> ring = PathTask(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
-        >>> round(ring.spline_length / (2 * np.pi), 4)
+        >>> round(ring.path_length / (2 * np.pi), 4)
         1.0
         """
         spline = self.spline

@@ -154,6 +154,11 @@ class Task(ReadOnly, ABC):
         return np.inf
 
     @property
+    def path_length(self) -> float:
+        """The length of the path that is limited so; NaN where none is."""
+        return np.nan
+
+    @property
     def is_timed(self) -> bool:
         """Whether the driver rotations are prescribed."""
         return self.timing is not None

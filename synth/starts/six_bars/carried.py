@@ -56,14 +56,11 @@ class Columns(Protocol):
         """Derivatives of the driver angles, (n, N, M)."""
 
     def slope(self, by_columns: Any) -> Any:
-        """Derivatives (n, N, M), or (n, 1, M) of what no target affects, from those by the columns of `Made`."""
+        """Derivatives (n, N, M), or (n, 1, M), from those by the columns of `Made`."""
 
 
 class Unknowns(Columns):
-    """The driver angles of a batch, (n, N) at the targets and (n, 2) at the ends of the task motion, ascending.
-
-    Derivatives by the columns of `Made` become those by all M unknowns.
-    """
+    """The unknowns of a batch, and its driver angles: (n, N) at targets, (n, 2) at the ends, ascending."""
 
     def __init__(self, target: SearchTargets, shapes: Shapes, batch: Batch) -> None:
         self._target, self._shapes, self._batch = target, shapes, batch
@@ -74,7 +71,7 @@ class Unknowns(Columns):
     @property
     def count(self) -> int:
         """Their number."""
-        return self._batch.unknowns.shape[1]
+        return int(self._batch.unknowns.shape[1])
 
     @cached_property
     def by_angle(self) -> FloatArray:
@@ -111,15 +108,18 @@ class Carried:
         self.by_origin, self.by_along, self.by_output = every
         self.direction = batch.direction  # (n,), sense of the driver
         self.origin, self.along, self.output = (each.value for each in every)
-        self.closes: BoolArray = np.isfinite(self.origin * self.along * self.output).all(axis=1)
-
+        closes = np.isfinite(self.origin * self.along * self.output)
+        self.closes: BoolArray = np.asarray(closes.all(axis=1))
 
     @property
     def reached(self) -> ComplexArray:
         """The places of all joints at the targets, (n, K)."""
         frames, given = self.frames, self.made.given
         places = [frames[link].origin for link in (2, 3, 4, 5, 6)]
-        places += [frames[4].origin + given["r4"] * frames[4].along, frames[5].origin + given["r5"] * frames[5].along]
+        places += [
+            frames[4].origin + given["r4"] * frames[4].along,
+            frames[5].origin + given["r5"] * frames[5].along,
+        ]
         return np.concatenate([Along(each, self.unknowns).value for each in places], axis=1)
 
 

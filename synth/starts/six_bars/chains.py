@@ -1,8 +1,8 @@
-"""Linkages of any mechanism that come near points, angles and outputs: many at once, by rows of `MECHANISMS`.
+"""Linkages of any mechanism that come near points, angles and outputs: many at once.
 
-A linkage is a shape (see `shapes`) and its driver angles at the targets. P = z0 + z1 Q + z2 e, with the origin
-Q and direction e of the link that carries it, is linear in z0, z1, z2, which are solved for exactly (variable
-projection, see `loop_search`). Loops close by construction.
+A linkage is a shape (see `shapes`) and its driver angles at the targets. P = z0 + z1 Q + z2 e, with the
+origin Q and direction e of the link that carries it, is linear in z0, z1, z2, which are solved for exactly
+(variable projection, see `loop_search`). Loops close by construction.
 """
 
 from __future__ import annotations
@@ -92,8 +92,12 @@ class Fitting:
         placing = Placing(target, at) if target.weights.any() else None
         parts = [] if placing is None else [_places(target, at, placing)]
         parts += [_turns(target, at)] if target.has_angles else []
-        parts += [_outputs(target, at)] if target.outputs is not None else []
-        rows = [*limit_rows(target, SixBarView(self.shapes, at, placing))] if self.weight and target.limited else []
+        parts += [_outputs(target.outputs, at)] if target.outputs is not None else []
+        rows = (
+            [*limit_rows(target, SixBarView(self.shapes, at, placing))]
+            if self.weight and target.limited
+            else []
+        )
         if rows:
             over = np.concatenate([row.value for row in rows], axis=1)
             width = at.unknowns.count
@@ -105,7 +109,8 @@ class Fitting:
 
 def _squared(missed: FloatArray) -> FloatArray:
     """Sums of squares (n,), infinite where loops are open."""
-    return np.nan_to_num((missed**2).sum(axis=1), nan=np.inf, posinf=np.inf)
+    squared: FloatArray = np.nan_to_num((missed**2).sum(axis=1), nan=np.inf, posinf=np.inf)
+    return squared
 
 
 class _Part(NamedTuple):
@@ -118,7 +123,9 @@ class _Part(NamedTuple):
 def _places(target: SearchTargets, at: Carried, placing: Placing) -> _Part:
     """From P to the points, weighted, with derivatives of Kaufman's."""
     z = placing.z
-    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * np.sqrt(target.weights)
+    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * np.sqrt(
+        target.weights
+    )
 
     def slope() -> FloatArray:
         rest = placing.rest
@@ -136,10 +143,10 @@ def _turns(target: SearchTargets, at: Carried) -> _Part:
     return _Part(body_turns(target, at)[0], slope)
 
 
-def _outputs(target: SearchTargets, at: Carried) -> _Part:
+def _outputs(wanted: FloatArray, at: Carried) -> _Part:
     """Outputs missed with the best zero."""
     sense = at.direction[:, None]
-    off = sense * np.unwrap(np.angle(at.output), axis=1) - target.outputs
+    off = sense * np.unwrap(np.angle(at.output), axis=1) - wanted
 
     def slope() -> FloatArray:
         turned = sense[..., None] * (at.output.conj()[..., None] * at.by_output.slope).imag
@@ -155,7 +162,7 @@ def linkages(target: SearchTargets, shapes: Shapes, batch: Batch, z: ComplexArra
         at = Carried(target, shapes, batch)
         body_angle = body_turns(target, at)[1]
     made = list[Linkage]()
-    for k in np.flatnonzero(at.closes):
+    for k in np.flatnonzero(at.closes).tolist():
         given = {name: _number(each, k) for name, each in at.made.given.items()}
         linkage = _linkage(shapes, given, batch.assembly[k].tolist(), z[k], float(body_angle[k]))
         if linkage is not None:

@@ -18,8 +18,8 @@ from grashof.synth.loop.feasible import Demand
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
-from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.six_bars.placing import place_of
 
 ROUNDS = 3

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, body_turns, shares_of_turn
 from grashof.synth.starts.every_target import Linear, descended
 from grashof.synth.starts.limit_residuals import limit_rows, slopes_of
@@ -21,21 +21,21 @@ from grashof.synth.starts.six_bars.limits import SixBarView
 from grashof.synth.starts.six_bars.shapes import ENDS, Shapes
 from grashof.synth.starts.thinning import lengths_along
 
-STEPS = 60
+STEPS = 100
 WEIGHT = 10.0  # of limits: an excess by one unit counts as an error of so many sizes
 
 
 def fitted_to_all(
-    target: SearchTargets, some: SearchTargets, shapes: Shapes, batch: Batch, index: Any
+    target: SearchTargets, some: SearchTargets, shapes: Shapes, batch: Batch, index: IntArray
 ) -> tuple[Batch, ComplexArray, FloatArray]:
     """Linkages that know the targets `index`, fitted to every one; best first.
 
-    With driver angles after the shape, their places z0, z1, z2 (n, 3), and squared errors (n,), sizes squared.
+    Their driver angles follow the shape; places z0, z1, z2 (n, 3), and squared errors (n,), sizes squared.
     """
     free = replace(target, wanted=replace(target.wanted, order=False))
     with np.errstate(all="ignore"):
         z = project(some, Carried(some, shapes, batch))[0]
-        begun = _with_places(target, some, shapes, batch, index, z)
+        begun = _with_places(target, shapes, batch, index, z)
         linearised = partial(_linearised, free, shapes)
         found = descended(target, linearised, begun, shapes.width, STEPS)
         error = linearised(found).error
@@ -46,7 +46,7 @@ def fitted_to_all(
 
 
 def _with_places(
-    target: SearchTargets, some: SearchTargets, shapes: Shapes, batch: Batch, index: Any, z: ComplexArray
+    target: SearchTargets, shapes: Shapes, batch: Batch, index: IntArray, z: ComplexArray
 ) -> Batch:
     """The shape, driver angles at every target, between known ones by the length of the path, and places."""
     first, rest = batch.unknowns[:, : shapes.width], batch.unknowns[:, shapes.width :]
@@ -57,7 +57,7 @@ def _with_places(
         end = length[-1] + abs(target.points[0] - target.points[-1])
         known, at = np.concatenate([gone, np.ones((len(gone), 1))], axis=1), np.append(at, end)
     every = np.stack([np.interp(length, at, row) for row in known])
-    angles = rest[:, :1] + 2 * np.pi * batch.direction[:, None] * every
+    angles = rest[:, :1] + TURN * batch.direction[:, None] * every
     parts = np.stack([z.real, z.imag], axis=-1).reshape(len(batch), PLACES)
     return replace(batch, unknowns=np.concatenate([first, angles, np.nan_to_num(parts)], axis=1))
 
@@ -70,7 +70,7 @@ def _parts(shapes: Shapes, batch: Batch, count: int) -> tuple[Batch, ComplexArra
 
 
 class Common(Columns):
-    """Columns of what all targets share: the shape, places, the body's angle; then both ends of the motion."""
+    """Columns of what all targets share (shape, places, the body's angle), then both ends of the motion."""
 
     def __init__(self, theta2: FloatArray, shapes: Shapes, body: bool) -> None:
         self.theta2, self._shapes, self._body = theta2, shapes, body
@@ -136,7 +136,9 @@ def _linearised(target: SearchTargets, shapes: Shapes, batch: Batch) -> Linear:
             root = np.sqrt(target.turn_weights)
             turned = root[:, None] * (at.along.conj()[..., None] * by_along).imag
             body = np.broadcast_to(root[:, None], (*missed.shape, 1))
-            rows.append(np.concatenate([turned[..., :width], np.zeros((*missed.shape, PLACES)), body], axis=-1))
+            rows.append(
+                np.concatenate([turned[..., :width], np.zeros((*missed.shape, PLACES)), body], axis=-1)
+            )
             gaps.append(body_turns(target, at)[0])
             own.append(turned[..., -1])
         common = Common(at.unknowns.theta2, shapes, target.has_angles)

@@ -28,18 +28,20 @@ from grashof.synth.starts.thinning import thinned
 from grashof.synth.theory.distinct import origin_of, pick_apart, signature
 
 DRAWS = 3000
-FEW_TARGETS = 14  # of a longer untimed task, among which linkages are found first
+FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
 CLOSED_TARGETS = 48  # places on a closed path, so that no curve fits the points alone
 ROUND = 512  # driver angles for the length of a curve
 FINDS = "feasible finds"
-EXACT_ROUNDS = 6  # for every row
+LEAST_ROUNDS = 3  # of least squares for every row under the required transmission angle
 LEVELS = (20.0, 30.0, 40.0, 50.0)  # deg: transmission angles that designs are made for, too
 MET = 1e-9  # sizes, or rad: a greater error of an exact design is none
 JUDGED, EXACT_JUDGED = 10, 24  # designs of a round
+CLOSE = 3  # designs of each row that miss a requirement
 WORSE = 3.0  # times the least error of a round
 APART = 0.03  # between designs of a round, as `distinct` counts
 # Beyond what is required, for peaks between samples: deg of transmission angle; share of the margin.
 SPARE_DEG, SPARE = 0.05, 1e-3
+LIMIT_SPARE = 2e-3  # share by which other limits are narrower
 
 
 @dataclass(frozen=True)
@@ -67,22 +69,23 @@ class SixBars(DesignFinder):
         return list(self.scaled.problem.task.rows(self.scaled.problem.mechanism[0]))
 
     @cached_property
-    def levels(self) -> list[float]:
-        """Transmission angles that designs are made for, deg; the first is the required one."""
+    def plan(self) -> list[tuple[Mechanism, float]]:
+        """The row and the transmission angle, deg, of every round: the required one, and greater ones."""
         least = self.wanted.transmission_min_deg
-        return [least, *(level for level in LEVELS if level > least + 1)]
+        greater = [level for level in LEVELS if level > least + 1]
+        levels = [least, *greater] * 2 if self.scaled.exact else [least] * LEAST_ROUNDS + greater
+        return [(row, level) for level in levels for row in self.rows]
 
     @property
     def rounds_a_pass(self) -> int:
-        """Of exact designs several for each row; of least squares one for each row and transmission angle."""
-        return len(self.rows) * max(EXACT_ROUNDS if self.scaled.exact else 0, len(self.levels))
+        """One for each row and transmission angle, or more."""
+        return len(self.plan)
 
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """The best of some thousand linkages of one row, for one transmission angle."""
         if number >= self.rounds_a_pass:
             return None
-        level, place = divmod(number, len(self.rows))
-        found = self._found(self.rows[place], self.levels[level % len(self.levels)], rng, size)
+        found = self._found(*self.plan[number], rng, size)
         return Round(found, {FINDS: len(found)}, size=size)
 
     def follow(self, design: Candidate) -> Sequence[Proposal]:
@@ -92,7 +95,11 @@ class SixBars(DesignFinder):
     def closest_to(self, required: ScaledProblem, key: str, rng: np.random.Generator) -> Sequence[Proposal]:
         """The best of a round for every row."""
         del required, key
-        return [each for row in self.rows for each in self._found(row, self.levels[0], rng, 1)[:3]]
+        return [
+            each
+            for row, level in self.plan[: len(self.rows)]
+            for each in self._found(row, level, rng, 1)[:CLOSE]
+        ]
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
         """That no linkage came through all targets, where that was looked for."""
@@ -132,21 +139,21 @@ class SixBars(DesignFinder):
             return np.ones(len(batch), dtype=bool)
         p = around(shapes, batch, z, ROUND)
         length = np.abs(np.diff(p, axis=1, append=p[:, :1])).sum(axis=1)
-        kept: BoolArray = length <= most * self.scaled.problem.task.spline_length / self.scaled.frame.scale
+        kept: BoolArray = length <= most * self.scaled.problem.task.path_length / self.scaled.frame.scale
         return kept
 
     def target(self, row: Mechanism) -> SearchTargets:
         """The targets of the search for a row, in its frame."""
         task, formulas = self.scaled.problem.task, of_six_bars(row.lengths)
-        target = SearchTargets.of(self.scaled)
+        target = replace(SearchTargets.of(self.scaled), spare=LIMIT_SPARE)
         if not task.in_plane:  # the scale is free
             of_ratio = {"link_ratio": formulas["link_ratio"]}
             return replace(target, formulas=of_ratio, outputs=task.outputs)
         if isinstance(task, PathTask) and task.closed and not task.is_timed and not self.scaled.exact:
             places = self.scaled.frame.inward(even_points(task, max(CLOSED_TARGETS, len(target.points))))
-            nothing = np.zeros(len(places))
-            rest = {"turns": nothing, "turn_weights": nothing, "timing": nothing}
-            target = replace(target, points=places, weights=np.ones(len(places)), **rest)
+            free = np.zeros(len(places))
+            target = replace(target, turns=free, turn_weights=free, timing=free)
+            target = replace(target, points=places, weights=np.ones(len(places)))
         return replace(target, formulas=formulas)
 
     def _shapes(self, row: Mechanism, level: float) -> Shapes:

@@ -75,8 +75,6 @@ def _part(at: Along, part: str) -> Callable[[], FloatArray]:
 def _vectors(z: ComplexArray, by_z: ComplexArray) -> tuple[Vector, ...]:
     """Columns of complex numbers (n, K) with derivatives (n, K, M), as vectors (n, 1)."""
     return tuple(
-        Vector(
-            Dual(z[:, [k]].real, by_z[:, [k]].real), Dual(z[:, [k]].imag, by_z[:, [k]].imag)
-        )
+        Vector(Dual(z[:, [k]].real, by_z[:, [k]].real), Dual(z[:, [k]].imag, by_z[:, [k]].imag))
         for k in range(z.shape[1])
     )

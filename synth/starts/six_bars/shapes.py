@@ -158,9 +158,9 @@ class Made:
         near, far, near_mu, far_mu, first, second = np.moveaxis(numbers, -1, 0)
         shares = expit(np.stack([first, second], axis=-1))
         demand = Demand.turning(self.shapes.transmission, self.shapes.margin * self.shapes.turning)
-        wider = [length * (1 + SHORT * sign) for length, sign in ((near, -1), (far, 1))]
+        near, far = near * (1 - SHORT), far * (1 + SHORT)
         within = near_mu * (1 - SHORT), far_mu * (1 + SHORT)
-        return np.stack(bars_between(*wider, shares, demand, within), axis=-1)
+        return np.stack(bars_between(near, far, shares, demand, within), axis=-1)
 
     def _between_slides(self, numbers: FloatArray) -> FloatArray:
         """|offset - h| <= cos(mu) r5 for all distances h of C from the line through O2, to its left."""

@@ -10,10 +10,10 @@ from grashof.analysis import solve_position
 from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Requirements, SixBar, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.quantities.kinds import FOUR_BAR
+from grashof.synth.starts.closed_loop import SearchTargets
 from grashof.synth.starts.loop_search import project
 from grashof.synth.starts.six_bars.carried import Carried
 from grashof.synth.starts.six_bars.chains import Shapes, draw, fitted, linkages
-from grashof.synth.starts.closed_loop import SearchTargets
 
 ONE_LOOP: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0), (4, 0), 1, 4, 3, (2, 1)),
