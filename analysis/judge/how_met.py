@@ -83,7 +83,7 @@ def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     most = task.most_length_ratio(linkage.mechanism)
     if not np.isfinite(most):
         return Met(targets, motion, targets.theta2, targets.assembly)
-    ratio = closed_length(linkage) / task.path_length
+    ratio = closed_length(linkage) / task.curve_length
     defects = [] if ratio <= most else [_too_long(ratio, most)]
     figures = {"length_ratio": ratio}
     return Met(targets, motion, targets.theta2, targets.assembly, figures=figures, defects=tuple(defects))

@@ -15,6 +15,7 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres,
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     ROWS,
     freedoms,
@@ -25,7 +26,14 @@ from grashof.problems.values.linkages.mechanisms import (
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import BLOCKS, OF_SLIDES, ROCKERS, Needs, Quantity
+from grashof.problems.values.requirements.quantities import (
+    BLOCKS,
+    OF_SLIDES,
+    ROCKERS,
+    SLIDING,
+    Needs,
+    Quantity,
+)
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -217,11 +225,19 @@ class Problem(ReadOnly):
         having = {where: quantity.kinds for where, quantity in self._weighed_or_limited.items()}
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
-        return [
-            not_had(
-                where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds
-            )
+        slides = self.task.stroke is not None
+        able = {
+            where: [
+                kind
+                for kind in kinds
+                if not self.task.impossible(kind)
+                and (slides or kind in ONE_LOOP or not set(kinds) <= set(SLIDING))
+            ]
             for where, kinds in having.items()
+        }
+        return [
+            not_had(where, self.mechanism, kinds or having[where])
+            for where, kinds in able.items()
             if not set(kinds) & set(self.mechanism)
         ]
 

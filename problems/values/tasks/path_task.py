@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -18,21 +18,11 @@ from grashof.problems.values.checks import (
     true_or_false,
 )
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.tasks.target_checks import LEAST_ZONE, driver_timing, finite_angles, zone_sizes
 from grashof.problems.values.tasks.task import Task, some_columns
 from grashof.problems.values.value_bases import set_fields
 
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
-
-RATIOS, USUAL_RATIO = (1.0, 1e6), 1.02  # of the length of a curve to that of the spline
-
-
-def lengths_of(polygon: FloatArray) -> FloatArray:
-    """Length of a polygon up to each corner, shape (M,)."""
-    steps = np.hypot(*np.diff(polygon, axis=0).T)
-    return np.concatenate([[0.0], np.cumsum(steps)])
+RATIOS = 1.0, 1e6  # of the length of a curve to that of the spline
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -125,39 +115,6 @@ class PathTask(Task):
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> PathTask:  # noqa: ARG002
         """Some of the points, moved; they have no angles."""
         return replace(self, points=positions, **some_columns(self, index, "timing", "within"))
-
-    def most_length_ratio(self, kind: Mechanism) -> float:
-        """`length_ratio_max` as it applies to a kind of linkage; infinite without a limit."""
-        if not self.closed:
-            return np.inf
-        usual = USUAL_RATIO if len(kind.loops) > 1 else np.inf
-        return usual if self.length_ratio_max is None else self.length_ratio_max
-
-    @property
-    def spline(self) -> CubicSpline:
-        """The closed cubic spline through the points over the length of their polygon, from 0 on."""
-        from scipy.interpolate import CubicSpline  # here: few problems need it
-
-        places = self.points[:-1] if self.returns else self.points
-        ring = np.concatenate([places, places[:1]])
-        return CubicSpline(lengths_of(ring), ring, bc_type="periodic")
-
-    @property
-    def path_length(self) -> float:
-        """The length of the closed spline through the points.
-
-        Examples
-        --------
-        >>> turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-        >>> ring = PathTask(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
-        >>> round(ring.path_length / (2 * np.pi), 4)
-        1.0
-        """
-        spline = self.spline
-        nodes, weights = np.polynomial.legendre.leggauss(8)
-        half = np.diff(spline.x)[:, None] / 2
-        at = spline.x[:-1, None] + half * (1 + nodes)
-        return float((half * weights * np.linalg.norm(spline(at, 1), axis=-1)).sum())
 
     @property
     def positions(self) -> FloatArray:

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, PathTask, Requirements, Rotatability, TransmissionOver
+from grashof.problems import Linkage, Requirements, Rotatability, Task, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
@@ -111,7 +111,7 @@ class SixBars(DesignFinder):
         """Distinct linkages of a row, best first, in the problem's unit."""
         target, shapes, exact = self.target(row), self._shapes(row, level), self.scaled.exact
         with np.errstate(all="ignore"):
-            some, index = (target, None) if target.timed else thinned(target, FEW_TARGETS)
+            some, index = thinned(target, len(target.points) if target.timed else FEW_TARGETS)
             batch = draw(some, shapes, size * DRAWS, rng)
             batch, error = fitted(some, shapes, batch, EXACT_JUDGED if exact else 1)
             if some is target:
@@ -139,7 +139,7 @@ class SixBars(DesignFinder):
             return np.ones(len(batch), dtype=bool)
         p = around(shapes, batch, z, ROUND)
         length = np.abs(np.diff(p, axis=1, append=p[:, :1])).sum(axis=1)
-        kept: BoolArray = length <= most * self.scaled.problem.task.path_length / self.scaled.frame.scale
+        kept: BoolArray = length <= most * self.scaled.problem.task.curve_length / self.scaled.frame.scale
         return kept
 
     def target(self, row: Mechanism) -> SearchTargets:
@@ -149,7 +149,7 @@ class SixBars(DesignFinder):
         if not task.in_plane:  # the scale is free
             of_ratio = {"link_ratio": formulas["link_ratio"]}
             return replace(target, formulas=of_ratio, outputs=task.outputs)
-        if isinstance(task, PathTask) and task.closed and not task.is_timed and not self.scaled.exact:
+        if task.is_curve and not self.scaled.exact:
             places = self.scaled.frame.inward(even_points(task, max(CLOSED_TARGETS, len(target.points))))
             free = np.zeros(len(places))
             target = replace(target, turns=free, turn_weights=free, timing=free)
@@ -190,8 +190,8 @@ class SixBars(DesignFinder):
         return o2, scale * turn, 0j
 
 
-def even_points(task: PathTask, count: int) -> FloatArray:
+def even_points(task: Task, count: int) -> FloatArray:
     """Even places (count, 2) on the closed spline of a path, from its first point on."""
-    spline = task.spline
-    places: FloatArray = spline(np.arange(count) * spline.x[-1] / count)
+    curve = task.curve
+    places: FloatArray = curve(np.arange(count) * curve.x[-1] / count)
     return places
