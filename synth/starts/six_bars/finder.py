@@ -25,7 +25,7 @@ from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
 from grashof.synth.starts.thinning import thinned
-from grashof.synth.theory.distinct import origin_of, pick_apart, signature
+from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
 
 DRAWS = 3000
 FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
@@ -127,9 +127,8 @@ class SixBars(DesignFinder):
         if not made:
             return []
         origin = origin_of(self.scaled.problem.task)
-        signatures = np.array([signature(each, origin) for each in made])
         score = -np.arange(len(made), dtype=np.float64)
-        picked = pick_apart(signatures, score, APART, EXACT_JUDGED if exact else JUDGED)
+        picked = pick_apart(signatures(made, origin), score, APART, EXACT_JUDGED if exact else JUDGED)
         return [made[k] for k in picked]
 
     def _kept(self, shapes: Shapes, batch: Batch, z: ComplexArray) -> BoolArray:
