@@ -70,7 +70,8 @@ def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tupl
 def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     targets = nearest_to_poses(linkage, task)
     motion = task_motion(linkage, targets.theta2, wanted.order)
-    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+    once = len(linkage.mechanism.loops) == 1  # it stands in a pose at a single driver angle
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole and once):
         branch = branch_index(linkage, targets.theta2, targets.assembly)
         joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
         if not motion.in_order or (wanted.same_branch and not joined):

@@ -142,7 +142,7 @@ class Problem(ReadOnly):
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
         given = mechanisms(self.mechanism or self.task.usual_mechanism)
-        set_fields(self, mechanism=spelt_out(given, self.task.impossible))
+        set_fields(self, mechanism=spelt_out(given, self._unsuited))
         checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
@@ -176,6 +176,10 @@ class Problem(ReadOnly):
         set_fields(self, task=self.task.sized(stated_size(self.requirements)))
         checks.refuse(wrong)
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
+
+    def _unsuited(self, word: str) -> str:
+        """Why "six-bar" does not stand for a kind; empty where it does."""
+        return self.task.impossible(word) or self.task.needless(word)
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""

@@ -305,15 +305,19 @@ class Task(ReadOnly, ABC):
             if host != 1
         )
 
+    def needless(self, word: str) -> str:
+        """Why no linkage of a kind is searched for it, in one line; empty where some are."""
+        if self.rows(word):
+            return ""
+        return (
+            f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
+            "it must be four-bar, or another six-bar"
+        )
+
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        if word in self.kinds and self.rows(word):
-            return ""
         if word in self.kinds:
-            return (
-                f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
-                "it must be four-bar, or another six-bar"
-            )
+            return ""
         return f'mechanism is {word}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
 
     @property

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, Requirements, Rotatability, Task, TransmissionOver
+from grashof.problems import Linkage, ProblemError, Requirements, Rotatability, Task, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
@@ -80,6 +80,11 @@ class SixBars(DesignFinder):
     def rounds_a_pass(self) -> int:
         """One for each row and transmission angle, or more."""
         return len(self.plan)
+
+    def refuse(self) -> None:
+        """Raise `ProblemError` for kinds whose P moves as that of a four-bar."""
+        if said := self.scaled.problem.task.needless(self.scaled.problem.mechanism[0]):
+            raise ProblemError(said)
 
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """The best of some thousand linkages of one row, for one transmission angle."""

@@ -16,7 +16,7 @@ from grashof.problems.values.requirements.quantities import MEASURED
 from grashof.synth import Result
 from grashof.synth.designs.table import LISTED, NAMES, to_frame
 
-# DESIGN section 4, word for word, and what has been added since.
+# The columns in their order, which programs of users rely on.
 CONTRACT = """
 rank, id, mechanism, family, region, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y,
 r1, r2, r3, r4, p_u, p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error, error_max, error_rms,
