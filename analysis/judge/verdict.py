@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from grashof.analysis.judge.dwell_output import DwellFigures
+from grashof.analysis.judge.two_outputs import TwoOutputs
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -74,6 +75,8 @@ class Verdict:
         pair to the greatest; NaN for other tasks, or where the motion does not cover the range.
     dwell : DwellFigures, optional
         Of a dwell: where it is, its band, and the swing; None where the driver or the output turns otherwise.
+    outputs : TwoOutputs, optional
+        Of two outputs: their swings, time ratios and synchrony.
     output_zero : float, rad
         Direction theta4 at the wanted output zero.
     output_sense : int
@@ -103,6 +106,7 @@ class Verdict:
     output_zero: float = np.nan
     output_sense: int = 1
     dwell: DwellFigures | None = None
+    outputs: TwoOutputs | None = None
 
     @property
     def ok(self) -> bool:
