@@ -176,6 +176,8 @@ def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]])
     homes = (name for name, other in tables.items() if key in other.model_fields and other.suggested)
     where = next((f"{home}.{key}".lstrip(".").replace("[]", "") for home in homes), None)
     elsewhere = None if where is None else f"did you mean {where}?"
+    if (several := tables.get(f"{table}[]")) is not None and key in several.model_fields:
+        elsewhere = f"it goes into tables [[{table}]]"
     return f"{path} is unknown; " + hint(key, keys, elsewhere or f"the keys are {', '.join(keys)}")
 
 

@@ -65,7 +65,7 @@ class TandemRockers(DesignFinder):
         found = searched(self.aim, hosts, rng, generations=size * GENERATIONS)
         feasible = found.taken(found.missed == 0)
         starts = self._distinct(hosts, feasible, JUDGED)
-        return Round(starts, {FINDS: len(starts)}, size=size, together=True)
+        return Round(starts, {FINDS: len(starts)}, size=size, together=bool(starts))
 
     def relaxed(self, rng: np.random.Generator) -> Sequence[Proposal]:
         """Those that miss the limits by least."""

@@ -37,7 +37,9 @@ SPARE_DEG, SPARE = 0.02, 1e-3
 LEAST_DEG = 0.5  # transmission angle; a linkage with less is as good as locked
 BROAD = (0.25, 4.0)  # lengths of the ground that are tried where it is free, in sizes
 AWAY = (0.3, 6.0)  # distances of D from O2 likewise
-UNSOUND = 1e3  # miss of a linkage that does not close
+OF_SWINGS = 100.0  # weight of what makes a linkage one with both swings, beside other limits
+TINY = 1e-12
+UNSOUND = 1e6  # miss of a linkage that does not close
 NEAR = 0.01  # spread of numbers about a known linkage
 STEP, CROSSING = (0.4, 0.9), 0.8  # of differential evolution (Storn & Price 1997)
 # Numbers that are angles or places of no kind of end, so that they go round.
@@ -108,7 +110,7 @@ class TandemAim:
         return self.swings.ratios(hosts)[place]
 
     @cached_property
-    def scaled(self) -> bool:
+    def limited(self) -> bool:
         """Whether anything but proportions is limited, so that the size is of account."""
         wanted = self.wanted
         lengths = [getattr(wanted, name) for name in ("link_length", "size", *_LENGTHS[1:])]
@@ -119,47 +121,76 @@ class TandemAim:
         wanted = self.wanted
         return [wanted.o2 or ANYWHERE, wanted.o4 or ANYWHERE, wanted.d or ANYWHERE]
 
+    @cached_property
+    def size(self) -> float:
+        """A length of the linkages: as limits of lengths state it, or the pivots that are not free."""
+        two, four, six = (_middle(box) for box in self._boxes)
+        ends = [each for each in (two, four) if each is not None]
+        if six is None or len(ends) != 1 or not abs(six - ends[0]):
+            return self.problem.task.size
+        return abs(six - ends[0]) / 2
+
     def pivots(self, places: FloatArray) -> ComplexArray:
-        """O2, O4 and D (n, 3) by numbers in [0, 1], (n, PLACES)."""
-        size, (two, four, six) = self.problem.task.size, self._boxes
-        turned = self.wanted.angle_of("ground_angle_deg")
-        low, high = (np.log(size * end) for end in BROAD)
-        length = np.exp(low + (high - low) * places[:, 2]) if self.scaled else np.full(len(places), size)
-        if self.wanted.r1 is not None:
-            least, most = self.wanted.r1
-            length = least + (min(most, BROAD[1] * size + least) - least) * places[:, 2]
-        bound = any(box != ANYWHERE for box in self._boxes)
-        angle = TURN * places[:, 3] if turned is None and bound else np.full(len(places), turned or 0.0)
-        way = length * np.exp(1j * angle)
-        if two == ANYWHERE and four != ANYWHERE:
-            o4 = _inside(four, np.zeros_like(way), places[:, 0:2])
-            o2 = o4 - way
+        """O2, O4 and D (n, 3) by numbers in [0, 1], (n, PLACES): a pair for each.
+
+        Shares of its box, or where it is free its distance and direction from another pivot.
+        """
+        (two, four, six), (first, second, third) = self._boxes, np.split(places, 3, axis=1)
+        nowhere = np.zeros(len(places), dtype=np.complex128)
+        if two != ANYWHERE or (four == ANYWHERE and six == ANYWHERE):
+            o2 = _inside(two, nowhere, first)
+        elif four != ANYWHERE:
+            o2 = _inside(four, nowhere, second) - self._ground(first)
         else:
-            o2 = _inside(two, np.zeros_like(way), places[:, 0:2])
-            o4 = o2 + way if four == ANYWHERE else _inside(four, o2 + way, places[:, 2:4])
-        if turned is not None:
+            o2 = _inside(six, nowhere, third) - self._away(first)
+        o4 = _inside(four, o2 + self._ground(second), second)
+        if (turned := self.wanted.angle_of("ground_angle_deg")) is not None:
             o4 = o2 + np.abs(o4 - o2) * np.exp(1j * turned)
-        far = np.exp(np.log(AWAY[0]) + np.log(AWAY[1] / AWAY[0]) * places[:, 4])
-        d = o2 + size * far * np.exp(1j * TURN * places[:, 5])
-        return np.stack([o2, o4, _inside(six, d, places[:, 4:6])], axis=-1)
+        return np.stack([o2, o4, _inside(six, o2 + self._away(third), third)], axis=-1)
 
     def places(self, o2: complex, o4: complex, d: complex) -> list[float]:
         """The numbers by which `pivots` gives O2, O4 and D, or places near them."""
-        size, found = self.problem.task.size, list[float]()
-        low, high = (np.log(size * end) for end in BROAD)
-        length = (np.log(abs(o4 - o2)) - low) / (high - low)
-        if self.wanted.r1 is not None:
-            least, most = self.wanted.r1
-            length = (abs(o4 - o2) - least) / max(min(most, BROAD[1] * size + least) - least, 1e-300)
-        far = np.log(abs(d - o2) / size / AWAY[0]) / np.log(AWAY[1] / AWAY[0])
-        free = ((0.5, 0.5), (length, np.angle(o4 - o2) / TURN % 1), (far, np.angle(d - o2) / TURN % 1))
-        for box, place, otherwise in zip(self._boxes, (o2, o4, d), free, strict=True):
-            for (least, most), at, number in zip(
-                (box.x, box.y), (place.real, place.imag), otherwise, strict=True
-            ):
+        found = list[float]()
+        ground, away = self._ground_numbers(o4 - o2), self._away_numbers(d - o2)
+        from_other = ground if self._boxes[1] != ANYWHERE else away
+        for box, place, otherwise in zip(self._boxes, (o2, o4, d), (from_other, ground, away), strict=True):
+            sides = (box.x, place.real), (box.y, place.imag)
+            for ((least, most), at), number in zip(sides, otherwise, strict=True):
                 bounded = np.isfinite(most - least)
                 found.append(float((at - least) / (most - least or 1.0) if bounded else number))
         return found
+
+    @property
+    def _lengths(self) -> Limits:
+        """Least and greatest length of a ground line that is free."""
+        if self.wanted.r1 is not None:
+            least, most = self.wanted.r1
+            return max(least, 1e-9 * self.size), min(most, BROAD[1] * self.size + least)
+        spread = BROAD if self.limited else (1.0, 1.0)
+        return spread[0] * self.size, spread[1] * self.size
+
+    def _ground(self, pair: FloatArray) -> ComplexArray:
+        """From O2 to O4."""
+        low, high = np.log(self._lengths)
+        turned = self.wanted.angle_of("ground_angle_deg")
+        free = turned is None and any(box != ANYWHERE for box in self._boxes)
+        angle = TURN * pair[:, 1] if free else np.full(len(pair), turned or 0.0)
+        way: ComplexArray = np.exp(low + (high - low) * pair[:, 0] + 1j * angle)
+        return way
+
+    def _ground_numbers(self, way: complex) -> tuple[float, float]:
+        low, high = np.log(self._lengths)
+        return float((np.log(abs(way)) - low) / ((high - low) or 1.0)), float(np.angle(way)) / TURN % 1
+
+    def _away(self, pair: FloatArray) -> ComplexArray:
+        """From O2 to D."""
+        low, high = np.log(self.size * np.array(AWAY))
+        way: ComplexArray = np.exp(low + (high - low) * pair[:, 0] + 1j * TURN * pair[:, 1])
+        return way
+
+    def _away_numbers(self, way: complex) -> tuple[float, float]:
+        low, high = np.log(self.size * np.array(AWAY))
+        return float((np.log(abs(way) or 1e-300) - low) / (high - low)), float(np.angle(way)) / TURN % 1
 
     def made(self, hosts: tuple[int, int], unknowns: FloatArray, sides: BoolArray) -> Tandems:
         """Linkages by their numbers."""
@@ -212,21 +243,20 @@ class TandemAim:
         self, made: Tandems, motion: TandemMotion, values: dict[str, FloatArray]
     ) -> Iterator[FloatArray]:
         """By how much each limit is missed, (n,): 0 where it is kept."""
-        wanted, size = self.wanted, self.problem.task.size
-        yield from np.maximum(1e-9 - made.margins, 0.0).T
-        ratio = motion.ratio[:, :-1]  # of one sign where link 4 drives
-        if made.hosts == DRIVEN_BY_4:
-            yield np.maximum(-(ratio.min(axis=1) * ratio.max(axis=1)), 0.0)
+        wanted, size = self.wanted, self.size
+        yield from OF_SWINGS * np.maximum(1e-9 - made.margins, 0.0).T
+        if made.hosts == DRIVEN_BY_4:  # link 6 moves in one sense with link 4, or in the opposite one
+            ratio = motion.second.ratio
+            yield OF_SWINGS * np.maximum(-ratio.min(axis=1) * ratio.max(axis=1), 0.0)
         turns = values["r1"] - made.r2 - np.abs(made.r3 - made.r4), made.r3 + made.r4 - values["r1"] - made.r2
         total = values["r1"] + made.r2 + made.r3 + made.r4
         margin = 0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin * (1 + SPARE)
-        yield np.maximum(margin - np.min(turns, axis=0) / total, 0.0)
+        yield OF_SWINGS * np.maximum(margin - np.min(turns, axis=0) / total, 0.0)
         least = np.radians(max(wanted.transmission_min_deg, LEAST_DEG) + SPARE_DEG)
         yield np.maximum(least - values["transmission"], 0.0)
         for key, (low, high) in self._limits.items():
-            value = values[key]
-            yield np.maximum(low - value, 0.0) / max(low, 1e-300)
-            yield np.maximum(value - high, 0.0) / max(high, 1e-9)
+            yield np.maximum(np.log(max(low, TINY) / np.maximum(values[key], TINY)), 0.0)
+            yield np.maximum(np.log(np.maximum(values[key], TINY) / max(high, TINY)), 0.0)
         for box, place in zip(self._boxes, (made.o2, made.o4, made.d), strict=True):
             for (low, high), at in ((box.x, place.real), (box.y, place.imag)):
                 slack = 1e-10 * size
@@ -254,6 +284,14 @@ _LENGTHS = ("r1", "r2", "r3", "r4", "r5", "r6")
 def _plain(key: str) -> str:
     """The key of a quantity, whichever motion a transmission angle is of: the task is the turn."""
     return "transmission" if key.startswith("transmission") else key
+
+
+def _middle(box: Box) -> complex | None:
+    """A place in the middle of a box, or of its sides that are bounded; None where none is."""
+    if box == ANYWHERE:
+        return None
+    half = np.full((1, 2), 0.5)
+    return complex(_inside(box, np.zeros(1, dtype=np.complex128), half)[0])
 
 
 def _inside(box: Box, near: ComplexArray, share: FloatArray) -> ComplexArray:

@@ -86,6 +86,7 @@ class Chains(NamedTuple):
     """A four-bar in motion: its loop, and angular velocity and acceleration of its output."""
 
     loop: Closed
+    ratio: FloatArray  # of the angular velocities of output and driver
     speed: FloatArray
     bend: FloatArray
 
@@ -98,7 +99,7 @@ class Chains(NamedTuple):
         r3, r4 = (each[:, None] for each in bars)
         loop = Bars().closed(as_vector(ground), as_vector(crank), r3, r4, side[:, None], root_or_zero)
         rates: Rates = Bars().rates(loop, as_vector(crank), r4)
-        return cls(loop, speed * rates.speed4, speed**2 * rates.rate4 + bend * rates.speed4)
+        return cls(loop, rates.speed4, speed * rates.speed4, speed**2 * rates.rate4 + bend * rates.speed4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +112,6 @@ class TandemMotion:
     b: ComplexArray
     c: ComplexArray
     e: ComplexArray
-    ratio: FloatArray  # angular velocity of link 6 over that of its driver
 
     @classmethod
     def of(cls, made: Tandems) -> TandemMotion:
@@ -132,8 +132,7 @@ class TandemMotion:
             )
         second = Chains.of(d - base, arm, (made.r5, made.r6), made.side_2, *moved)
         e = d + as_complex(second.loop.across)
-        with np.errstate(all="ignore"):
-            return cls(first, second, o2 + crank, o4 + across, base + arm, e, second.speed / moved[0])
+        return cls(first, second, o2 + crank, o4 + across, base + arm, e)
 
     @property
     def accelerations(self) -> FloatArray:
@@ -147,8 +146,8 @@ class TandemMotion:
         for chain, swing in zip((self.first, self.second), swings, strict=True):
             across = as_complex(chain.loop.across)
             turned = np.unwrap(np.angle(across), axis=1)
-            low, high = turned.min(axis=1, keepdims=True), turned.max(axis=1, keepdims=True)
-            shares.append((turned - (low + high) / 2) / swing)
+            middle = (_highest(turned) - _highest(-turned)) / 2
+            shares.append((turned - middle[:, None]) / swing)
         one, other = shares
         found: FloatArray = np.minimum(_highest(np.abs(one - other)), _highest(np.abs(one + other)))
         return found
