@@ -88,7 +88,7 @@ class Search:
 
 def _named(kind: Any) -> str:
     if kind is Task:
-        return "MotionTask or PathTask or StrokeTask or FunctionTask"
+        return "MotionTask or PathTask or StrokeTask or TandemTask or FunctionTask"
     return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
 
 
@@ -98,7 +98,7 @@ class Problem(ReadOnly):
 
     Parameters
     ----------
-    task : MotionTask, PathTask, StrokeTask or FunctionTask
+    task : MotionTask, PathTask, StrokeTask, TandemTask, FunctionTask or DwellTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -170,6 +170,7 @@ class Problem(ReadOnly):
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
         wrong += task_limits.dwells_wrong(self.task, self.requirements)
+        wrong += task_limits.tandems_wrong(self.task, self.requirements)
         wrong += [line for kind in self.mechanism if (line := self.task.impossible(kind))]
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
@@ -333,6 +334,7 @@ class Problem(ReadOnly):
             Unit.AREA: size**2,
             Unit.ANGLE: math.pi / 2,
             Unit.ANGULAR_VELOCITY: omega2,
+            Unit.ANGULAR_ACCELERATION: omega2**2,
             Unit.VELOCITY: omega2 * size,
             Unit.ACCELERATION: omega2**2 * size,
         }
@@ -366,6 +368,7 @@ _LISTED = ("outlines", "mechanism")  # with checks of their own
 _KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
 _NO_DWELL = '{kind} states no such dwell; kind = "dwell" does, with swing_deg or stroke'
+_NOT_TWO = "{kind} states no two outputs; two tables [[stroke]] do"
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
 # Test that a problem states the data for a need, and the error otherwise; other needs are always met.
 _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
@@ -391,6 +394,7 @@ _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
         lambda problem: problem.task.travels,
         "function has an output that turns, not one that slides",
     ),
+    Needs.TWO_OUTPUTS: (lambda problem: problem.task.swings is not None, _NOT_TWO),
     Needs.DWELL: (lambda problem: problem.task.dwell is not None, _NO_DWELL),
     Needs.DWELL_OF_LINK: (
         lambda problem: problem.task.dwell is not None and problem.task.swing is not None,

@@ -11,7 +11,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import finite_number, noted, number_within, refuse, size_number
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.tasks.output_task import OutputTask
+from grashof.problems.values.tasks.output_task import OF_POINTS, OutputTask
 from grashof.problems.values.value_bases import set_fields
 
 DWELLS_DEG, SWINGS_DEG = np.array([1.0, 350.0]), np.array([0.1, 179.0])
@@ -65,10 +65,7 @@ class DwellTask(OutputTask):
     usual_mechanism: ClassVar[tuple[str, ...]] = DWELLING
     kinds: ClassVar[tuple[str, ...]] = DWELLING
     limits_size = False  #: A dwell has no size to compare with.
-    without: ClassVar[tuple[str, ...]] = (
-        "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
-        "worst_move", "share_within_linear", "share_within_made", "theta2_start",
-    )  # fmt: skip
+    without: ClassVar[tuple[str, ...]] = (*OF_POINTS, "d")
 
     dwell: float
     swing: float | None

@@ -115,7 +115,7 @@ def _dot(one: ComplexArray, other: ComplexArray) -> FloatArray:
     return found
 
 
-def number(each: Any) -> tuple[ComplexArray, ComplexArray]:
+def number(each: Any) -> tuple[Any, Any]:
     """A dimension as complex numbers (n, 1), and their derivatives (n, 1, K); a place counts as x + i y."""
     if isinstance(each, Vector):
         (x, by_x), (y, by_y) = number(each.x), number(each.y)
