@@ -222,22 +222,22 @@ class Problem(ReadOnly):
 
     def _not_of_these_kinds(self) -> list[str]:
         """Quantities weighed or limited that none of the kinds of linkage has, a line each."""
-        having = {where: quantity.kinds for where, quantity in self._weighed_or_limited.items()}
+        having: dict[str, Sequence[str]] = {
+            where: quantity.kinds for where, quantity in self._weighed_or_limited.items()
+        }
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
-        slides = self.task.stroke is not None
-        able = {
-            where: [
-                kind
-                for kind in kinds
-                if not self.task.impossible(kind)
-                and (slides or kind in ONE_LOOP or not set(kinds) <= set(SLIDING))
-            ]
-            for where, kinds in having.items()
-        }
+        if self.task.in_plane or self.task.has_output.any():  # six-bars with a slide are for others
+            slides = set(SLIDING)
+            having = {
+                where: [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
+                for where, kinds in having.items()
+            }
         return [
-            not_had(where, self.mechanism, kinds or having[where])
-            for where, kinds in able.items()
+            not_had(
+                where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds
+            )
+            for where, kinds in having.items()
             if not set(kinds) & set(self.mechanism)
         ]
 
