@@ -102,13 +102,10 @@ class SearchTargets:
 
 
 def narrowed(limits: Limits, share: float) -> Limits:
-    """Limits narrower by a share of their width, or of the one that there is."""
+    """Limits that are narrower by a share of themselves, but by no more than that share of their width."""
     low, high = limits
-    if np.isfinite(high - low):
-        less = share * (high - low)
-        return low + less, high - less
-    low, high = (x + sign * share * abs(x) if np.isfinite(x) else x for x, sign in ((low, 1), (high, -1)))
-    return low, high
+    less, more = (share * min(abs(limit), high - low) if np.isfinite(limit) else 0.0 for limit in limits)
+    return low + less, high - more
 
 
 @dataclass(frozen=True, slots=True)

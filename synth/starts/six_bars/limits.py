@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import View
@@ -39,11 +39,11 @@ class SixBarView(View):
 
     def _places(self, placing: Placing | None) -> tuple[Vector, ...]:
         """O2, g and z2."""
+        if placing is not None:
+            return _vectors(placing.z, lambda: placing.by_z)
         count, width = len(self._at.direction), self._columns.count
-        if placing is None:
-            z = np.tile(np.array([0j, 1, 0]), (count, 1))
-            return _vectors(z, np.zeros((count, 3, width), dtype=np.complex128))
-        return _vectors(placing.z, placing.by_z)
+        z = np.tile(np.array([0j, 1, 0]), (count, 1))
+        return _vectors(z, lambda: np.zeros((count, 3, width), dtype=np.complex128))
 
     def _number(self, each: Dual) -> Dual:
         """A dimension with derivatives by all unknowns."""
@@ -52,29 +52,26 @@ class SixBarView(View):
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
         """A at every target."""
-        return self._standing(self._at.frames[3].origin)
+        return self._standing(self._at.a)
 
     @cached_property
     def b(self) -> Vector:  # type: ignore[override]
         """B at every target."""
-        output = self._at.frames[4]
-        return self._standing(output.origin + self._at.made.given["r4"] * output.along)
+        return self._standing(self._at.b)
 
-    def _standing(self, of_shape: Vector) -> Vector:
+    def _standing(self, of_shape: Along) -> Vector:
         """A point of the shape where the linkage stands."""
-        at = Along(of_shape, self._columns)
-        x, y = (Dual(getattr(at.value, part), _part(at, part)) for part in ("real", "imag"))
+        x = Dual(of_shape.value.real, lambda: of_shape.by(self._columns).real)
+        y = Dual(of_shape.value.imag, lambda: of_shape.by(self._columns).imag)
         placed: Vector = self.o2 + x * self._ground + y * self._ground.left
         return placed
 
 
-def _part(at: Along, part: str) -> Callable[[], FloatArray]:
-    return lambda: getattr(at.slope, part)
-
-
-def _vectors(z: ComplexArray, by_z: ComplexArray) -> tuple[Vector, ...]:
+def _vectors(z: ComplexArray, by_z: Callable[[], ComplexArray]) -> tuple[Vector, ...]:
     """Columns of complex numbers (n, K) with derivatives (n, K, M), as vectors (n, 1)."""
-    return tuple(
-        Vector(Dual(z[:, [k]].real, by_z[:, [k]].real), Dual(z[:, [k]].imag, by_z[:, [k]].imag))
-        for k in range(z.shape[1])
-    )
+
+    def vector(k: int) -> Vector:
+        x = Dual(z[:, [k]].real, lambda: by_z()[:, [k]].real)
+        return Vector(x, Dual(z[:, [k]].imag, lambda: by_z()[:, [k]].imag))
+
+    return tuple(map(vector, range(z.shape[1])))

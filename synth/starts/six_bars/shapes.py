@@ -1,7 +1,7 @@
-"""Shapes of linkages of any mechanism, whose loops close by construction, with derivatives.
+"""Shapes of linkages whose first loop is a four-bar, and whose loops close by construction, with derivatives.
 
-With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a shape is a row of free numbers: shares of the
-possible lengths of each loop (see `feasible`), the places of C and D, the direction of a slide. The gap
+With O2 = 0 and r1 = 1 a shape is a row of free numbers: shares of the possible lengths of each loop (see
+`feasible`), the places of C and D, the direction of a slide. The gap
 between C and D is sampled over the motion of the first loop, so that the last lengths close all of it.
 """
 
@@ -17,8 +17,9 @@ from scipy.special import expit, logit
 
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
-from grashof.synth.loop.chain import DYADS, gap_of
+from grashof.synth.loop.chain import gap_of
 from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import Bars
 from grashof.synth.loop.feasible import Demand, bars_between, feasible
 from grashof.synth.loop.vector import Vector
 
@@ -91,7 +92,7 @@ class Made:
     ) -> None:
         self.shapes, self.free, self.longer, self.sides, self.ends = shapes, free, longer, sides, ends
         self.columns = free.shape[1] + ENDS + 1
-        self.given: dict[str, Any] = {"o4": Vector(1.0, 0.0), "r3": 1.0, "slide_angle": 0.0}
+        self.given: dict[str, Any] = {"o4": Vector(1.0, 0.0)}
         self._first_loop()
         if len(shapes.mechanism.loops) > 1:
             self._later_loop()
@@ -115,20 +116,17 @@ class Made:
         return Dual(found.values[:, [column]], slope)
 
     def _first_loop(self) -> None:
-        loop, ends = self.shapes.mechanism.loops[0], range(self.shapes.width, self.shapes.width + ENDS)
-        dyad = DYADS[loop.dyad.kind]
+        ends = range(self.shapes.width, self.shapes.width + ENDS)
 
         def lengths(numbers: FloatArray) -> FloatArray:
             free, low, high = numbers[..., :FIRST], numbers[..., FIRST], numbers[..., FIRST + 1]
             longer = np.broadcast_to(self.longer[:, None], low.shape)
-            sizes = feasible(dyad, expit(free), longer, self._demand(low, high))
+            sizes = feasible(Bars(), expit(free), longer, self._demand(low, high))
             return np.stack([sizes.r2, sizes.r3, sizes.r4], axis=-1)
 
         found = Differences(lengths, np.concatenate([self.free[:, :FIRST], self.ends], axis=1))
-        names = "r2", *(loop.bars if len(loop.bars) == 2 else ("", "")), loop.offset
-        for name, column in zip(names, (0, 1, 2, 2), strict=True):
-            if name:
-                self.given[name] = self._made(found, column, [*range(FIRST), *ends])
+        for column, name in enumerate(("r2", "r3", "r4")):
+            self.given[name] = self._made(found, column, [*range(FIRST), *ends])
 
     def _demand(self, low: FloatArray, high: FloatArray) -> Demand:
         """The demand on the first loop, for ends of the motion from the ground line."""
