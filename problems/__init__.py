@@ -34,6 +34,7 @@ from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.motion_task import MotionTask
 from grashof.problems.values.tasks.path_task import PathTask
 from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.tandem_task import LinkSwing, TandemTask
 from grashof.problems.values.tasks.task import Task
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "GrashofError",
     "GrashofWarning",
     "InvertedSliderCrank",
+    "LinkSwing",
     "Linkage",
     "LinkageSpec",
     "Manufacturing",
@@ -69,6 +71,7 @@ __all__ = [
     "SolverError",
     "StrengthSpec",
     "StrokeTask",
+    "TandemTask",
     "Task",
     "TransmissionOver",
     "catalogue",

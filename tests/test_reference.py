@@ -44,7 +44,7 @@ def test_rows_state_value_unit_and_default() -> None:
         ("requirements", "| `link_length` | [lo, hi], from 0 | length | 0.01 to 20 sizes of the task |"),
         ("requirements", '| `driver_sense` | `"either"`, `"ccw"`, `"cw"` |  | `"either"` |'),
         ("search", "| `starts` | whole number |  | `200` |"),
-        ("springs", "| `stiffness` | number | N/m | required |"),
+        ("springs[]", "| `stiffness` | number | N/m | required |"),
         ("strength", "| `yield_stress` | number | Pa | required |"),
     ):
         assert row in keys.key_table(keys.problem_tables()[table])

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, closed_at, coupler_point, move, point_rates
+from grashof.analysis.mechanism.closing import STEADY, closed_at, closes, coupler_point, move, point_rates
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
@@ -49,7 +49,11 @@ def coupler_motion(
     p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
     frame, (omega, alpha, _) = frames[carries], turns[carries].tangential
     theta = np.arctan2(frame.sine, frame.cosine)
-    return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
+    found = CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
+    if len(loops) == 1:
+        return found
+    closed = closes(loops)  # a loop that does not lead P may be open
+    return CouplerMotion(*(np.where(closed, each, np.nan) for each in found))
 
 
 def coupler_curve(

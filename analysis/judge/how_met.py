@@ -14,12 +14,22 @@ from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
+from grashof.analysis.judge.two_outputs import TwoOutputs, two_outputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
-from grashof.problems import DwellTask, FunctionTask, Linkage, Requirements, StrokeTask, Task
+from grashof.problems import (
+    DwellTask,
+    FunctionTask,
+    Linkage,
+    Requirements,
+    StrokeTask,
+    TandemTask,
+    Task,
+)
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
+from grashof.problems.values.tasks.tandem_task import LINKS
 
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
@@ -70,7 +80,8 @@ def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tupl
 def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     targets = nearest_to_poses(linkage, task)
     motion = task_motion(linkage, targets.theta2, wanted.order)
-    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+    once = len(linkage.mechanism.loops) == 1  # it stands in a pose at a single driver angle
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole and once):
         branch = branch_index(linkage, targets.theta2, targets.assembly)
         joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
         if not motion.in_order or (wanted.same_branch and not joined):
@@ -110,15 +121,20 @@ def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     A full turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
     swing and time ratio.
     """
+    theta2, motion = _slow_stroke(linkage, wanted)
+    assembly, defects = np.full(2, int(linkage.assembly)), tuple(_stroke_defects(linkage, task, wanted))
+    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, defects=defects)
+
+
+def _slow_stroke(linkage: Linkage, wanted: Requirements) -> tuple[FloatArray, TaskMotion]:
+    """Driver angles at the ends of the slow stroke of link 4, (2,), and the turn that begins with it."""
     sense = -1 if wanted.driver_sense == "cw" else 1
     stretched, folded = np.nan_to_num(output_stroke(linkage).theta2, nan=0.0).tolist()
     there = sense * (folded - stretched) % TURN
     first, way = (stretched, there) if there > np.pi - _EVEN else (folded, TURN - there)
     first -= TURN * np.ceil((first - np.pi) / TURN)
-    theta2, assembly = np.array([first, first + sense * way]), np.full(2, int(linkage.assembly))
-    motion = TaskMotion.ordered(theta2, sense).closed()
-    defects = tuple(_stroke_defects(linkage, task, wanted))
-    return Met(Targets.of(linkage, task, theta2, assembly), motion, theta2, assembly, defects=defects)
+    theta2 = np.array([first, first + sense * way])
+    return theta2, TaskMotion.ordered(theta2, sense).closed()
 
 
 def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Iterator[Defect]:
@@ -135,14 +151,42 @@ def _stroke_defects(linkage: Linkage, task: Task, wanted: Requirements) -> Itera
         return
     else:
         first = ("the stroke", float(found.chord), task.stroke, 1.0, task.stroke)
-    for what, value, wish, unit, scale in (
-        first,
-        ("the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio),
-    ):
-        miss = abs(value - wish) / scale if np.isfinite(value) else np.inf
-        if not miss <= wanted.tolerance:
-            within = f"{wish * unit:.6g} within {wanted.tolerance * scale * unit:.2g}"
-            yield Defect("exact", what, value * unit, within, miss - wanted.tolerance)
+    ratios = "the time ratio", ratio, task.time_ratio, 1.0, task.time_ratio
+    for wish in (first, ratios):
+        yield from _missed_by(wanted.tolerance, *wish)
+
+
+def _missed_by(
+    tolerance: float, what: str, value: float, wish: float, unit: float, scale: float
+) -> Iterator[Defect]:
+    """The miss of a wish, in a unit, by more than a tolerance in scales."""
+    miss = abs(value - wish) / scale if np.isfinite(value) else np.inf
+    if not miss <= tolerance:
+        within = f"{wish * unit:.6g} within {tolerance * scale * unit:.2g}"
+        yield Defect("exact", what, value * unit, within, miss - tolerance)
+
+
+def _in_tandem(linkage: Linkage, task: TandemTask, wanted: Requirements) -> Met:
+    """As for one stroke, that of link 4; both swings have to be met, and the time ratios that are stated."""
+    (theta2, motion), found = _slow_stroke(linkage, wanted), two_outputs(linkage, LINKS)
+    assembly, defects = np.full(2, int(linkage.assembly)), tuple(_tandem_defects(found, task, wanted))
+    targets = Targets.of(linkage, task, theta2, assembly)
+    return Met(targets, motion, theta2, assembly, figures={"outputs": found}, defects=defects)
+
+
+def _tandem_defects(found: TwoOutputs | None, task: TandemTask, wanted: Requirements) -> Iterator[Defect]:
+    """Misses of the swings (by `tolerance` in rad), and of time ratios (by that share of them)."""
+    if found is None:
+        yield Defect("exact", "the number of links that swing over a full turn of the driver", 0, "2", 1.0)
+        return
+    pairs = zip(task.strokes, found.swings, found.time_ratios, strict=True)
+    for stroke, swing, ratio in pairs:
+        turn = min(swing, TURN)
+        name, unit = f"the swing of link {stroke.link} in deg", float(np.degrees(1.0))
+        yield from _missed_by(wanted.tolerance, name, turn, stroke.swing, unit, 1.0)
+        if (wish := stroke.time_ratio) is not None:
+            name = f"the time ratio of link {stroke.link}"
+            yield from _missed_by(wanted.tolerance, name, ratio, wish, 1.0, wish)
 
 
 def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements) -> Met:
@@ -184,4 +228,5 @@ HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements], Met]] = {
     FunctionTask: _as_function,
     StrokeTask: _between_limits,
     DwellTask: _standing_still,
+    TandemTask: _in_tandem,
 }

@@ -13,7 +13,7 @@ from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
-from grashof.analysis.judge.over_task import OverTask, motion_ends, over_task, task_peaks
+from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -23,6 +23,7 @@ from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyo
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
 from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Limit, Needs, Quantity, Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.tasks.tandem_task import LINKS
 from grashof.problems.values.units import Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -91,8 +92,8 @@ class Values(Mapping[str, float]):
     @cached_property
     def made(self) -> Mapping[str, float]:
         """How the design takes inexact dimensions."""
-        if self.problem.manufacturing is None or self.problem.task.dwell is not None:
-            return {}  # of a dwell the band counts, not where P is carried
+        if self.problem.manufacturing is None or "worst_move" in self.problem.task.without:
+            return {}  # it has no meaning where no point is carried
         found = robustness(self.linkage, self.problem.task, self.verdict, self.problem.manufacturing)
         moves = zip(
             (f"move_{name}" for name in self.linkage.mechanism.dimensions), found.moves.tolist(), strict=True
@@ -198,12 +199,18 @@ def _band_made(values: Values) -> float:
     return made_band(values.linkage, dwell, None if made is None else made.length_tolerance)
 
 
+def _of_output(name: str, place: int, values: Values) -> float:
+    """A figure of one of two outputs."""
+    outputs = values.verdict.outputs
+    return np.nan if outputs is None else getattr(outputs, name)[place]
+
+
 def _torque_peak(values: Values) -> float:
     """That of `over_task`, without the rest of it."""
     if values._peaks is None:
         design = [values.linkage], values.problem, [values.verdict]
-        return float(task_peaks(*design, torque_alone=True)[0, 3])
-    return float(values._peaks[3])
+        return float(task_peaks(*design, torque_alone=True)[0, TORQUE])
+    return float(values._peaks[TORQUE])
 
 
 def _omega2(values: Values) -> float:
@@ -245,6 +252,14 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **dict.fromkeys(("band_made", "slide_band_made"), _band_made),
     "swing": partial(_of_dwell, "swing"),
     "length_ratio": attrgetter("verdict.length_ratio"),
+    **{
+        f"{name}_{link}": partial(_of_output, f"{name}s", place)
+        for place, link in enumerate(LINKS)
+        for name in ("swing", "time_ratio")
+    },
+    "synchrony_error": lambda values: (
+        np.nan if values.verdict.outputs is None else values.verdict.outputs.synchrony_error
+    ),
     "driver_rotation": lambda values: float(np.ptp(values.verdict.theta2)),
     "driver_sense": attrgetter("verdict.direction"),
     "output_swing": _output_swing,
@@ -277,11 +292,10 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
 def _arms(values: Values) -> dict[str, FloatArray]:
     """From P to the joints of the link that carries it."""
     arm, kind = complex(*values.linkage.coupler_point), values.linkage.mechanism
-    loop = next(each for each in kind.loops if kind.carries in each.links)
-    side = loop.links.index(kind.carries)
-    arms = {f"{(loop.c, loop.d)[side].upper()}-P": np.abs([arm])}
-    for bar in loop.bars[side : side + 1]:
-        arms[f"{loop.e.upper()}-P"] = np.abs([arm - float(getattr(values.linkage, bar))])
+    origin, end, *_ = kind.links[kind.carries - 1].labels
+    arms = {f"{origin}-P": np.abs([arm])}
+    if (bar := f"r{kind.carries}") in kind.lengths:
+        arms[f"{end}-P"] = np.abs([arm - float(getattr(values.linkage, bar))])
     return arms
 
 
@@ -299,12 +313,19 @@ def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
     return {"x": np.array([place.real]), "y": np.array([place.imag])}
 
 
+def _grounds_d(linkage: Linkage) -> bool:
+    """Whether D is a pivot of the ground."""
+    return "d" in linkage.mechanism.ground
+
+
+_NOWHERE = {axis: np.array([np.nan]) for axis in "xy"}
 # Of those that have several parts.
 PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "link_length": _lengths,
     "coupler_arms": _arms,
     "o2": partial(_place, "linkage.o2"),
     "o4": partial(_place, "linkage.o4"),
+    "d": lambda values: _place("linkage.d", values) if _grounds_d(values.linkage) else dict(_NOWHERE),
     "a": partial(_place, "at_targets.a"),
     "b": partial(_place, "at_targets.b"),
     "a_on_body": partial(_on_body, True),

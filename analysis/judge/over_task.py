@@ -26,6 +26,7 @@ from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.linkage import by_kind
 
 _SAMPLES = 361
+TORQUE = 4  # place of the torque among the peaks of a motion, behind those of places and angles
 _TOGETHER = 32  # linkages in a batch; more are no faster
 
 Curves = Callable[[FloatArray], FloatArray]
@@ -43,6 +44,9 @@ class OverTask:
         Greatest magnitude of the output link's angular velocity.
     point_speed_max, point_acceleration_max : float, length/s and length/s^2
         Of P.
+    output_acceleration_max : float, rad/s^2
+        Greatest magnitude of the angular acceleration of the last link, of a task with two outputs of both;
+        NaN where it slides.
     coupler_fit_r2 : float
         Of a polynomial of degree 4 in the driver angle fitted to the path of P.
     torque_peak, torque_rms : float, N m
@@ -55,6 +59,7 @@ class OverTask:
     omega4_max: float
     point_speed_max: float
     point_acceleration_max: float
+    output_acceleration_max: float
     coupler_fit_r2: float
     torque_peak: float = np.nan
     torque_rms: float = np.nan
@@ -69,7 +74,7 @@ def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
 
 def joins(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
     """Whether a motion joins the targets; at its very ends rounding may open the loop."""
-    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
+    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).p).any()
 
 
 def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:
@@ -109,7 +114,7 @@ def over_task(
         Its task; its dynamics give the driver's speed (else 1 rad/s) and the masses.
     verdict : Verdict
         Of `verify`: the driver angle at every target.
-    greatest : ndarray, shape (5,), optional
+    greatest : ndarray, shape (6,), optional
         Its row of `task_peaks`, where that is known.
 
     Returns
@@ -133,9 +138,9 @@ def over_task(
     (1.260659, 0.999996, 2.757)
     """
     known = task_peaks([linkage], problem, [verdict])[0] if greatest is None else greatest
-    omega4, speed, acceleration, torque, force = known.tolist()
+    omega4, speed, acceleration, turning, torque, force = known.tolist()
     if np.isnan(omega4):
-        return OverTask(np.nan, np.nan, np.nan, np.nan)
+        return OverTask(np.nan, np.nan, np.nan, np.nan, np.nan)
     linkage, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
     fit, rms = float(coupler_fit_r2(linkage, *ends)), torque
     if problem.dynamics is not None and np.isfinite(torque):
@@ -144,7 +149,7 @@ def over_task(
         with warnings.catch_warnings(action="ignore", category=DeadPositionWarning):
             mean, _ = mean_in_time(linkage, law, lambda place: curves(place)[0] ** 2, panels=8)
         rms = float(np.sqrt(mean))
-    return OverTask(omega4, speed, acceleration, fit, torque, rms, force)
+    return OverTask(omega4, speed, acceleration, turning, fit, torque, rms, force)
 
 
 class _Motion(NamedTuple):
@@ -156,14 +161,14 @@ class _Motion(NamedTuple):
 def task_peaks(
     linkages: Sequence[Linkage], problem: Problem, verdicts: Sequence[Verdict], *, torque_alone: bool = False
 ) -> FloatArray:
-    """Greatest magnitudes over the task motions, shape (n, 5).
+    """Greatest magnitudes over the task motions, shape (n, 6).
 
-    omega4 in rad/s, speed and acceleration of P, torque in N m and force in any joint in N; all but the
-    torque NaN with `torque_alone`. At the speed of the problem's dynamics, else 1 rad/s; NaN where no motion
-    joins the targets, of the last two also without dynamics or where a slide travels beyond the rows of a
-    load.
+    omega4 in rad/s, speed and acceleration of P, angular acceleration of the output in rad/s^2, torque (at
+    `TORQUE`) in N m and force in any joint in N; all but the torque NaN with `torque_alone`, the acceleration
+    where no output turns. At the speed of the problem's dynamics, else 1 rad/s; NaN where no motion joins the
+    targets, of the last two also without dynamics or where a slide travels beyond the rows of a load.
     """
-    found = np.full((len(linkages), 5), np.nan)
+    found = np.full((len(linkages), TORQUE + 2), np.nan)
     motions = {}
     for k, (linkage, verdict) in enumerate(zip(linkages, verdicts, strict=True)):
         used, ends = as_used(linkage, verdict), motion_ends(problem.task, verdict)
@@ -175,10 +180,14 @@ def task_peaks(
             some = [motions[k] for k in group]
             if not torque_alone:
                 batch, law, stretches = _together(some)
-                found[group, :3] = peaks(_speeds(batch, law), stretches)[0].reshape(3, -1).T
+                outputs = problem.task.output_links(batch.mechanism)
+                curves = _speeds(batch, law, outputs)
+                found[group, :TORQUE] = peaks(curves, stretches)[0].reshape(TORQUE, -1).T
+                if not outputs:
+                    found[group, TORQUE - 1] = np.nan
             if problem.dynamics is not None:
                 metre, rows = metres(problem.length_unit), 1 if torque_alone else 2
-                found[group, 3 : 3 + rows] = _loads(some, problem.dynamics, metre, rows).T
+                found[group, TORQUE : TORQUE + rows] = _loads(some, problem.dynamics, metre, rows).T
     return found
 
 
@@ -195,12 +204,14 @@ def load_curves(linkage: Linkage, spec: DynamicsSpec, metre: float, law: DriverL
     return curves
 
 
-def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers) -> Curves:
-    """|omega4|, speed and acceleration of P, each a row, over places of the law."""
+def _speeds(linkage: Linkage, law: DriverLaw | SteadyDrivers, outputs: Sequence[int]) -> Curves:
+    """|omega4|, speed and acceleration of P, |alpha| of the outputs, each a row, over places of the law."""
 
     def curves(place: FloatArray) -> FloatArray:
         state = solve_kinematics(linkage, *law.at_place(place))
-        return np.stack([np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude])
+        alphas = [np.abs(state.angular(link).alpha) for link in outputs] or [np.zeros(state.shape)]
+        rows = np.abs(state.omega4), state.p.speed, state.p.acceleration_magnitude, np.max(alphas, axis=0)
+        return np.stack(rows)
 
     return curves
 

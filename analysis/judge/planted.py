@@ -94,11 +94,14 @@ def random_six_bar(
             return made
 
 
-# By the word for the kind of linkage.
+# By the word for the kind of linkage of one loop.
 RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
     FourBar.mechanism.word: random_full_crank,
     SliderCrank.mechanism.word: random_slider_crank,
     InvertedSliderCrank.mechanism.word: random_inverted_slider_crank,
+}
+# Of six-bars one mechanism for each word.
+SIX_BARS: dict[str, Callable[[np.random.Generator], Linkage]] = {
     "stephenson-3": random_six_bar,
     "stephenson-1": partial(random_six_bar, hosts=(2, 4)),
     "watt-1": partial(random_six_bar, hosts=(3, 4)),
@@ -134,7 +137,7 @@ def planted_path(
 def _planted(
     rng: np.random.Generator, count: int, timed: bool, mechanism: str
 ) -> tuple[Linkage, Position, FloatArray | None]:
-    linkage, theta2 = RANDOM[mechanism](rng), uneven_driver_angles(rng, count)
+    linkage, theta2 = (RANDOM | SIX_BARS)[mechanism](rng), uneven_driver_angles(rng, count)
     return linkage, solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
 
 
@@ -147,7 +150,7 @@ def planted_function(
     slide runs along x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
     """
     while True:
-        made = (_LOOSE.get(mechanism) or RANDOM[mechanism])(rng)
+        made = (_LOOSE | SIX_BARS)[mechanism](rng)
         start, span = rng.uniform(-np.pi, np.pi), np.radians(rng.uniform(30, 300))
         linkage = made.changed(assembly=rng.choice([-1, 1]))
         if full and rotatability(linkage).min() < _LEAST_MARGIN:

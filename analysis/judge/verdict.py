@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from grashof.analysis.judge.dwell_output import DwellFigures
+from grashof.analysis.judge.two_outputs import TwoOutputs
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
@@ -77,6 +78,8 @@ class Verdict:
     length_ratio : float
         Length of the curve of P over that of the closed spline through the points of a path, where it is
         limited; NaN elsewhere.
+    outputs : TwoOutputs, optional
+        Of two outputs: their swings, time ratios and synchrony.
     output_zero : float, rad
         Direction theta4 at the wanted output zero.
     output_sense : int
@@ -107,6 +110,7 @@ class Verdict:
     output_sense: int = 1
     dwell: DwellFigures | None = None
     length_ratio: float = np.nan
+    outputs: TwoOutputs | None = None
 
     @property
     def ok(self) -> bool:

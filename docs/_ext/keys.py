@@ -41,9 +41,6 @@ _UNITS = {
 }
 _PLAIN = {float: "number", int: "whole number", str: "string", bool: "true or false", Any: ""}
 
-# Tables that may stand several times.
-LISTS = {name for name, each in MachineTables.model_fields.items() if get_origin(each.annotation) is list}
-
 
 @dataclass(frozen=True, slots=True)
 class Key:
@@ -65,7 +62,8 @@ def linkage_tables() -> dict[str, type[Table]]:
     """The keys of all linkage files, those of each kind, and the tables that problem files lack."""
     shared = MachineTables.model_fields
     inner = {path: table for file in FILES.values() for path, table in tables_of(file)}
-    own = {path: table for path, table in inner.items() if path and path.split(".")[0] not in shared}
+    tops = {path: path.split(".")[0].removesuffix("[]") for path in inner}
+    own = {path: table for path, table in inner.items() if path and tops[path] not in shared}
     kinds: dict[str, type[Table]] = {f'mechanism = "{kind}"': file for kind, file in FILES.items()}
     return {"": LinkageTable, **kinds, **own}
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from api import PACKAGES, homes, index_page, package_page
 from columns import column_table
 from command_line import commands_page
-from keys import LISTS, key_table, linkage_tables, problem_tables, study_tables
+from keys import key_table, linkage_tables, problem_tables, study_tables
 from marking import code
 from sphinx.application import Sphinx
 from sphinx.config import Config
@@ -57,7 +57,8 @@ def _heading(path: str) -> str:
     """A table as a file has it."""
     if "=" in path:  # the file itself, of a kind of linkage
         return code(path)
-    return code(f"[[{path}]]" if path in LISTS else f"[{path}]")
+    inside, plain = "." in path, path.replace("[]", "")
+    return code(f"[[{plain}]]" if path.endswith("[]") and not inside else f"[{plain}]")
 
 
 def write(app: Sphinx, _config: Config) -> None:

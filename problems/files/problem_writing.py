@@ -16,6 +16,7 @@ from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.specs.problem import Problem
 from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_task import FunctionTask
+from grashof.problems.values.tasks.tandem_task import TandemTask
 from grashof.problems.values.tasks.task import Task, row_of
 
 
@@ -39,7 +40,8 @@ _WORDS = ("title", "source", "length_unit")
 
 
 def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Mapping[str, Any]]]]:
-    yield problem.task.kind, _given(row_of(_TASKS, problem.task)(problem.task))
+    stated = row_of(_TASKS, problem.task)(problem.task)
+    yield problem.task.kind, stated if isinstance(stated, list) else _given(stated)
     if problem.outlines:
         yield "scene", {"outlines": problem.outlines}
     wanted = problem.requirements
@@ -102,11 +104,21 @@ def _dwell(task: DwellTask) -> dict[str, Any]:
     }
 
 
+def _strokes(task: TandemTask) -> list[Mapping[str, Any]]:
+    """A table for each output."""
+    swings = (_degrees(np.array(swing)) for swing in task.swings)
+    return [
+        _given({"link": each.link, "swing_deg": swing, "time_ratio": each.time_ratio})
+        for each, swing in zip(task.strokes, swings, strict=True)
+    ]
+
+
 # Tables by the kind of task; most are written by their fields.
-_TASKS: Mapping[type, Callable[[Any], dict[str, Any]]] = {
+_TASKS: Mapping[type, Callable[[Any], dict[str, Any] | list[Mapping[str, Any]]]] = {
     Task: _task,
     FunctionTask: _function,
     DwellTask: _dwell,
+    TandemTask: _strokes,
 }
 
 

@@ -8,7 +8,7 @@ from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args, get_type_hints
+from typing import Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 from pydantic import (
     AfterValidator,
@@ -81,19 +81,20 @@ def stated(
 
 
 def tables_of(table: type[Table], path: str = "") -> Iterator[tuple[str, type[Table]]]:
-    """All tables of a file by their key paths, without the numbers of lists; the file itself first."""
+    """All tables of a file by their key paths, with "[]" where there may be several; the file comes first."""
     yield path, table
     for key, field in table.model_fields.items():
-        for inner in _tables_in(field.annotation):
-            yield from tables_of(inner, f"{path}.{key}".lstrip("."))
+        for ending, inner in _tables_in(field.annotation):
+            yield from tables_of(inner, f"{path}.{key}{ending}".lstrip("."))
 
 
-def _tables_in(annotation: Any) -> Iterator[type[Table]]:
-    """The types of tables that a type is made of."""
+def _tables_in(annotation: Any) -> Iterator[tuple[str, type[Table]]]:
+    """The types of tables that a type is made of, with "[]" for those of lists."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
-        yield annotation
+        yield "", annotation
+    ending = "[]" if get_origin(annotation) is list else ""
     for part in get_args(annotation):
-        yield from _tables_in(part)
+        yield from ((ending + inner, table) for inner, table in _tables_in(part))
 
 
 def _plain(text: str, key: ValidationInfo) -> str:
@@ -171,9 +172,12 @@ def _placed(line: str, path: str) -> str:
 
 def _unknown(location: tuple[int | str, ...], tables: Mapping[str, type[Table]]) -> str:
     path, table, key = _path(location), _path(location[:-1]), str(location[-1])
-    keys = list(tables[re.sub(r"\[\d+\]", "", table)].model_fields)
+    keys = list(tables[re.sub(r"\[\d+\]", "[]", table)].model_fields)
     homes = (name for name, other in tables.items() if key in other.model_fields and other.suggested)
-    elsewhere = next((f"did you mean {f'{home}.{key}'.lstrip('.')}?" for home in homes), None)
+    where = next((f"{home}.{key}".lstrip(".").replace("[]", "") for home in homes), None)
+    elsewhere = None if where is None else f"did you mean {where}?"
+    if (several := tables.get(f"{table}[]")) is not None and key in several.model_fields:
+        elsewhere = f"it goes into tables [[{table}]]"
     return f"{path} is unknown; " + hint(key, keys, elsewhere or f"the keys are {', '.join(keys)}")
 
 

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Tag
+from pydantic import AfterValidator, Tag, model_validator
 
-from grashof.problems.files.tables import EACH, LIST, NUMBER, SpecTable, Table, either, keys_of, listed
+from grashof.problems.files.tables import EACH, LIST, NUMBER, TABLE, SpecTable, Table, either, keys_of, listed
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, outline
+from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.specs.problem import MOST_TARGETS
 from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_task import FunctionTask
 from grashof.problems.values.tasks.motion_task import MotionTask
 from grashof.problems.values.tasks.path_task import PathTask
 from grashof.problems.values.tasks.stroke_task import StrokeTask
+from grashof.problems.values.tasks.tandem_task import LinkSwing, TandemTask
 
 Corners = Annotated[
     list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
@@ -81,6 +83,44 @@ class StrokeTable(SpecTable):
     beside = MappingProxyType({**EACH, "time_ratio": {"swing_deg": 60.0}})
 
 
+@keys_of(LinkSwing, {"time_ratio": (float | None, None)})
+class LinkSwingTable(SpecTable):
+    suggested = False
+    beside = MappingProxyType(
+        {"link": {"swing_deg": 60.0}, "swing_deg": {"link": 4}, "time_ratio": {"link": 4, "swing_deg": 60.0}}
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _swings(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "stroke" in given:
+            raise ProblemError("stroke is of a slide; links 4 and 6 of two outputs have a swing, swing_deg")
+        return given
+
+
+class Strokes(tuple[LinkSwingTable, ...]):
+    """Tables of two outputs."""
+
+    __slots__ = ()
+
+    def value(self) -> TandemTask:
+        """The task that they state."""
+        return TandemTask([table.value() for table in self])
+
+
+def _both(tables: list[LinkSwingTable]) -> Strokes:
+    made = Strokes(tables)
+    made.value()  # so that errors are reported here
+    return made
+
+
+# One output, or two.
+OneOrTwo = Annotated[
+    Annotated[StrokeTable, Tag(TABLE)] | Annotated[list[LinkSwingTable], AfterValidator(_both), Tag(LIST)],
+    either("a table [stroke], or two tables [[stroke]]"),
+]
+
+
 @keys_of(DwellTask)
 class DwellTable(SpecTable):
     beside = MappingProxyType(
@@ -106,11 +146,11 @@ class FunctionTable(SpecTable):
 
 
 # The kinds of tasks in the order of files, each with a table of its name.
-TASKS: Mapping[str, type[SpecTable]] = MappingProxyType(
+TASKS: Mapping[str, Any] = MappingProxyType(
     {
         "motion": MotionTable,
         "path": PathTable,
-        "stroke": StrokeTable,
+        "stroke": OneOrTwo,
         "function": FunctionTable,
         "dwell": DwellTable,
     }

@@ -18,6 +18,7 @@ class Unit(StrEnum):
     TORQUE = "N m"
     FORCE = "N"
     ANGULAR_VELOCITY = "rad/s"
+    ANGULAR_ACCELERATION = "rad/s²"
     VELOCITY = "length/s"
     ACCELERATION = "length/s²"
 

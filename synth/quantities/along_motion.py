@@ -32,6 +32,7 @@ ALONG: dict[str, Along] = {
     "omega4_max": lambda at, _: [at.driver.pace * at.rates.speed4],
     "point_speed_max": lambda at, _: [at.velocity(3, at.point)],
     "point_acceleration_max": lambda at, _: [at.acceleration(3, at.point)],
+    "output_acceleration_max": lambda at, _: [at.turned(4)],
     "torque_peak": lambda at, loading: drive_torque(at, loading or NOTHING),
     "joint_force_peak": lambda at, loading: joint_forces(at, loading or NOTHING),
 }

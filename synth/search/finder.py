@@ -17,6 +17,7 @@ from grashof.synth.starts.precision_points import EightPoints, NinePoints, Preci
 from grashof.synth.starts.six_bars.dwells import Dwells
 from grashof.synth.starts.six_bars.finder import SixBars
 from grashof.synth.starts.strokes.limit_positions import LimitPositions
+from grashof.synth.starts.strokes.tandem import TandemRockers
 
 # The first that suits a problem is taken; the last suits all.
 KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
@@ -24,6 +25,7 @@ KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
     Functions,
     LimitPositions,
     Dwells,
+    TandemRockers,
     Parallelograms,
     FewPoses,
     ManyPoses,

@@ -14,6 +14,7 @@ import numpy as np
 
 from grashof.analysis import Verdict
 from grashof.analysis.judge.dwell_output import DwellFigures
+from grashof.analysis.judge.two_outputs import TwoOutputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar
@@ -29,7 +30,7 @@ TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
         *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DwellFigures, Objective, Round, Start,
-        Tally, Terms, Verdict,
+        Tally, Terms, TwoOutputs, Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}

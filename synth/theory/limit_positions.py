@@ -70,13 +70,13 @@ def lag_of(time_ratio: float) -> float:
     return float(np.pi * (time_ratio - 1) / (time_ratio + 1))
 
 
-def crank_rockers(swing: float, lag: float, share: FloatArray) -> StrokeLinkages:
+def crank_rockers(swing: float, lag: float | FloatArray, share: FloatArray) -> StrokeLinkages:
     """The crank-rockers with a swing of link 4 (rad, below pi) and a time ratio, O2O4 = 1.
 
-    `lag`, rad (see `lag_of`), is negative where link 4 swings the other way while driver and coupler go from
-    stretched to folded; `share` (n,) is r2 / r3, between 0 and 1. In the triangles O2-B1-B2 and O4-B1-B2 of
-    the two limit positions, O2B1 = r3 + r2, O2B2 = r3 - r2, the angles at O2 and O4 are lag and swing (Alt's
-    problem):
+    `lag`, rad (see `lag_of`), one or (n,), is negative where link 4 swings the other way while driver and
+    coupler go from stretched to folded; `share` (n,) is r2 / r3, between 0 and 1. In the triangles O2-B1-B2
+    and O4-B1-B2 of the two limit positions, O2B1 = r3 + r2, O2B2 = r3 - r2, the angles at O2 and O4 are lag
+    and swing (Alt's problem):
 
         r4² sin²(swing/2) = r2² cos²(lag/2) + r3² sin²(lag/2)
         r1² sin²(swing/2) = r2² cos²((swing − lag)/2) + r3² sin²((swing − lag)/2)
@@ -92,14 +92,15 @@ def crank_rockers(swing: float, lag: float, share: FloatArray) -> StrokeLinkages
     side = (b1 - o4).imag
     sides = side * ((b2 - o4) * np.exp(-1j * lag)).imag / r4**2
     stretched = -np.angle(o4)
+    folded, slow = stretched + lag + np.pi, np.asarray(lag) >= 0
     turns = np.min([r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4), r1 - r2], axis=0)
     return StrokeLinkages(
         share=share,
         lengths=np.stack([r1, r2, r3, r4], axis=-1) / r1[:, None],
         transmission=_worst(r1, r2, r3, r4),
         margin=np.minimum(sides, turns / (r1 + r2 + r3 + r4)),
-        first=stretched if lag >= 0 else stretched + lag + np.pi,
-        last=stretched + lag + np.pi if lag >= 0 else stretched + 2 * np.pi,
+        first=np.where(slow, stretched, folded),
+        last=np.where(slow, folded, stretched + 2 * np.pi),
         assembly=np.where(side > 0, 1.0, -1.0),
     )
 

@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, Mechanism, Parameter
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, SLIDER_CRANK, having
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, having
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import set_fields
@@ -50,6 +49,7 @@ class Needs(Enum):
     DWELL = "a dwell"
     DWELL_OF_LINK = "a dwell of a link that swings"
     DWELL_OF_SLIDE = "a dwell of a slide"
+    TWO_OUTPUTS = "two strokes"
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,19 +145,38 @@ def _of_dwell(key: str, words: str) -> tuple[Quantity, Quantity]:
     )
 
 
+def _of_outputs(*links: int) -> list[Quantity]:
+    """Swing and time ratio of each of two outputs."""
+    given: dict[str, Any] = {"over": Scope.CYCLE, "needs": Needs.TWO_OUTPUTS}
+    each = (("swing", "swing", Unit.ANGLE), ("time_ratio", "time ratio", Unit.RATIO))
+    return [
+        Quantity(f"{key}_{link}", f"{words} {link}", unit, full=f"{words} of link {link}", **given)
+        for key, words, unit in each
+        for link in links
+    ]
+
+
 _BAND = "output band in the dwell"
+_SYNCHRONY = (
+    "greatest difference over the turn between the shares of their swings that two outputs have done, in the "
+    "same sense or in opposite ones, whichever is less"
+)
 _BOX = (
     "diagonal of the box around the pivots and all that joints and P reach from the first target to the last"
 )
 _FITTED = "minimised by least squares: root mean square of positions and angles together, weighted"
-_RMS = " (root mean square)"
-_ALL = f"error of positions and angles{_RMS}"
+RMS = " (root mean square)"
+_ALL = f"error of positions and angles{RMS}"
 _WORST = "worst transmission angle over the"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
 _MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": "from the first target to the last"}
+# Kinds of which some have D on the ground.
+GROUNDED = tuple(dict.fromkeys(
+    row.word for row in MECHANISMS for each in row.parameters if (each.name, each.kind) == ("d", "station")
+))  # fmt: skip
 TURNING = having("o4")  # kinds whose link 4 turns
 ROCKERS = having("r4")  # those where it is a bar
 TRAVELLING = having("slide_angle")  # kinds whose link 4 slides on the ground
@@ -185,11 +204,11 @@ MEASURED: dict[str, Quantity] = {
             "error", "error rms", digits=3, needs=Needs.LEAST_SQUARES, about=_FITTED, full=_ALL, **_MISSED
         ),
         _length("error_max", "largest position error", over=Scope.TARGETS, better=-1),
-        _length("error_rms", "position error rms", full=f"position error{_RMS}", **_MISSED),
+        _length("error_rms", "position error rms", full=f"position error{RMS}", **_MISSED),
         Quantity("error_sse", "sum of squared position errors", Unit.AREA, Scope.TARGETS, -1),
         Quantity("angle_error_max", "largest angle error", Unit.ANGLE, Scope.TARGETS, -1),
         Quantity(
-            "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{_RMS}", **_MISSED,
+            "angle_error_rms", "angle error rms", Unit.ANGLE, full=f"angle error{RMS}", **_MISSED,
         ),
         Quantity(
             "transmission_min_task", "mu task", Unit.ANGLE, Scope.TASK, +1, digits=3, words=f"{_WORST} task"
@@ -214,7 +233,7 @@ MEASURED: dict[str, Quantity] = {
         ),
         Quantity(
             "torque_rms", "rms torque, task", Unit.TORQUE, words="rms torque",
-            full=f"drive torque{_RMS}", **_DRIVEN,
+            full=f"drive torque{RMS}", **_DRIVEN,
         ),
         Quantity(
             "joint_force_peak", "peak force, task", Unit.FORCE, digits=4, words="peak joint force",
@@ -264,6 +283,15 @@ MEASURED: dict[str, Quantity] = {
         Quantity(
             "length_ratio", "length ratio", Unit.RATIO, Scope.CYCLE, -1, Needs.CLOSED,
             about="length of the curve of P over that of the closed spline through the points, where limited",
+        ),
+        Quantity(
+            "output_acceleration_max", "output acceleration", Unit.ANGULAR_ACCELERATION, better=-1,
+            kinds=TURNING, full="largest angular acceleration of the output", **_OVERALL,
+        ),
+        *_of_outputs(4, 6),
+        Quantity(
+            "synchrony_error", "synchrony error", Unit.SHARE, Scope.CYCLE, -1, Needs.TWO_OUTPUTS, digits=3,
+            about=_SYNCHRONY, full="synchrony error of the outputs",
         ),
         *(_move(name) for name in DIMENSIONS if name not in _FIRST.dimensions),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
@@ -344,53 +372,3 @@ class Limit:
         if np.isinf(limits[1]):
             return f"from {low}"
         return low if low == high else f"{low} to {high}"
-
-
-def place_of(name: str, over: Scope) -> Quantity:
-    """The place of a joint."""
-    kinds = having(name) if over is Scope.DESIGN else WORDS
-    return Quantity(name, f"place of {name.upper()}", Unit.LENGTH, over, listed=False, kinds=kinds)
-
-
-def on_body(name: str) -> Quantity:
-    """The place of a joint on the guided body."""
-    words = f"place of {name.upper()} on the body"
-    kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
-    return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
-
-
-def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quantity:
-    """The greatest error of an output ("max"), or its root mean square; `travels` has the keys of a slide."""
-    about, name = "output minus the wanted output, over the full range", f"structural_error_{key}"
-    words = "greatest structural error" if key == "max" else f"structural error{_RMS}"
-    label, task = f"{key} error", Scope.TASK
-    if travels is None:
-        return Quantity(name, label, Unit.ANGLE, task, -1, Needs.ROTATION, 3, about, words=words)
-    return Quantity(
-        travels[name], label, Unit.LENGTH, task, -1, Needs.TRAVEL, 3, about, named=name,
-        kinds=(SLIDER_CRANK,), words=words,
-    )  # fmt: skip
-
-
-def limit(
-    quantity: str | Quantity,
-    kind: Kind,
-    *,
-    default: Any = None,
-    allowed: tuple[float, float] = (-np.inf, np.inf),
-    usual: tuple[float, float] | None = None,
-    words: Mapping[str, Limits] | None = None,
-) -> Any:
-    """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
-    limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
-    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})
-
-
-def between(
-    quantity: str | Quantity,
-    low: float = 0.0,
-    high: float = GREATEST,
-    usual: tuple[float, float] | None = None,
-) -> Any:
-    """A field that limits a quantity to [lo, hi], both of them from `low` to `high`."""
-    return limit(quantity, Kind.BETWEEN, allowed=(low, high), usual=usual)

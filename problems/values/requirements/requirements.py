@@ -15,6 +15,7 @@ from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, some_of, true_or_false, within
 from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.requirements import requirement_checks as check
+from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
     OUTPUTS,
@@ -26,11 +27,6 @@ from grashof.problems.values.requirements.quantities import (
     Needs,
     Quantity,
     Scope,
-    between,
-    limit,
-    on_body,
-    place_of,
-    structural_error,
 )
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
@@ -96,8 +92,8 @@ class Requirements(ReadOnly):
         Longest to shortest of r1..r4, of a six-bar r1..r6.
     coupler_arms : tuple of float, optional
         (lo, hi) for the distances of P from the joints of its link: A-P and B-P, of a six-bar C-P and E-P.
-    o2, o4 : Box, optional
-        Where this ground pivot may lie.
+    o2, o4, d : Box, optional
+        Where this ground pivot may lie; D is that of link 6, of a Watt II or Stephenson III.
     a, b : Box, optional
         Where this moving pivot may be at every target.
     offset : tuple of float, optional
@@ -183,6 +179,7 @@ class Requirements(ReadOnly):
     )
     o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
     o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
+    d: Box | None = limit(place_of("d", Scope.DESIGN), Kind.INSIDE)
     a: Box | None = limit(place_of("a", Scope.TARGETS), Kind.INSIDE)
     b: Box | None = limit(place_of("b", Scope.TARGETS), Kind.INSIDE)
     ground_angle_deg: float | Limits | None = limit(
@@ -194,6 +191,8 @@ class Requirements(ReadOnly):
     omega4_max: Limits | None = between("omega4_max")
     point_speed_max: Limits | None = between("point_speed_max")
     point_acceleration_max: Limits | None = between("point_acceleration_max")
+    synchrony_error: Limits | None = between("synchrony_error", 0.0, 1.0)
+    output_acceleration_max: Limits | None = between("output_acceleration_max")
     torque_peak: Limits | None = between("torque_peak")
     torque_rms: Limits | None = between("torque_rms")
     joint_force_peak: Limits | None = between("joint_force_peak")

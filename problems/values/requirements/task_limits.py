@@ -13,6 +13,11 @@ from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING,
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 
+_SWINGS = (
+    'requirements.rotatability is "double-crank", whose output does not swing; '
+    "with stroke it must be full-crank or crank-rocker"
+)
+
 
 def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantity]) -> list[str]:
     """Goals and limits, by key path, that do not apply to the task, a line each."""
@@ -69,6 +74,18 @@ def dwells_wrong(task: Task, wanted: Requirements) -> list[str]:
     return wrong
 
 
+def tandems_wrong(task: Task, wanted: Requirements) -> list[str]:
+    """Contradictions between two strokes and the requirements, a line each."""
+    if task.swings is None:
+        return []
+    wrong = []
+    if wanted.exact is False:
+        wrong.append("requirements.exact is false; with stroke it must be true: the swings are always met")
+    if wanted.rotatability is Rotatability.DOUBLE_CRANK:
+        wrong.append(_SWINGS)
+    return wrong
+
+
 def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
     """Contradictions between a cylinder as driver and the task or requirements, a line each."""
     wrong = []
@@ -95,10 +112,7 @@ def strokes_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> lis
     if wanted.exact is False:
         wrong.append("requirements.exact is false; with stroke it must be true: the time ratio is always met")
     if wanted.rotatability is Rotatability.DOUBLE_CRANK and not {*kinds}.isdisjoint(ROCKERS):
-        wrong.append(
-            'requirements.rotatability is "double-crank", whose output does not swing; '
-            "with stroke it must be full-crank or crank-rocker"
-        )
+        wrong.append(_SWINGS)
     return wrong
 
 

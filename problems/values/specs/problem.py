@@ -88,7 +88,7 @@ class Search:
 
 def _named(kind: Any) -> str:
     if kind is Task:
-        return "MotionTask or PathTask or StrokeTask or FunctionTask"
+        return "MotionTask or PathTask or StrokeTask or TandemTask or FunctionTask"
     return " or ".join(each.__name__ for each in getattr(kind, "__args__", (kind,))).replace("Type", "")
 
 
@@ -98,7 +98,7 @@ class Problem(ReadOnly):
 
     Parameters
     ----------
-    task : MotionTask, PathTask, StrokeTask or FunctionTask
+    task : MotionTask, PathTask, StrokeTask, TandemTask, FunctionTask or DwellTask
     requirements : Requirements
     objective : Objective
     search : Search
@@ -142,7 +142,7 @@ class Problem(ReadOnly):
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
         given = mechanisms(self.mechanism or self.task.usual_mechanism)
-        set_fields(self, mechanism=spelt_out(given, self.task.impossible))
+        set_fields(self, mechanism=spelt_out(given, self._unsuited))
         checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
@@ -170,12 +170,17 @@ class Problem(ReadOnly):
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
         wrong += task_limits.dwells_wrong(self.task, self.requirements)
+        wrong += task_limits.tandems_wrong(self.task, self.requirements)
         wrong += [line for kind in self.mechanism if (line := self.task.impossible(kind))]
         if self.task.at_limits:
             wrong += strokes_wrong(self.task, self.requirements, self.mechanism)
         set_fields(self, task=self.task.sized(stated_size(self.requirements)))
         checks.refuse(wrong)
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
+
+    def _unsuited(self, word: str) -> str:
+        """Why "six-bar" does not stand for a kind; empty where it does."""
+        return self.task.impossible(word) or self.task.needless(word)
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""
@@ -329,6 +334,7 @@ class Problem(ReadOnly):
             Unit.AREA: size**2,
             Unit.ANGLE: math.pi / 2,
             Unit.ANGULAR_VELOCITY: omega2,
+            Unit.ANGULAR_ACCELERATION: omega2**2,
             Unit.VELOCITY: omega2 * size,
             Unit.ACCELERATION: omega2**2 * size,
         }
@@ -362,6 +368,7 @@ _LISTED = ("outlines", "mechanism")  # with checks of their own
 _KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
 _NO_OUTPUT = '{kind} states no output; kind = "function" does'
 _NO_DWELL = '{kind} states no such dwell; kind = "dwell" does, with swing_deg or stroke'
+_NOT_TWO = "{kind} states no two outputs; two tables [[stroke]] do"
 _OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
 # Test that a problem states the data for a need, and the error otherwise; other needs are always met.
 _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
@@ -387,6 +394,7 @@ _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
         lambda problem: problem.task.travels,
         "function has an output that turns, not one that slides",
     ),
+    Needs.TWO_OUTPUTS: (lambda problem: problem.task.swings is not None, _NOT_TWO),
     Needs.DWELL: (lambda problem: problem.task.dwell is not None, _NO_DWELL),
     Needs.DWELL_OF_LINK: (
         lambda problem: problem.task.dwell is not None and problem.task.swing is not None,

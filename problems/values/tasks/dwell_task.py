@@ -11,12 +11,13 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import finite_number, noted, number_within, refuse, size_number
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.tasks.output_task import OutputTask
+from grashof.problems.values.tasks.output_task import OF_POINTS, OutputTask
 from grashof.problems.values.value_bases import set_fields
 
 DWELLS_DEG, SWINGS_DEG = np.array([1.0, 350.0]), np.array([0.1, 179.0])
 BANDS, USUAL_BAND = np.array([1e-9, 0.5]), 0.05  # shares of the swing or stroke
 SWING_WITHIN = float(np.radians(0.01))  # rad, or share of the stroke
+USUAL_TOLERANCE = 2e-4  # of dimensions as made, over r1, where a problem states none
 # Kinds with a dwell: D of the last dyad on the ground, C on the coupler.
 DWELL_HOSTS = (3, 1)
 DWELLING = tuple(
@@ -64,10 +65,7 @@ class DwellTask(OutputTask):
     usual_mechanism: ClassVar[tuple[str, ...]] = DWELLING
     kinds: ClassVar[tuple[str, ...]] = DWELLING
     limits_size = False  #: A dwell has no size to compare with.
-    without: ClassVar[tuple[str, ...]] = (
-        "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
-        "worst_move", "share_within_linear", "share_within_made", "theta2_start",
-    )  # fmt: skip
+    without: ClassVar[tuple[str, ...]] = (*OF_POINTS, "d")
 
     dwell: float
     swing: float | None
@@ -121,6 +119,8 @@ class DwellTask(OutputTask):
                 ("band", "swing_deg", "band_deg") if of_swing else ("band_deg", "stroke", "band")
             )
             raise ProblemError(f"dwell.{given} does not go with {key}; use {other}")
+        if dwell_deg is None:
+            raise ProblemError("dwell.dwell_deg is missing")
         angles = {"dwell_deg": dwell_deg, "swing_deg": swing_deg, "band_deg": band_deg}
         dwell, swing, of_angle = (
             None if angle is None else float(np.radians(finite_number(angle, f"dwell.{key}")))

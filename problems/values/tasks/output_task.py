@@ -12,6 +12,12 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
+# Quantities and parts that do not apply where no point is carried.
+OF_POINTS = (
+    "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body", "worst_move",
+    "share_within_linear", "share_within_made", "theta2_start",
+)  # fmt: skip
+
 
 class OutputTask(Task):
     """Two targets without positions, between which the output moves; without a stroke the scale is free."""

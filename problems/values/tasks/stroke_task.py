@@ -71,10 +71,10 @@ class StrokeTask(OutputTask):
         wrong: list[str] = []
         with noted(wrong):
             self.refuse_both(swing, stroke)
-            kept["swing"] = None if swing is None else _swing(swing)
+            kept["swing"] = None if swing is None else rocker_swing(swing, "stroke.")
             kept["stroke"] = None if stroke is None else size_number(stroke, "stroke.stroke")
         with noted(wrong):
-            kept["time_ratio"] = _ratio(time_ratio)
+            kept["time_ratio"] = slow_over_quick(time_ratio, "stroke.")
         refuse(wrong)
         set_fields(self, **kept)
 
@@ -128,25 +128,32 @@ class StrokeTask(OutputTask):
                 same = abs(self.time_ratio - ratio) <= _SAME_RATIO * ratio
                 return "" if same else f"{given} {wanted}"
             # Beyond, limit positions on one assembly need a driver that does not turn fully.
-            most, whose = (3 * np.pi + self.swing) / (np.pi - self.swing), f"a crank-rocker that {swings}"
+            most, whose = most_ratio(self.swing), f"a crank-rocker that {swings}"
         return "" if self.time_ratio < most else f"{given} less than {most:.6g} for {whose}"
 
 
-def _swing(swing: float) -> float:
-    number = finite_number(swing, "stroke.swing_deg")
+def most_ratio(swing: float) -> float:
+    """The time ratio below which those of crank-rockers with a swing, rad, lie."""
+    return float((3 * np.pi + swing) / (np.pi - swing))
+
+
+def rocker_swing(swing: float, where: str = "") -> float:
+    """A swing, rad, checked: a rocker swings by less than half a turn."""
+    number = finite_number(swing, f"{where}swing_deg")
     if not LEAST_SWING <= number < np.pi:
         least = np.degrees(LEAST_SWING)
         raise ProblemError(
-            f"stroke.swing_deg is {np.degrees(number):.6g}; "
+            f"{where}swing_deg is {np.degrees(number):.6g}; "
             f"it must be from {least:.3g} to less than 180, as a rocker swings"
         )
     return number
 
 
-def _ratio(ratio: float) -> float:
-    number = finite_number(ratio, "stroke.time_ratio")
+def slow_over_quick(ratio: float, where: str = "") -> float:
+    """A time ratio, checked."""
+    number = finite_number(ratio, f"{where}time_ratio")
     if number < 1:
         raise ProblemError(
-            f"stroke.time_ratio is {number:.6g}; it must be at least 1, the slow stroke over the quick one"
+            f"{where}time_ratio is {number:.6g}; it must be at least 1, the slow stroke over the quick one"
         )
     return number

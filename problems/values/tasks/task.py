@@ -71,6 +71,10 @@ class Task(ReadOnly, ABC):
     dwell: float | None = None
     #: Greatest length of the curve over that of the closed spline through the points, where it is stated.
     length_ratio_max: float | None = None
+    #: Swings of links 4 and 6, rad, of a linkage with two outputs.
+    swings: tuple[float, float] | None = None
+    #: Their time ratios; None where free.
+    time_ratios: tuple[float | None, float | None] = (None, None)
     #: Time of the slow stroke over that of the quick one; NaN where free.
     time_ratio: float = np.nan
 
@@ -305,16 +309,30 @@ class Task(ReadOnly, ABC):
             if host != 1
         )
 
+    def needless(self, word: str) -> str:
+        """Why no linkage of a kind is searched for it, in one line; empty where some are."""
+        if self.rows(word):
+            return ""
+        return (
+            f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
+            "it must be four-bar, or another six-bar"
+        )
+
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        if word in self.kinds and self.rows(word):
-            return ""
         if word in self.kinds:
-            return (
-                f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
-                "it must be four-bar, or another six-bar"
-            )
-        return f'mechanism is {word}; of kind = "{self.kind}" it must be {listing(list(self.kinds))}'
+            return ""
+        return f"mechanism is {word}; of {self.described} it must be {listing(list(self.kinds))}"
+
+    @property
+    def described(self) -> str:
+        """The kind of task as files state it, in a message."""
+        return f'kind = "{self.kind}"'
+
+    def output_links(self, mechanism: Mechanism) -> tuple[int, ...]:
+        """The links of a linkage whose turning is its output: the last one, none where that slides."""
+        last = mechanism.loops[-1]
+        return (last.links[1],) if last.pinned else ()
 
     @property
     def output_unit(self) -> float:

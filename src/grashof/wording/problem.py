@@ -18,6 +18,7 @@ from grashof.problems import (
     ProblemError,
     Requirements,
     StrokeTask,
+    TandemTask,
     Task,
 )
 from grashof.problems.values.arrays import FloatArray
@@ -219,6 +220,15 @@ def _stroke(task: Task, unit: str) -> str:
     return f"{way}, time ratio {task.time_ratio:g}, {free} free"
 
 
+def _tandem(task: TandemTask, _unit: str) -> str:
+    each = [
+        f"swing {np.degrees(one.swing):g} deg of link {one.link}"
+        + ("" if one.time_ratio is None else f" with time ratio {one.time_ratio:g}")
+        for one in task.strokes
+    ]
+    return f"two outputs: {' and '.join(each)}, place and scale free"
+
+
 def _dwell(task: Task, unit: str) -> str:
     way, free = _way(task, unit)
     return f"dwell of {np.degrees(task.dwell or 0.0):g} deg, {way}, {free} free"
@@ -254,6 +264,7 @@ _TASKS: Mapping[type, Callable[[Any, str], str]] = {
     Task: _targets,
     MotionTask: _motion,
     StrokeTask: _stroke,
+    TandemTask: _tandem,
     DwellTask: _dwell,
     FunctionTask: _function,
 }
@@ -271,7 +282,7 @@ def _exactness(problem: Problem) -> str:
     if not exact:
         return "least squares"
     within = f"met within {problem.requirements.tolerance:g}"
-    if problem.task.at_limits:
+    if problem.task.at_limits or problem.task.swings is not None:
         return f"{within} (rad, and as a share)"
     if problem.task.dwell is not None:
         return (

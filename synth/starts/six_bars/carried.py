@@ -99,7 +99,7 @@ class Carried:
         self.made = shapes.made(free, batch.longer_driver, batch.assembly, ends)
         theta2 = self.unknowns.theta2
         driver, sides = Vector(np.cos(theta2), np.sin(theta2)), list(batch.assembly.T[..., None])
-        self.frames = chained(row, plain(self.made.given), driver, sides).frames
+        self.frames, squares = chained(row, plain(self.made.given), driver, sides)
         carries, last = row.carries, row.loops[-1].links[1]
         self.by_origin = self._along(self.frames[carries].origin, lambda: self.moves[carries].by_origin)
         self.by_along = self._along(self.frames[carries].along, lambda: self.moves[carries].by_along)
@@ -108,8 +108,7 @@ class Carried:
         self.origin, self.along, self.output = (
             each.value for each in (self.by_origin, self.by_along, self.by_output)
         )
-        closes = np.isfinite(self.origin * self.along * self.output)
-        self.closes: BoolArray = np.asarray(closes.all(axis=1))
+        self.closes: BoolArray = np.logical_and.reduce([np.all(each > 0, axis=1) for each in squares])
 
     def _along(self, vector: Vector, columns: Callable[[], ComplexArray]) -> Along:
         value = np.broadcast_to(as_complex(vector), self.unknowns.theta2.shape)

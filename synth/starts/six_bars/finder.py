@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, Requirements, Rotatability, Task, TransmissionOver
+from grashof.problems import Linkage, ProblemError, Requirements, Rotatability, Task, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
@@ -25,7 +25,7 @@ from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
 from grashof.synth.starts.thinning import thinned
-from grashof.synth.theory.distinct import origin_of, pick_apart, signature
+from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
 
 DRAWS = 3000
 FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
@@ -81,6 +81,11 @@ class SixBars(DesignFinder):
         """One for each row and transmission angle, or more."""
         return len(self.plan)
 
+    def refuse(self) -> None:
+        """Raise `ProblemError` for kinds whose P moves as that of a four-bar."""
+        if said := self.scaled.problem.task.needless(self.scaled.problem.mechanism[0]):
+            raise ProblemError(said)
+
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """The best of some thousand linkages of one row, for one transmission angle."""
         if number >= self.rounds_a_pass:
@@ -127,9 +132,8 @@ class SixBars(DesignFinder):
         if not made:
             return []
         origin = origin_of(self.scaled.problem.task)
-        signatures = np.array([signature(each, origin) for each in made])
         score = -np.arange(len(made), dtype=np.float64)
-        picked = pick_apart(signatures, score, APART, EXACT_JUDGED if exact else JUDGED)
+        picked = pick_apart(signatures(made, origin), score, APART, EXACT_JUDGED if exact else JUDGED)
         return [made[k] for k in picked]
 
     def _kept(self, shapes: Shapes, batch: Batch, z: ComplexArray) -> BoolArray:

@@ -41,7 +41,7 @@ class Move(NamedTuple):
 
 
 def moves(mechanism: Mechanism, frames: Mapping[int, Frame], given: Mapping[str, Any]) -> dict[int, Move]:
-    """The moves of all links by the columns of the dimensions `given`, the last of which is the driver angle."""
+    """The moves of all links by the columns of the dimensions `given`; the last is the driver angle."""
     driver = as_complex(frames[2].along)
     columns = given["r2"].slope.shape[2]
     still = np.zeros((*driver.shape, columns))
@@ -52,7 +52,8 @@ def moves(mechanism: Mechanism, frames: Mapping[int, Frame], given: Mapping[str,
         2: Move(np.zeros_like(driver), driver, still * 0j, turning),
     }
     for loop in mechanism.loops:
-        frame = [(as_complex(each.origin), as_complex(each.along)) for each in map(frames.get, loop.links)]
+        links = [frames[link] for link in loop.links]
+        frame = [(as_complex(each.origin), as_complex(each.along)) for each in links]
         by_c = _by_joint(loop.c, loop.dyad.hosts[0], found, given)
         if loop.pinned:
             by_d = _by_joint(loop.d, loop.dyad.hosts[1], found, given)
@@ -114,11 +115,11 @@ def _dot(one: ComplexArray, other: ComplexArray) -> FloatArray:
     return found
 
 
-def number(each: Any) -> tuple[ComplexArray, ComplexArray]:
+def number(each: Any) -> tuple[Any, Any]:
     """A dimension as complex numbers (n, 1), and their derivatives (n, 1, K); a place counts as x + i y."""
     if isinstance(each, Vector):
         (x, by_x), (y, by_y) = number(each.x), number(each.y)
-        return x + 1j * y, by_x + 1j * by_y
+        return np.asarray(x + 1j * y), np.asarray(by_x + 1j * by_y)
     if isinstance(each, Dual):
         return each.value + 0j, each.slope + 0j
     return np.full((1, 1), complex(each)), np.zeros((1, 1, 1), dtype=np.complex128)

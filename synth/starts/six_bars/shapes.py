@@ -162,7 +162,12 @@ class Made:
         low, high, low_mu, high_mu, longer, share = np.moveaxis(numbers, -1, 0)
         cosine = np.cos(self.shapes.transmission)
         slack = SHORT * (high - low)
-        shortest = np.maximum((high - low + 2 * slack) / 2, (high_mu - low_mu + 2 * slack) / (2 * cosine))
+        least_of = (  # where both ranges of the offset, or one of each, meet
+            (high - low, 2.0),
+            (high_mu - low_mu, 2 * cosine),
+            (np.maximum(high - low_mu, high_mu - low), 1 + cosine),
+        )
+        shortest = np.maximum.reduce([(apart + 2 * slack) / share for apart, share in least_of])
         r5 = shortest * (1 + np.exp(longer))
         least = np.maximum(high + slack - r5, high_mu + slack - cosine * r5)
         most = np.minimum(low - slack + r5, low_mu - slack + cosine * r5)

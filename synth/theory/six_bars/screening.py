@@ -52,13 +52,14 @@ class Screen:
         """
         wanted = self.wanted
         turning = wanted.rotatability is not Rotatability.ANY
-        over_turn = turning and wanted.transmission_over is TransmissionOver.CYCLE
+        over_turn = wanted.transmission_over is TransmissionOver.CYCLE
+        over_turn = over_turn and (turning or wanted.transmission_min_deg > 0)  # zero where travel ends
         required = max(LEAST, float(np.sin(np.radians(wanted.transmission_min_deg) + SPARE)))
         sines, left = np.full(len(found), np.nan), np.arange(len(found))
         for count in SAMPLES:
             some = found[left]
             least = least_sines(some, driver_turns(some.loop)[:, -1:] * np.linspace(0, 1, count))
-            if turning:
+            if turning or over_turn:
                 around = np.broadcast_to(np.linspace(0, TURN, 2 * count), (len(some), 2 * count))
                 round_turn = least_sines(some, around)
                 least = round_turn if over_turn else np.where(round_turn > LEAST, least, np.nan)

@@ -146,7 +146,7 @@ def limiting(key: str, low: float, high: float) -> Any:
 def test_every_measured_quantity_can_be_limited(kind: str) -> None:
     values = planted(2, kind)
     known = [key for key in MEASURED if not np.isnan(values[key])]
-    assert len(known) > 0.45 * len(MEASURED)
+    assert len(known) > 35  # others are of six-bars, dwells, cylinders
     for key in known:
         check_limits(values, key)
 

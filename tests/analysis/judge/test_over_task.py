@@ -52,6 +52,7 @@ def dense(linkage: FourBar, spec: DynamicsSpec, start: float, end: float) -> dic
         "omega4_max": float(np.abs(state.omega4).max()),
         "point_speed_max": float(state.p.speed.max()),
         "point_acceleration_max": float(state.p.acceleration_magnitude.max()),
+        "output_acceleration_max": float(np.abs(state.alpha4).max()),
         "torque_peak": float(np.abs(found.torque).max()),
         "torque_rms": float(np.sqrt((square.sum() - (square[0] + square[-1]) / 2) / 20_000)),
         "joint_force_peak": max(float(found.joint_force(joint).max()) for joint in joints_of(linkage)),
@@ -104,6 +105,7 @@ def test_a_peak_beside_a_near_dead_position_is_met() -> None:
         "omega4_max": lambda theta2: np.abs(state(theta2).omega4),
         "point_speed_max": lambda theta2: state(theta2).p.speed,
         "point_acceleration_max": lambda theta2: state(theta2).p.acceleration_magnitude,
+        "output_acceleration_max": lambda theta2: np.abs(state(theta2).alpha4),
         "torque_peak": lambda theta2: np.abs(inverse_dynamics(state(theta2), masses, loads).torque),
     }
     for name, curve in curves.items():
@@ -119,6 +121,8 @@ def test_the_driver_turns_at_one_radian_a_second_or_at_its_speed() -> None:
     assert driven.omega4_max == pytest.approx(speed * slow.omega4_max, rel=1e-12)
     assert driven.point_speed_max == pytest.approx(speed * slow.point_speed_max, rel=1e-12)
     assert driven.point_acceleration_max == pytest.approx(speed**2 * slow.point_acceleration_max, rel=1e-12)
+    turning = speed**2 * slow.output_acceleration_max
+    assert driven.output_acceleration_max == pytest.approx(turning, rel=1e-12)
     assert driven.coupler_fit_r2 == slow.coupler_fit_r2
     assert np.isnan([getattr(slow, name) for name in DYNAMICS]).all()
 
@@ -173,7 +177,10 @@ def test_in_a_dead_position_rates_and_torque_are_infinite() -> None:
     problem, verdict = judged(rocker, [end - 0.4, end - 0.2, end])
     assert verdict.branch_ok
     found = over_task(rocker, problem, verdict)
-    infinite = ("omega4_max", "point_speed_max", "point_acceleration_max", *DYNAMICS)
+    infinite = (
+        *("omega4_max", "point_speed_max", "point_acceleration_max", "output_acceleration_max"),
+        *DYNAMICS,
+    )
     assert np.isinf([getattr(found, name) for name in infinite]).all()
     assert np.isfinite(found.coupler_fit_r2)
     assert np.isinf(Values(rocker, verdict, problem)["torque_peak"])
@@ -238,6 +245,7 @@ def test_peaks_and_means_are_those_of_dense_samples_in_time(motor: str, seed: in
     assert found.joint_force_peak == pytest.approx(force, rel=1e-6)
     assert found.omega4_max == pytest.approx(np.abs(state.omega4).max(), rel=1e-6)
     assert found.point_acceleration_max == pytest.approx(state.p.acceleration_magnitude.max(), rel=1e-6)
+    assert found.output_acceleration_max == pytest.approx(np.abs(state.alpha4).max(), rel=1e-6)
 
 
 def test_friction_and_dampers_depend_on_the_sense() -> None:

@@ -69,7 +69,7 @@ NOT_OF_A_KIND = r"""
     requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and
     inverted-slider-crank; only <BARS>
 """
-SIX = "stephenson-3, stephenson-1 and watt-1 have it"
+SIX = "stephenson-3, stephenson-1, watt-1 and watt-2 have it"
 BARS, BOTH = f"four-bar, {SIX}", f"four-bar, inverted-slider-crank, {SIX}"
 
 

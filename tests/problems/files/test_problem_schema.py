@@ -81,6 +81,7 @@ size = [0, 9]
 omega4_max = [0, 9]
 point_speed_max = [0, 9]
 point_acceleration_max = [0, 9]
+output_acceleration_max = [0, 9]
 torque_peak = [0, 9]
 torque_rms = [0, 9]
 joint_force_peak = [0, 9]
@@ -105,6 +106,18 @@ payload = 1
 length_tolerance = 0.1
 """
 
+
+TWO_STROKES = """kind = "stroke"
+[[stroke]]
+link = 4
+swing_deg = 90
+[[stroke]]
+link = 6
+swing_deg = 85
+[requirements]
+d = [500, 0]
+synchrony_error = [0, 0.1]
+"""
 
 WITH_CYLINDER = f"""length_unit = "m"
 {MOTION}
@@ -147,6 +160,7 @@ def test_the_examples_above_use_every_requirement() -> None:
         re.sub(sliding, "", EVERY_LIMIT),
         re.sub(driven, "", of_all_kinds),
         WITH_CYLINDER,
+        TWO_STROKES,
         'kind = "dwell"\n[dwell]\ndwell_deg = 90\nswing_deg = 45\n[requirements]\nr5 = [1, 2]\nr6 = [2, 3]\n',
     ):
         given, names = problem(text).requirements, set(tomllib.loads(text)["requirements"])

@@ -179,6 +179,7 @@ def curves(problem: Problem, linkage: Linkage, share: FloatArray) -> dict[str, F
         "omega4_max": np.abs(state.omega4),
         "point_speed_max": state.p.speed,
         "point_acceleration_max": state.p.acceleration_magnitude,
+        "output_acceleration_max": np.abs(state.alpha4),
         "torque_peak": np.abs(dynamics.torque) * metre**2,
         "joint_force_peak": np.max([dynamics.joint_force(joint) for joint in joints_of(linkage)], axis=0)
         * metre,

@@ -26,7 +26,7 @@ BAD: list[tuple[Any, dict[str, Any], str]] = [
     (Search, {"enough": 2.5}, "search.enough is 2.5; it must be a whole number from 1"),
     (Search, {"seed": 10**300}, r"search.* is .*; it must be a whole number from 0, of up to 300 digits"),
     (Search, {"starts": 16**5000}, r"search.* is .*; it must be a whole number from 1, of up to 300 digits"),
-    (Problem, {"task": 5}, r"problem.task is 5; it must be MotionTask or PathTask or StrokeTask or Fun.*"),
+    (Problem, {"task": 5}, r"problem.task is 5; it must be MotionTask or PathTask or StrokeTask or Tan.*"),
     (Problem, {"requirements": None}, r"problem.requirements is None; it must be Requirements"),
     (Problem, {"manufacturing": 0.1}, r"problem.manufacturing is 0.1; it must be Manufacturing or None"),
     (Problem, {"dynamics": 7}, r"problem.dynamics is 7; it must be DynamicsSpec or None"),

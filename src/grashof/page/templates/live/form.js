@@ -142,7 +142,8 @@ class Form {
     this.table();
     for (const node of $$("[data-unit]", root)) node.textContent = unit ? ` (${unit})` : "";
     const dwell = task.kind === "dwell"; // six-bars alone, and goals of its own
-    $("[data-mechanisms]", root).closest("fieldset").hidden = dwell;
+    // two outputs have a kind of their own, too
+    $("[data-mechanisms]", root).closest("fieldset").hidden = dwell || Array.isArray(document.stroke);
     for (const option of $("[name=objective]", root).options) {
       option.hidden = dwell ? !OF_DWELLS.includes(option.value) : option.value === "band_made";
     }

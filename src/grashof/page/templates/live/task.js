@@ -1,6 +1,6 @@
 // The task of a live page as its problem file: changes by hand, undo and redo.
 const HISTORY = 200; // steps back, at most
-const REGIONS = ["o2", "o4", "a", "b"];
+const REGIONS = ["o2", "o4", "d", "a", "b"];
 const FEWEST = { motion: 2, path: 3 };
 
 class Task {

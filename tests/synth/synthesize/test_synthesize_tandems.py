@@ -1,0 +1,155 @@
+"""Two outputs from the problem to the list: each design closed again in body coordinates, round the turn."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from body_coordinates import follow, rates, start
+from body_plans import plan_of
+
+from grashof.analysis import verify
+from grashof.problems import Box, Linkage, LinkSwing, Objective, Problem, Requirements, TandemTask, load
+from grashof.synth import Result, synthesize, track
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.search.plain import plain, restored
+from grashof.synth.starts.strokes.tandem import TandemRockers
+
+STEPS = 720
+PLACES = {
+    "o2": Box((100, 100), (-50, -50)),
+    "o4": Box((0, 0), (0, 0)),
+    "d": Box((560, 560), (0, 0)),
+}
+
+
+@pytest.fixture(scope="module")
+def wipers() -> Result:
+    return synthesize(load("tandem-wiper"))
+
+
+@pytest.mark.slow
+def test_the_tandem_wiper_in_body_coordinates(wipers: Result) -> None:
+    assert len(wipers) >= 10
+    frame, theta2 = wipers.to_frame(), np.linspace(0, 2 * np.pi, STEPS + 1)
+    assert set(frame["hosts"]) == {"2-1", "4-1"}
+    for hosts in ("2-1", "4-1"):
+        rows = np.flatnonzero(frame["hosts"] == hosts)[:10]
+        linkages = Linkage.stacked([wipers.candidates[k].linkage for k in rows])
+        plan = plan_of(linkages)
+        q = follow(plan, start(plan, 0.0), 0.0, theta2)
+        angles = q[..., 2::3]
+        np.testing.assert_allclose(np.ptp(angles[..., 2], axis=0), np.pi / 2, atol=5e-5)
+        np.testing.assert_allclose(np.ptp(angles[..., 4], axis=0), np.radians(85), atol=5e-5)
+        both = np.sin([angles[..., 2] - angles[..., 1], angles[..., 4] - angles[..., 3]])
+        assert np.abs(both).min() >= np.sin(np.radians(30)) - 1e-6
+        peaks = np.abs(rates(plan, q)[2][..., [8, 14]]).max(axis=(0, 2))
+        np.testing.assert_allclose(peaks, frame["output_acceleration_max"][rows], rtol=1e-3)
+    np.testing.assert_allclose(frame[["swing_4_deg", "swing_6_deg"]], [[90, 85]] * len(frame), atol=5e-5)
+    for name, (x, y) in {"o2": (100, -50), "o4": (0, 0)}.items():
+        np.testing.assert_allclose(frame[[f"{name}_x", f"{name}_y"]], [[x, y]] * len(frame), atol=1e-9)
+    np.testing.assert_allclose(frame[["d_u", "d_v"]], [[560, 0]] * len(frame), atol=1e-9)
+
+
+@pytest.mark.slow
+def test_the_list_begins_with_the_least_peak(wipers: Result) -> None:
+    frame = wipers.to_frame()
+    heads = frame[frame["family"] == frame["id"]]
+    assert heads["output_acceleration_max"].is_monotonic_increasing
+    assert frame["output_acceleration_max"].min() < 1.125
+    assert frame[["synchrony_error", "time_ratio_4", "time_ratio_6"]].notna().all(axis=None)
+
+
+@pytest.mark.slow
+def test_a_record_keeps_them(wipers: Result) -> None:
+    for one in wipers.candidates[:2]:
+        again: Any = restored(plain(one), wipers.problem)
+        assert (again.linkage, again.verdict.outputs) == (one.linkage, one.verdict.outputs)
+
+
+@pytest.mark.slow
+def test_designs_follow_a_changed_task(wipers: Result) -> None:
+    task = TandemTask(
+        [LinkSwing.from_degrees(link=link, swing_deg=swing) for link, swing in ((4, 92), (6, 84))]
+    )
+    moved = {**PLACES, "d": Box((565, 565), (3, 3))}
+    changed = replace(
+        wipers.problem,
+        task=task,
+        requirements=replace(wipers.problem.requirements, transmission_min_deg=25, **moved),
+    )
+    best = wipers.candidates[:6]
+    for one, new in zip(best, track(best, changed), strict=True):
+        assert new.verdict.ok, new.verdict.defects
+        assert new.linkage.choices == one.linkage.choices
+        apart = np.abs(np.array(new.linkage.lengths) - one.linkage.lengths).max()
+        assert apart < 0.2 * one.linkage.lengths.max()
+
+
+def problem_of(swings: tuple[float, float] = (90, 85), goal: str = "transmission", **wanted: Any) -> Problem:
+    task = TandemTask(
+        [
+            LinkSwing.from_degrees(link=link, swing_deg=swing)
+            for link, swing in zip((4, 6), swings, strict=True)
+        ]
+    )
+    return Problem(
+        task=task,
+        requirements=Requirements(**wanted),
+        objective=Objective(**{"transmission": 0.0, goal: 1.0}),
+    )
+
+
+@pytest.mark.quick("boxes")
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"r1": (100, 100), "size": (0, 500)},
+        {"o2": Box((50, 150), (-80, -20)), "o4": Box((0, 0), (0, 0)), "d": Box((500, 600), (-20, 20))},
+        {"o2": Box((0, 0), (0, 0)), "ground_angle_deg": 30.0, "link_length": (20, 300)},
+        {"output_acceleration_max": (0, 1.2), "link_ratio_max": 6.0},
+        {"synchrony_error": (0, 0.03), **PLACES},
+        {"r5": (380, 420), "r6": (150, 260), **PLACES},
+        {"driver_sense": "cw", **PLACES},
+    ],
+    ids=["scale", "boxes", "angle", "acceleration", "synchrony", "links", "sense"],
+)
+def test_limits_are_kept(limits: dict[str, Any]) -> None:
+    problem = problem_of(transmission_min_deg=25.0, **limits)
+    finder = TandemRockers(ScaledProblem.of(problem))
+    found = [*finder.closest_to(finder.scaled, "size", np.random.default_rng(1))]
+    verdicts = [
+        verify(one, problem.task, problem.requirements, problem=problem)
+        for one in found
+        if isinstance(one, Linkage)
+    ]
+    assert sum(one.ok for one in verdicts) >= 3
+
+
+@pytest.mark.slow
+def test_the_least_synchrony_error_is_a_goal() -> None:
+    problem = problem_of((60, 60), "synchrony_error", transmission_min_deg=25.0, **PLACES)
+    best = synthesize(problem, starts=30).best
+    assert best.values["synchrony_error"] < 1e-3  # a parallelogram would have none
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("swings", "wanted", "line"),
+    [
+        ((90, 85), {"transmission_min_deg": 60.0, **PLACES}, "this alone would do: transmission_min_deg 43"),
+        ((90, 85), {"r5": (1, 2), "r6": (1, 2), **PLACES}, "the closest one misses r5"),
+        (
+            (90, 85),
+            {"output_acceleration_max": (0, 0.7), "transmission_min_deg": 20.0},
+            "output_acceleration_max up",
+        ),
+    ],
+)
+def test_an_empty_list_names_what_stands_in_the_way(
+    swings: tuple[float, float], wanted: dict[str, Any], line: str
+) -> None:
+    result = synthesize(problem_of(swings, **wanted))
+    assert not result.candidates
+    assert result.note.startswith("no design: no linkage with both swings keeps the other limits; ")
+    assert line in result.note
