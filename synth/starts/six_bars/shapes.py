@@ -7,9 +7,8 @@ between C and D is sampled over the motion of the first loop, so that the last l
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from scipy.special import expit, logit
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
 from grashof.synth.loop.chain import gap_of
+from grashof.synth.loop.differences import Differences
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Bars
 from grashof.synth.loop.feasible import Demand, bars_between, feasible
@@ -25,12 +25,9 @@ from grashof.synth.loop.vector import Vector
 
 SAMPLES = 48  # of a turn, or of a range, for the extremes of a gap
 SHORT = 2e-3  # share by which samples may understate these
-STEP = 1e-6  # of derivatives by differences
 SPREAD = 1.0  # of random places of C and D, over r1
 FIRST = 3  # free numbers of the first loop
 ENDS = 2  # ends of the task motion, among the columns of derivatives
-
-Function = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,18 +208,3 @@ def _plain(each: Any) -> Any:
     if isinstance(each, Vector):
         return Vector(_plain(each.x), _plain(each.y))
     return each.value if isinstance(each, Dual) else each
-
-
-class Differences:
-    """Values (n, m) of a function of (n, ..., k) numbers, and their derivatives (n, m, k) by differences."""
-
-    def __init__(self, function: Function, numbers: FloatArray) -> None:
-        self.function, self.numbers = function, numbers
-        self.values = function(numbers[:, None])[:, 0]
-
-    @cached_property
-    def slopes(self) -> FloatArray:
-        """Of second order."""
-        steps = STEP * np.eye(self.numbers.shape[1])
-        up, down = (self.function(self.numbers[:, None] + sign * steps) for sign in (1, -1))
-        return np.swapaxes(up - down, 1, 2) / (2 * STEP)
