@@ -7,7 +7,7 @@ origin Q and direction e of the link that carries it, is linear in z0, z1, z2, w
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -32,13 +32,17 @@ NO_ERROR = 1e-22  # sizes squared, or rad squared
 # Numbers of the best that continue, their steps, and the weight of limits, in sizes.
 STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
 
+FIRST_STAGES = ((400, 8, 0.1), (100, 12, 1.0), (30, 20, 10.0))  # where a fit to more targets follows
+
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
     """Random linkages."""
     wanted = target.wanted
     first = rng.uniform(-np.pi, np.pi, (count, 1))
     angles = [first]
-    if not target.timed:  # the last gap is the rest of the turn
+    if target.jumbled:
+        angles.append(rng.uniform(-np.pi, np.pi, (count, len(target.points) - 1)))
+    elif not target.timed:  # the last gap is the rest of the turn
         gaps = drawn_gaps(target, count, rng)
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         low = 0.03 if shapes.turning else 0.3
@@ -51,9 +55,15 @@ def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Gener
     )
 
 
-def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
+def fitted(
+    target: SearchTargets,
+    shapes: Shapes,
+    batch: Batch,
+    until: int,
+    stages: Sequence[tuple[int, int, float]] = STAGES,
+) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared."""
-    for keep, steps, weight in STAGES:
+    for keep, steps, weight in stages:
         model = Fitting(target, shapes, weight)
         batch = batch[np.argsort(model.errors(batch), kind="stable")[:keep]]
         batch, error = improve(model, batch, steps, NO_ERROR, until, missed=model.missed)

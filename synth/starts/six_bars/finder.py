@@ -20,7 +20,7 @@ from grashof.synth.starts.closed_loop import Batch, SearchTargets
 from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.loop_search import project
 from grashof.synth.starts.six_bars.carried import Carried, around
-from grashof.synth.starts.six_bars.chains import draw, fitted, linkages
+from grashof.synth.starts.six_bars.chains import FIRST_STAGES, STAGES, draw, fitted, linkages
 from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
@@ -32,10 +32,11 @@ FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found fir
 CLOSED_TARGETS = 48  # places on a closed path, so that no curve fits the points alone
 ROUND = 512  # driver angles for the length of a curve
 FINDS = "feasible finds"
-LEAST_ROUNDS = 3  # of least squares for every row under the required transmission angle
-LEVELS = (20.0, 30.0, 40.0, 50.0)  # deg: transmission angles that designs are made for, too
+LEAST_ROUNDS = 6  # of least squares under the required transmission angle, if there are no more rows
+EXACT_PASSES = 2  # of exact designs through all transmission angles, likewise
+LEVELS = (20.0, 35.0, 50.0)  # deg: transmission angles that designs are made for, too
 MET = 1e-9  # sizes, or rad: a greater error of an exact design is none
-JUDGED, EXACT_JUDGED = 10, 24  # designs of a round
+JUDGED, EXACT_JUDGED = 8, 24  # designs of a round
 CLOSE = 3  # designs of each row that miss a requirement
 WORSE = 3.0  # times the least error of a round
 APART = 0.03  # between designs of a round, as `distinct` counts
@@ -73,7 +74,10 @@ class SixBars(DesignFinder):
         """The row and the transmission angle, deg, of every round: the required one, and greater ones."""
         least = self.wanted.transmission_min_deg
         greater = [level for level in LEVELS if level > least + 1]
-        levels = [least, *greater] * 2 if self.scaled.exact else [least] * LEAST_ROUNDS + greater
+        often = max(1, LEAST_ROUNDS // len(self.rows))
+        levels = [least] * often + greater
+        if self.scaled.exact:
+            levels = [least, *greater] * max(1, EXACT_PASSES // len(self.rows))
         return [(row, level) for level in levels for row in self.rows]
 
     @property
@@ -116,9 +120,11 @@ class SixBars(DesignFinder):
         """Distinct linkages of a row, best first, in the problem's unit."""
         target, shapes, exact = self.target(row), self._shapes(row, level), self.scaled.exact
         with np.errstate(all="ignore"):
-            some, index = thinned(target, len(target.points) if target.timed else FEW_TARGETS)
+            every = target.timed or target.jumbled
+            some, index = thinned(target, len(target.points) if every else FEW_TARGETS)
+            stages = STAGES if some is target else FIRST_STAGES
             batch = draw(some, shapes, size * DRAWS, rng)
-            batch, error = fitted(some, shapes, batch, EXACT_JUDGED if exact else 1)
+            batch, error = fitted(some, shapes, batch, EXACT_JUDGED if exact else 1, stages)
             if some is target:
                 at = Carried(target, shapes, batch)
                 z = self._places(at) if target.outputs is not None else project(target, at)[0]
