@@ -111,15 +111,14 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
         return False
     if getattr(one.cylinder, "on", None) != getattr(other.cylinder, "on", None):
         return False
-    if (one.dwell is None) != (other.dwell is None):
-        return False
-    if (
-        one.dwell is not None
-        and other.dwell is not None
-        and not near(astuple(one.dwell), astuple(other.dwell), size)
-    ):
-        return False
-    apart = ("defects", "grashof_class", "cylinder", "dwell")
+    figures = {"dwell": size, "outputs": 1.0}  # of dwells in rad or lengths
+    for name, scale in figures.items():
+        mine, theirs = (getattr(each, name) for each in (one, other))
+        if (mine is None) != (theirs is None):
+            return False
+        if mine is not None and not near(np.hstack(astuple(mine)), np.hstack(astuple(theirs)), scale):
+            return False
+    apart = ("defects", "grashof_class", "cylinder", *figures)
     names = (each.name for each in fields(Verdict) if each.name not in apart)
     return one.grashof_class is other.grashof_class and all(
         near(getattr(one, name), getattr(other, name), scales.get(name, 1.0)) for name in names

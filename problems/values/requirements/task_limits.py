@@ -12,6 +12,7 @@ from grashof.problems.values.linkages.mechanisms import joined
 from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.units import Unit
 
 _SWINGS = (
     'requirements.rotatability is "double-crank", whose output does not swing; '
@@ -26,6 +27,11 @@ def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantit
         f"{where} does not apply to a {kind}; remove it"
         for where, quantity in used.items()
         if quantity.key in task.without
+    ]
+    wrong += [
+        f"{where} does not apply to a {kind} of a slide, which does not turn; remove it"
+        for where, quantity in used.items()
+        if task.stroke is not None and quantity.unit is Unit.ANGULAR_ACCELERATION
     ]
     if wanted.keep_out:
         wrong += [

@@ -19,6 +19,7 @@ from grashof.wording.problem import error_meaning
 
 ROUNDING = "≈ 0"  # shown for an error that is rounding
 _LENGTH_DIGITS, _ANGLE_DECIMALS = 5, 2
+_GOAL_DIGITS = 4  # of goals that a table does not list otherwise
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class Column:
 
 
 def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
-    """The quantities that are known of some of these designs, those of the table first.
+    """The quantities that are known of some of these designs, those of the table first, goals among them.
 
     The transmission angle over the task is left out where the task is a full turn; otherwise that over the
     turn where no driver turns fully.
@@ -65,7 +66,9 @@ def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
     ]
     # The table begins with quantities of any design, then those of masses or tolerances, then lengths.
     stated = Needs.DYNAMICS, Needs.MANUFACTURING
-    shown.sort(key=lambda each: (not each.digits, not each.better, each.needs in stated))
+    weighed = {goal.key for goal, _ in problem.goals}
+    digits = {each.key: each.digits or _GOAL_DIGITS * (each.key in weighed) for each in shown}
+    shown.sort(key=lambda each: (not digits[each.key], not each.better, each.needs in stated))
     lengths, longest = length_decimals(rows), _longest(rows)
     return [
         Column(
@@ -76,13 +79,13 @@ def columns_of(problem: Problem, rows: Sequence[Row]) -> list[Column]:
             if _is_length(each) and lengths is not None
             else _decimals(
                 _known_of(rows, each.column),
-                each.digits,
+                digits[each.key],
                 NOISE * longest if each.key in DIMENSIONS else noise_of(each, rows),
             ),
             noise_of(each, rows),
             each.better,
             error_meaning(problem) if each.key == "error" else each.about,
-            listed=each.digits > 0,
+            listed=digits[each.key] > 0,
         )
         for each in shown
     ]

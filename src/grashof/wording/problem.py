@@ -43,6 +43,7 @@ from grashof.wording.numbers import value_text
 _KEYS = (
     "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
     "transmission_min_cycle", "band", "slide_band", "band_made", "slide_band_made", "swing",
+    "swing_4", "swing_6", "time_ratio_4", "time_ratio_6", "synchrony_error",
     "driver_rotation", "output_swing", "stroke", "time_ratio", "size", "torque_peak",
 )  # fmt: skip
 

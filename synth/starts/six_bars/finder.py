@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from grashof.problems import Linkage, ProblemError, Requirements, Rotatability, Task, TransmissionOver
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
@@ -26,6 +26,8 @@ from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
 from grashof.synth.starts.thinning import thinned
 from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
+from grashof.synth.theory.six_bars.five_poses import six_bars_through
+from grashof.synth.theory.six_bars.link_motions import POSES
 
 DRAWS = 3000
 FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
@@ -36,7 +38,7 @@ LEAST_ROUNDS = 6  # of least squares under the required transmission angle, if t
 EXACT_PASSES = 2  # of exact designs through all transmission angles, likewise
 LEVELS = (20.0, 35.0, 50.0)  # deg: transmission angles that designs are made for, too
 MET = 1e-9  # sizes, or rad: a greater error of an exact design is none
-JUDGED, EXACT_JUDGED = 8, 24  # designs of a round
+JUDGED, EXACT_JUDGED, POSES_JUDGED = 8, 24, 60  # designs of a round
 CLOSE = 3  # designs of each row that miss a requirement
 WORSE = 3.0  # times the least error of a round
 APART = 0.03  # between designs of a round, as `distinct` counts
@@ -83,7 +85,7 @@ class SixBars(DesignFinder):
     @property
     def rounds_a_pass(self) -> int:
         """One for each row and transmission angle, or more."""
-        return len(self.plan)
+        return len(self.plan) + self.by_theory
 
     def refuse(self) -> None:
         """Raise `ProblemError` for kinds whose P moves as that of a four-bar."""
@@ -94,8 +96,24 @@ class SixBars(DesignFinder):
         """The best of some thousand linkages of one row, for one transmission angle."""
         if number >= self.rounds_a_pass:
             return None
-        found = self._found(*self.plan[number], rng, size)
+        if self.by_theory and not number:
+            return self._through_five_poses(rng)
+        found = self._found(*self.plan[number - self.by_theory], rng, size)
         return Round(found, {FINDS: len(found)}, size=size)
+
+    @property
+    def by_theory(self) -> bool:
+        """Whether theory gives designs, in a round before the others: through five complete poses."""
+        task = self.scaled.problem.task
+        return self.scaled.exact and task.is_whole and len(task) == POSES and not task.is_timed
+
+    def _through_five_poses(self, rng: np.random.Generator) -> Round:
+        """The most different of the best six-bars through five poses."""
+        scaled = self.scaled
+        found = six_bars_through(scaled.targets, scaled.turns, scaled.wanted, self.rows, rng)
+        made = [self._outward(each) for each in found]
+        chosen = [made[k] for k in self._apart(made, POSES_JUDGED)]
+        return Round(chosen, {FINDS: len(made)})
 
     def follow(self, design: Candidate) -> Sequence[Proposal]:
         """The design itself."""
@@ -135,12 +153,14 @@ class SixBars(DesignFinder):
             good = self._kept(shapes, batch, z) & (root <= MET if exact else np.isfinite(root))
             good &= root <= WORSE * root[good].min(initial=np.inf) if not exact else True
             made = self._linkages(target, shapes, batch[good], z[good])
+        return [made[k] for k in self._apart(made, EXACT_JUDGED if exact else JUDGED)]
+
+    def _apart(self, made: Sequence[Linkage], most: int) -> IntArray:
+        """Indices of distinct linkages, of those alike the first."""
         if not made:
-            return []
-        origin = origin_of(self.scaled.problem.task)
+            return np.zeros(0, dtype=np.int64)
         score = -np.arange(len(made), dtype=np.float64)
-        picked = pick_apart(signatures(made, origin), score, APART, EXACT_JUDGED if exact else JUDGED)
-        return [made[k] for k in picked]
+        return pick_apart(signatures(made, origin_of(self.scaled.problem.task)), score, APART, most)
 
     def _kept(self, shapes: Shapes, batch: Batch, z: ComplexArray) -> BoolArray:
         """Linkages whose curve of P does not stray between the points, (n,)."""
@@ -183,11 +203,14 @@ class SixBars(DesignFinder):
     def _linkages(
         self, target: SearchTargets, shapes: Shapes, batch: Batch, z: ComplexArray
     ) -> list[Linkage]:
-        made, frame = linkages(target, shapes, batch, z), self.scaled.frame
-        if not self.scaled.problem.task.in_plane:
-            return made
+        made = linkages(target, shapes, batch, z)
+        return [self._outward(each) for each in made] if self.scaled.problem.task.in_plane else made
+
+    def _outward(self, linkage: Linkage) -> Linkage:
+        """A linkage of the frame of the search in the problem's unit."""
+        frame = self.scaled.frame
         origin = -np.array([frame.origin.real, frame.origin.imag]) / frame.scale
-        return [each.scaled(frame.scale, origin) for each in made]
+        return linkage.scaled(frame.scale, origin)
 
     def _places(self, at: Carried) -> ComplexArray:
         """Places by the limits, (n, 3)."""

@@ -11,6 +11,7 @@ from body_plans import plan_of
 from grashof.analysis import verify
 from grashof.problems import Box, Linkage, LinkSwing, Objective, Problem, Requirements, TandemTask, load
 from grashof.synth import Result, synthesize, track
+from grashof.synth.designs.judging import alike
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.plain import plain, restored
 from grashof.synth.starts.strokes.tandem import TandemRockers
@@ -153,3 +154,11 @@ def test_an_empty_list_names_what_stands_in_the_way(
     assert not result.candidates
     assert result.note.startswith("no design: no linkage with both swings keeps the other limits; ")
     assert line in result.note
+
+
+@pytest.mark.slow
+def test_verdicts_are_compared_by_both_outputs(wipers: Result) -> None:
+    first, second = (one.verdict for one in wipers.candidates[:2])
+    assert alike(first, replace(first), 1.0)
+    assert not alike(first, replace(first, outputs=second.outputs), 1.0)
+    assert not alike(first, replace(first, outputs=None), 1.0)

@@ -79,6 +79,15 @@ def test_six_bar_stands_for_the_kinds_that_the_task_suits() -> None:
     assert Problem(task=line, mechanism="six-bar").mechanism == ("stephenson-3", "stephenson-1", "watt-1")
 
 
+def test_a_slide_has_no_angular_acceleration(tmp_path: object) -> None:
+    dwell = 'kind = "dwell"\n[dwell]\ndwell_deg = 90\nstroke = 80\n[objective]\n'
+    (file := tmp_path / "bad.toml").write_text(dwell + 'maximise = "output_acceleration_max"\n')  # type: ignore[operator]
+    with pytest.raises(
+        ProblemError, match=r"maximise.output_acceleration_max does not apply to a dwell of a slide"
+    ):
+        load(str(file))
+
+
 REFUSED = """
 exact = false | requirements.exact is false; with dwell it must be true: the swing or stroke is always met
 stroke = [70, 90] | requirements.stroke does not go with dwell.swing_deg, whose output does not slide;
