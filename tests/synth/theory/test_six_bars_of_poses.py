@@ -1,7 +1,7 @@
 """Six-bars through five poses: planted ones found again, every find confirmed by bodies and joints."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -15,9 +15,10 @@ from grashof.analysis import solve_position, verify
 from grashof.problems import Box, MotionTask, Requirements, Rotatability, SixBar, TransmissionOver
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.synth.theory.six_bars import constructions as construct
-from grashof.synth.theory.six_bars.constructions import Samples, SixBars
+from grashof.synth.theory.six_bars.constructions import FourBars, Samples, SixBars
 from grashof.synth.theory.six_bars.five_poses import REACH, linkages, six_bars_through
 from grashof.synth.theory.six_bars.link_motions import LinkMotions
+from grashof.synth.theory.six_bars.screening import driver_turns
 
 WORDS = "watt-1", "stephenson-1", "stephenson-3"
 PLANTED = {
@@ -81,7 +82,7 @@ def of_planted_chain(linkage: SixBar) -> Iterator[SixBars]:
     def bar(tail: str, tip: str) -> LinkMotions:
         return LinkMotions.between(z[tail], z[tip])
 
-    def keep(loop: construct.FourBars) -> BoolArray:
+    def keep(loop: FourBars) -> BoolArray:
         return np.ones(len(loop), np.bool_)
 
     if host == 3:
@@ -183,6 +184,68 @@ def test_requirements_are_met() -> None:
     assert len(found) > 5
     for each in found[::3]:
         assert verify(each, task, outward).ok
+
+
+def arms(each: SixBar) -> FloatArray:
+    """Distances of P from both joints of the link that carries it."""
+    u, v = each.coupler_point
+    bar = each.r5 if link(each) == 5 else each.r6
+    return np.array([np.hypot(u, v), np.hypot(u - bar, v)])
+
+
+LIMITED: dict[str, Callable[[SixBar], float]] = {
+    "r1": lambda each: float(each.r1),
+    "r4": lambda each: float(each.r4),
+    "r5": lambda each: float(each.r5),
+    "r6": lambda each: float(each.r6),
+    "link_length": lambda each: float(each.lengths.max()),
+    "link_ratio_max": lambda each: float(each.lengths.max() / each.lengths.min()),
+    "coupler_arms": lambda each: float(arms(each).max()),
+    "o2": lambda each: float(each.o2[1]),
+    "o4": lambda each: float(each.o4[1]),
+    "driver_rotation_deg": lambda each: float(
+        np.degrees(np.ptp(verify(each, smooth(8), Requirements()).theta2))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LIMITED)
+def test_a_limit_leaves_out_what_oversteps_it_and_nothing_else(name: str) -> None:
+    """The same draws, with a limit in the middle of what they have without it."""
+    task, value = smooth(8), LIMITED[name]
+    every = through(task, wanted(), count=150)
+    values = [value(each) for each in every]
+    most = float(np.median(values)) + 1e-9
+    unit = 1.0 if name in ("link_ratio_max", "driver_rotation_deg") else task.size
+    given: dict[str, Any] = {name: (0.0, most / unit)}
+    if name == "link_ratio_max":
+        given = {name: most}
+    elif name in ("o2", "o4"):
+        given = {name: Box(y=(-np.inf, (most - task.middle[1]) / unit))}
+    left = through(task, wanted(**given), count=150)
+    kept = [each for each, number in zip(every, values, strict=True) if number <= most]
+    assert 0 < len(kept) < len(every)
+    assert [each.mechanism for each in left] == [each.mechanism for each in kept]
+    for one, other in zip(left, kept, strict=True):
+        np.testing.assert_allclose(
+            np.hstack(one.parameters), np.hstack(other.parameters), rtol=1e-8, atol=1e-8
+        )
+
+
+@pytest.mark.parametrize(
+    ("angles", "expected"),
+    [
+        ([0.5, 1, 2, 4, 6.5], [0, 0.5, 1.5, 3.5, 6]),
+        ([3, 2, 0, -1, -3], [0, -1, -3, -4, -6]),
+        ([0, 2, 4, 6, 8], [np.nan] * 5),
+        ([0, 1, 2, 1.5, 3], [np.nan] * 5),
+    ],
+)
+def test_driver_meets_poses_in_order_within_a_turn(angles: list[float], expected: list[float]) -> None:
+    link = LinkMotions(np.exp(1j * np.array([angles])), np.zeros((1, 5), complex))
+    point = np.zeros(1, complex)
+    turned = driver_turns(FourBars(point, point, point, point, link, link, link))[0]
+    np.testing.assert_allclose(turned[1:], expected[1:], atol=1e-12)
 
 
 def test_kind_of_rotation() -> None:
