@@ -28,7 +28,6 @@ from grashof.synth.starts.strokes.tandem_shapes import DRIVEN_BY_CRANK, Tandems
 from grashof.synth.theory.distinct import pick_apart
 
 FEW = 20  # generations where the reason for an empty list is looked for
-BEST = 20_000  # of a search, from which distinct ones are taken
 APART, JUDGED = 0.1, 24  # between designs of a round, as `distinct` counts, and their number
 NEAREST = 3
 PHASES, SAME = 72, 1e-4  # angles between both arms of a crank; difference of scores that are equal
@@ -112,7 +111,7 @@ class TandemRockers(DesignFinder):
         """Linkages that differ, the best first."""
         if not len(found.score):
             return []
-        found = found.taken(found.order[:BEST])
+        found = found.taken(found.order)
         signatures = signatures_of(self.aim.made(hosts, found.unknowns, found.sides))
         picked = pick_apart(signatures, -np.arange(len(signatures), dtype=np.float64), APART, most)
         chosen = in_phase(self.aim, hosts, found.taken(picked))

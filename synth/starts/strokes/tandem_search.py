@@ -28,8 +28,9 @@ from grashof.synth.starts.strokes.tandem_shapes import (
 )
 from grashof.synth.theory.stopping import raise_if_overdue
 
-MEMBERS, GENERATIONS = 40, 90  # of each population
-LONGER = 2  # times as many generations of the best one follow
+MEMBERS, GENERATIONS = 40, 200  # of each population
+DRAWN, LEADERS = 6, 5  # times as many are drawn; number of the best in whose direction others move
+SIGNS = ((False, False), (False, True), (True, False), (True, True))
 PLACES = 6  # numbers that place O2, O4 and D
 WIDTH = PLACES + SHAPE
 # Beyond what is required, for peaks between samples: deg of transmission angle; share of the margin.
@@ -306,9 +307,9 @@ def _inside(box: Box, near: ComplexArray, share: FloatArray) -> ComplexArray:
 Judged = Callable[[FloatArray, BoolArray], Population]
 
 
-def drawn(rng: np.random.Generator, signs: tuple[bool, bool], count: int) -> tuple[FloatArray, BoolArray]:
-    """Random numbers and given signs."""
-    return rng.random((count, WIDTH)), np.tile(np.array(signs), (count, 1))
+def drawn(rng: np.random.Generator, count: int) -> tuple[FloatArray, BoolArray]:
+    """Random numbers, `count` for each pair of signs."""
+    return rng.random((len(SIGNS) * count, WIDTH)), np.repeat(np.array(SIGNS), count, axis=0)
 
 
 def drawn_near(
@@ -323,19 +324,22 @@ def drawn_near(
 def evolved(
     judged: Judged, begun: Population, rng: np.random.Generator, hosts: tuple[int, int], generations: int
 ) -> tuple[Population, list[Population]]:
-    """The last generation, and all that were tried on the way."""
-    best, going_round, tried = begun, list(_ROUND[hosts]), [begun]
-    count = len(begun.score)
+    """The last generation of populations of `MEMBERS` side by side, and all that were tried on the way."""
+    best, tried, count = begun, [begun], len(begun.score)
+    own = np.repeat(np.arange(0, count, MEMBERS), MEMBERS)  # where the population of each begins
+    goes_round = np.isin(np.arange(WIDTH), _ROUND[hosts])
     for _ in range(generations):
         raise_if_overdue()
-        first = best.unknowns[best.order[rng.integers(0, max(2, count // 8), count)]]
-        one, other = (best.unknowns[rng.integers(0, count, count)] for _ in range(2))
-        step = rng.uniform(*STEP, (count, 1))
-        trial = best.unknowns + step * (first - best.unknowns) + step * (one - other)
-        trial = np.where(rng.random(trial.shape) < CROSSING, trial, best.unknowns)
-        trial[:, going_round] %= 1.0
-        outside = (trial < 0) | (trial > 1)
-        trial = np.where(outside, (best.unknowns + np.clip(trial, 0, 1)) / 2, trial)
+        ranked = np.lexsort((-best.score, best.missed, own))
+        leader = ranked[own + rng.integers(0, LEADERS, count)]
+        one, other = (own + rng.integers(0, MEMBERS, count) for _ in range(2))
+        here = best.unknowns
+        ways = np.stack([here[leader] - here, here[one] - here[other]])
+        ways = np.where(goes_round, (ways + 0.5) % 1 - 0.5, ways)
+        trial = here + rng.uniform(*STEP, (count, 1)) * ways.sum(axis=0)
+        trial = np.where(rng.random(trial.shape) < CROSSING, trial, here)
+        inside = np.where(goes_round, trial % 1, np.clip(trial, 0, 1))
+        trial = np.where(goes_round | (inside == trial), inside, (here + inside) / 2)
         found = judged(trial, best.sides)
         better = (found.missed < best.missed) | ((found.missed == best.missed) & (found.score > best.score))
         tried.append(found)
@@ -355,14 +359,12 @@ def searched(
     A population for each pair of signs; the best of these then goes on.
     """
     judge = judged or partial(aim.judged, hosts)
-    every, last = list[Population](), list[Population]()
-    for signs in ((False, False), (False, True), (True, False), (True, True)):
-        begun = judge(*drawn(rng, signs, 6 * MEMBERS))
-        best, tried = evolved(judge, begun.taken(begun.order[:MEMBERS]), rng, hosts, generations)
-        last.append(best)
-        every += tried
-    leading = min(last, key=lambda each: (each.missed.min(), -each.score[each.order[0]]))
-    every += evolved(judge, leading, rng, hosts, LONGER * generations)[1]
-    found = joined(*every)
+    begun = judge(*drawn(rng, DRAWN * MEMBERS))
+    group = np.repeat(np.arange(len(SIGNS)), DRAWN * MEMBERS)
+    ranked = np.lexsort((-begun.score, begun.missed, group)).reshape(len(SIGNS), -1)
+    last, every = evolved(judge, begun.taken(ranked[:, :MEMBERS].ravel()), rng, hosts, generations)
+    first = int(last.order[0]) // MEMBERS * MEMBERS
+    leading = last.taken(np.arange(first, first + MEMBERS))
+    found = joined(*every, *evolved(judge, leading, rng, hosts, generations)[1])
     kept = np.flatnonzero(found.missed == 0)
     return found.taken(kept if len(kept) else found.order[:MEMBERS])

@@ -56,7 +56,7 @@ def test_the_tandem_wiper_in_body_coordinates(wipers: Result) -> None:
 def test_the_list_begins_with_the_least_peak(wipers: Result) -> None:
     frame = wipers.to_frame()
     heads = frame[frame["family"] == frame["id"]]
-    assert heads["output_acceleration_max"].is_monotonic_increasing
+    assert (np.diff(heads["output_acceleration_max"]) > -1e-7).all()  # closer ones tie
     assert frame["output_acceleration_max"].min() < 1.125
     assert frame[["synchrony_error", "time_ratio_4", "time_ratio_6"]].notna().all(axis=None)
 

@@ -32,8 +32,7 @@ def aim_of(swings: FloatArray, *ratios: float | None, **wanted: Any) -> TandemAi
 def drawn_linkages(aim: TandemAim, hosts: tuple[int, int], count: int) -> Any:
     """Of random ones those that have both swings, and their shapes."""
     rng = np.random.default_rng(7)
-    every = [drawn(rng, signs, count) for signs in ((False, True), (True, False))]
-    numbers, sides = (np.concatenate(each) for each in zip(*every, strict=True))
+    numbers, sides = drawn(rng, count // 2)
     with np.errstate(all="ignore"):
         found = aim.judged(hosts, numbers, sides)
         found = found.taken(found.missed == 0)
