@@ -53,7 +53,9 @@ def solved(
     least, times, strictest = [], [], min(limits)
     for number in range(seed, seed + count):
         task = draw(np.random.default_rng([7, number]))[0]
-        wide = dict.fromkeys(("link_length", "coupler_arms") if task.in_plane else (), (0.0, 1e3))
+        wide: dict[str, Any] = dict.fromkeys(
+            ("link_length", "coupler_arms") if task.in_plane else (), (0.0, 1e3)
+        )
         wanted = Requirements(exact=False, **wide)
         scaled = ScaledProblem.of(Problem(task=task, mechanism="stephenson-3", requirements=wanted))
         finder, rng, best, begun = SixBars(scaled), np.random.default_rng(number), np.inf, process_time()

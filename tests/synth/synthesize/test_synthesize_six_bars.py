@@ -52,7 +52,8 @@ LISTS: dict[str, Made] = {
     ),
     "closed curve": partial(
         solved, PathTask(np.stack([np.cos(EIGHT), np.sin(2 * EIGHT) / 2], axis=1), closed=True),
-        ["stephenson-3", "four-bar"], starts=16, exact=False, transmission_min_deg=25, transmission_over="cycle",
+        ["stephenson-3", "four-bar"], starts=16,
+        exact=False, transmission_min_deg=25, transmission_over="cycle",
     ),
     "law": partial(
         solved,
