@@ -86,21 +86,31 @@ class ExactPoses(StartFinder):
 
     def refuse(self) -> None:
         """Raise `ProblemError` when two of the poses are equal: fewer are required then."""
-        equal = first_equal(self.scaled.targets, self.motion.rotation)
-        if equal is not None:
-            i, j = equal
-            raise ProblemError(
-                f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                "they must be distinct, or requirements.exact = false"
-            )
+        refuse_equal(self.scaled, self.motion)
 
     def degenerate(self) -> str:
         """Why a pure rotation needs no linkage; empty for other poses."""
-        pole = self.motion.pole(STILL) if len(self.scaled.targets) > 2 else None
-        if pole is None:
-            return ""
-        x, y = self.scaled.frame.outward(np.array(pole))
-        return f"the poses are a pure rotation about ({x:.6g}, {y:.6g}): a single pivot there does the job"
+        return pure_rotation(self.scaled, self.motion)
+
+
+def refuse_equal(scaled: ScaledProblem, motion: Displacements) -> None:
+    """Raise `ProblemError` when two of the poses are equal."""
+    equal = first_equal(scaled.targets, motion.rotation)
+    if equal is not None:
+        i, j = equal
+        raise ProblemError(
+            f"motion.poses[{i}] and motion.poses[{j}] are equal; "
+            "they must be distinct, or requirements.exact = false"
+        )
+
+
+def pure_rotation(scaled: ScaledProblem, motion: Displacements) -> str:
+    """Why a pure rotation needs no linkage; empty for other poses."""
+    pole = motion.pole(STILL) if len(scaled.targets) > 2 else None
+    if pole is None:
+        return ""
+    x, y = scaled.frame.outward(np.array(pole))
+    return f"the poses are a pure rotation about ({x:.6g}, {y:.6g}): a single pivot there does the job"
 
 
 class Parallelograms(ExactPoses):

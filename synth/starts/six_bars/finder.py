@@ -17,6 +17,8 @@ from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
+from grashof.synth.starts.coupler_search import refuse_few, single_position
+from grashof.synth.starts.exact_poses import pure_rotation, refuse_equal
 from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.loop_search import project
 from grashof.synth.starts.six_bars.carried import Carried, around
@@ -25,6 +27,7 @@ from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
 from grashof.synth.starts.thinning import thinned
+from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
 from grashof.synth.theory.six_bars.five_poses import six_bars_through
 from grashof.synth.theory.six_bars.link_motions import POSES
@@ -88,9 +91,28 @@ class SixBars(DesignFinder):
         return len(self.plan) + self.by_theory
 
     def refuse(self) -> None:
-        """Raise `ProblemError` for kinds whose P moves as that of a four-bar."""
-        if said := self.scaled.problem.task.needless(self.scaled.problem.mechanism[0]):
+        """Raise `ProblemError` for kinds whose P moves as that of a four-bar, for few or equal targets."""
+        task = self.scaled.problem.task
+        if said := task.needless(self.scaled.problem.mechanism[0]):
             raise ProblemError(said)
+        if task.in_plane:
+            refuse_few(self.scaled)
+        if self.motion is not None:
+            refuse_equal(self.scaled, self.motion)
+
+    def degenerate(self) -> str:
+        """Why a single position, or a pure rotation, needs no linkage; empty for other targets."""
+        if not self.scaled.problem.task.in_plane:
+            return ""
+        rotation = "" if self.motion is None else pure_rotation(self.scaled, self.motion)
+        return rotation or single_position(self.scaled)
+
+    @property
+    def motion(self) -> Displacements | None:
+        """Of complete poses that are met exactly, untimed."""
+        scaled = self.scaled
+        whole = scaled.exact and scaled.problem.task.is_whole and not scaled.timed
+        return Displacements.from_poses(scaled.targets, scaled.turns) if whole else None
 
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """The best of some thousand linkages of one row, for one transmission angle."""
@@ -104,8 +126,7 @@ class SixBars(DesignFinder):
     @property
     def by_theory(self) -> bool:
         """Whether theory gives designs, in a round before the others: through five complete poses."""
-        task = self.scaled.problem.task
-        return self.scaled.exact and task.is_whole and len(task) == POSES and not task.is_timed
+        return self.motion is not None and len(self.scaled.targets) == POSES
 
     def _through_five_poses(self, rng: np.random.Generator) -> Round:
         """The most different of the best six-bars through five poses."""
