@@ -17,11 +17,12 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.tasks.tandem_task import TANDEM_HOSTS
 from grashof.synth.loop.dyad import Bars, Closed, Rates, as_complex, as_vector, root_or_zero
 from grashof.synth.theory.limit_positions import StrokeLinkages, crank_rockers, lag_of
 
 SAMPLES = 73  # of a turn
-DRIVEN_BY_4, DRIVEN_BY_CRANK = (4, 1), (2, 1)
+DRIVEN_BY_4, DRIVEN_BY_CRANK = TANDEM_HOSTS
 SHAPE = 5  # numbers of a shape in the unit interval
 ARMS = (0.1, 3.0)  # lengths O4C, over O4D, of those driven by link 4
 SHARES = (0.005, 0.995)  # r2 / r3
