@@ -171,7 +171,7 @@ class TandemAim:
         return found
 
     @property
-    def _lengths(self) -> Limits:
+    def _ground_lengths(self) -> Limits:
         """Least and greatest length of a ground line that is free."""
         if self.wanted.r1 is not None:
             least, most = self.wanted.r1
@@ -181,7 +181,7 @@ class TandemAim:
 
     def _ground(self, pair: FloatArray) -> ComplexArray:
         """From O2 to O4."""
-        low, high = np.log(self._lengths)
+        low, high = np.log(self._ground_lengths)
         turned = self.wanted.angle_of("ground_angle_deg")
         free = turned is None and any(box != ANYWHERE for box in self._boxes)
         angle = TURN * pair[:, 1] if free else np.full(len(pair), turned or 0.0)
@@ -189,7 +189,7 @@ class TandemAim:
         return way
 
     def _ground_numbers(self, way: complex) -> tuple[float, float]:
-        low, high = np.log(self._lengths)
+        low, high = np.log(self._ground_lengths)
         return float((np.log(abs(way)) - low) / ((high - low) or 1.0)), float(np.angle(way)) / TURN % 1
 
     def _away(self, pair: FloatArray) -> ComplexArray:
