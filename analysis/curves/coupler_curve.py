@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import STEADY, closed_at, coupler_point, move, point_rates
+from grashof.analysis.mechanism.closing import STEADY, closed_at, closes, coupler_point, move, point_rates
 from grashof.analysis.mechanism.even_motion import closer_at_ends
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.mechanism.position import solve_position
@@ -23,6 +23,7 @@ _BEND = np.radians(4)  # largest turn between chords
 _VISIBLE = 0.002  # share of the extent: turns between shorter chords do not count, as at a cusp
 _MOST = 2000
 _ROUNDS = 24
+_LENGTH_SAME, _LENGTH_MOST = 1e-11, 50_000  # share by which lengths may differ; samples of a turn at most
 
 
 class CouplerMotion(NamedTuple):
@@ -48,7 +49,11 @@ def coupler_motion(
     p = linkage.o2[..., 0] + at.x + 1j * (linkage.o2[..., 1] + at.y)
     frame, (omega, alpha, _) = frames[carries], turns[carries].tangential
     theta = np.arctan2(frame.sine, frame.cosine)
-    return CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
+    found = CouplerMotion(p, vx + 1j * vy, ax + 1j * ay, theta, omega, alpha)
+    if len(loops) == 1:
+        return found
+    closed = closes(loops)  # a loop that does not lead P may be open
+    return CouplerMotion(*(np.where(closed, each, np.nan) for each in found))
 
 
 def coupler_curve(
@@ -56,6 +61,21 @@ def coupler_curve(
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """P = x + i y (...) and two derivatives by theta2; NaN where open, not finite in dead positions."""
     return coupler_motion(linkage, theta2, assembly)[:3]
+
+
+def closed_length(linkage: Linkage) -> float:
+    """The length of the coupler curve over a full turn of the driver; NaN where it does not turn fully.
+
+    By the trapezoidal rule, whose error falls exponentially on periodic functions.
+    """
+    length, count = np.inf, _FINE
+    while count <= _LENGTH_MOST:
+        theta2 = float(linkage.theta1) + np.arange(count) * TURN / count
+        before, length = length, float(np.abs(coupler_curve(linkage, theta2)[1]).mean() * TURN)
+        if not abs(length - before) > _LENGTH_SAME * length:
+            break
+        count *= 2
+    return length
 
 
 @dataclass(frozen=True, slots=True)

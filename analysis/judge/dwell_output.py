@@ -14,18 +14,19 @@ from grashof.analysis.mechanism.stroke import link_stroke
 from grashof.analysis.numerics.peaks import greatest
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import TURN, FloatArray, turned_from
+from grashof.problems.values.tasks.dwell_task import USUAL_TOLERANCE
 
 _STARTS = 1440  # of the dwell, over a turn
 _MOST, _ROUNDS = 4, 6  # of the best starts, refined
 _WITHIN = 49  # driver angles within the dwell at which tolerances are counted
-USUAL_TOLERANCE = 2e-4  # of r1, where a problem states none
 
 
 @dataclass(frozen=True, slots=True)
 class DwellFigures:
     """The dwell of least band, and the swing; output in rad, of a slide in the unit of length.
 
-    The output is link 6, or the slide; `start` and `end` are driver angles, the end ahead counter-clockwise.
+    The output is the last link, or its slide; `start` and `end` are driver angles, the end ahead
+    counter-clockwise.
     """
 
     start: float
@@ -89,7 +90,7 @@ def made_band(linkage: Linkage, found: DwellFigures, tolerance: float | None = N
 
 
 def _output(linkage: Linkage) -> Callable[[FloatArray], FloatArray]:
-    """The angle of link 6, or the travel of the slide, of driver angles."""
+    """The angle of the last link, or the travel of the slide, of driver angles."""
     last = linkage.mechanism.loops[-1]
 
     def output(theta2: FloatArray) -> FloatArray:

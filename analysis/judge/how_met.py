@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from grashof.analysis.curves.coupler_curve import closed_length
 from grashof.analysis.judge.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.function_output import met_as_function
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
@@ -79,7 +80,8 @@ def _points_or_timed(linkage: Linkage, task: Task, wanted: Requirements) -> tupl
 def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets, TaskMotion]:
     targets = nearest_to_poses(linkage, task)
     motion = task_motion(linkage, targets.theta2, wanted.order)
-    if wanted.order and not (wanted.is_exact(task) and task.is_whole):
+    once = len(linkage.mechanism.loops) == 1  # it stands in a pose at a single driver angle
+    if wanted.order and not (wanted.is_exact(task) and task.is_whole and once):
         branch = branch_index(linkage, targets.theta2, targets.assembly)
         joined = (branch == branch[0]).all() and targets.assembly[0] == int(linkage.assembly)
         if not motion.in_order or (wanted.same_branch and not joined):
@@ -89,7 +91,20 @@ def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets,
 
 def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     targets, motion = meet(linkage, task, wanted)
-    return Met(targets, motion, targets.theta2, targets.assembly)
+    most = task.most_length_ratio(linkage.mechanism)
+    if not np.isfinite(most):
+        return Met(targets, motion, targets.theta2, targets.assembly)
+    ratio = closed_length(linkage) / task.curve_length
+    defects = [] if ratio <= most else [_too_long(ratio, most)]
+    figures = {"length_ratio": ratio}
+    return Met(targets, motion, targets.theta2, targets.assembly, figures=figures, defects=tuple(defects))
+
+
+def _too_long(ratio: float, most: float) -> Defect:
+    """The defect of a curve that strays between the points; without a number where no turn closes it."""
+    what = "the length of the curve over that of the spline through the points"
+    miss = ratio / most - 1 if np.isfinite(ratio) else np.inf
+    return Defect("length_ratio_max", what, ratio, f"up to {most:.6g}", miss)
 
 
 def _as_function(linkage: Linkage, task: Task, wanted: Requirements) -> Met:

@@ -251,6 +251,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     **dict.fromkeys(("band", "slide_band"), partial(_of_dwell, "band")),
     **dict.fromkeys(("band_made", "slide_band_made"), _band_made),
     "swing": partial(_of_dwell, "swing"),
+    "length_ratio": attrgetter("verdict.length_ratio"),
     **{
         f"{name}_{link}": partial(_of_output, f"{name}s", place)
         for place, link in enumerate(LINKS)
@@ -291,11 +292,10 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
 def _arms(values: Values) -> dict[str, FloatArray]:
     """From P to the joints of the link that carries it."""
     arm, kind = complex(*values.linkage.coupler_point), values.linkage.mechanism
-    loop = next(each for each in kind.loops if kind.carries in each.links)
-    side = loop.links.index(kind.carries)
-    arms = {f"{(loop.c, loop.d)[side].upper()}-P": np.abs([arm])}
-    for bar in loop.bars[side : side + 1]:
-        arms[f"{loop.e.upper()}-P"] = np.abs([arm - float(getattr(values.linkage, bar))])
+    origin, end, *_ = kind.links[kind.carries - 1].labels
+    arms = {f"{origin}-P": np.abs([arm])}
+    if (bar := f"r{kind.carries}") in kind.lengths:
+        arms[f"{end}-P"] = np.abs([arm - float(getattr(values.linkage, bar))])
     return arms
 
 

@@ -74,7 +74,7 @@ def as_used(linkage: Linkage, verdict: Verdict) -> Linkage:
 
 def joins(linkage: Linkage, verdict: Verdict, theta2: FloatArray) -> bool:
     """Whether a motion joins the targets; at its very ends rounding may open the loop."""
-    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).theta3).any()
+    return verdict.branch_ok and not np.isnan(solve_position(linkage, theta2[1:-1]).p).any()
 
 
 def motion_ends(task: Task, verdict: Verdict) -> tuple[float, float]:

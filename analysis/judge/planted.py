@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from grashof.problems import (
     Linkage,
     MotionTask,
     PathTask,
+    SixBar,
     SliderCrank,
 )
 from grashof.problems.values.arrays import TURN, FloatArray
@@ -68,11 +70,42 @@ def _ahead(o2: FloatArray, r1: float, theta1: float) -> FloatArray:
     return o2 + r1 * np.array([np.cos(theta1), np.sin(theta1)])
 
 
-# By the word for the kind of linkage.
+def random_six_bar(
+    rng: np.random.Generator, hosts: tuple[int, int] = (3, 1), least_mu: float = 5.0, ratio: float = 12.0
+) -> SixBar:
+    """A random six-bar whose driver turns fully, with `hosts` for C and D, and P on link 5.
+
+    O2 = (0, 0) and O4 = (1, 0); the transmission angle is at least `least_mu`, deg, in both loops, and no
+    link is more than `ratio` times as long as another.
+    """
+    sine = np.sin(np.radians(least_mu))
+    while True:
+        lengths = np.exp(rng.normal((-0.8, 0, 0, 0, 0), 0.5))
+        every = np.append(lengths, 1.0)
+        c, d, p = rng.normal(0, 0.8, (3, 2))
+        if every.max() > ratio * every.min():
+            continue
+        r2, r3, r4, r5, r6 = lengths
+        rest: dict[str, Any] = {"c": c, "d": d, "coupler_point": p, "hosts": hosts}
+        signs = dict(zip(("assembly", "assembly_2"), rng.choice([-1, 1], 2), strict=True))
+        made = SixBar((0, 0), (1, 0), r2, r3, r4, r5=r5, r6=r6, **rest, **signs)
+        margins = np.array(solve_position(made, np.linspace(0, TURN, 181)).margins)
+        if np.abs(margins).min() >= sine:  # NaN where it does not close
+            return made
+
+
+# By the word for the kind of linkage of one loop.
 RANDOM: dict[str, Callable[[np.random.Generator], Linkage]] = {
     FourBar.mechanism.word: random_full_crank,
     SliderCrank.mechanism.word: random_slider_crank,
     InvertedSliderCrank.mechanism.word: random_inverted_slider_crank,
+}
+# Of six-bars one mechanism for each word.
+SIX_BARS: dict[str, Callable[[np.random.Generator], Linkage]] = {
+    "stephenson-3": random_six_bar,
+    "stephenson-1": partial(random_six_bar, hosts=(2, 4)),
+    "watt-1": partial(random_six_bar, hosts=(3, 4)),
+    "watt-2": partial(random_six_bar, hosts=(4, 1)),
 }
 
 
@@ -104,7 +137,7 @@ def planted_path(
 def _planted(
     rng: np.random.Generator, count: int, timed: bool, mechanism: str
 ) -> tuple[Linkage, Position, FloatArray | None]:
-    linkage, theta2 = RANDOM[mechanism](rng), uneven_driver_angles(rng, count)
+    linkage, theta2 = (RANDOM | SIX_BARS)[mechanism](rng), uneven_driver_angles(rng, count)
     return linkage, solve_position(linkage, theta2), np.abs(theta2 - theta2[0]) if timed else None
 
 
@@ -113,11 +146,11 @@ def planted_function(
 ) -> tuple[FunctionTask, Any, float]:
     """Pairs that a linkage generates, the linkage, and its driver angle (rad) at the first pair.
 
-    The driver turns counter-clockwise, fully if `full`. O2 = (0, 0), and O4 = (1, 0) or the slide runs along
-    x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
+    The driver turns counter-clockwise, fully if `full`, as all six-bars. O2 = (0, 0), and O4 = (1, 0) or the
+    slide runs along x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
     """
     while True:
-        made = _LOOSE[mechanism](rng)
+        made = (_LOOSE | SIX_BARS)[mechanism](rng)
         start, span = rng.uniform(-np.pi, np.pi), np.radians(rng.uniform(30, 300))
         linkage = made.changed(assembly=rng.choice([-1, 1]))
         if full and rotatability(linkage).min() < _LEAST_MARGIN:
@@ -127,10 +160,10 @@ def planted_function(
         inputs = np.concatenate([[0.0], np.sort(rng.uniform(0, span, pairs - 2)), [span]])
         dense = np.unique(np.concatenate([inputs, np.linspace(0, span, 201)]))
         state = solve_position(linkage, start + dense)
-        if np.isnan(state.theta4).any() or np.diff(inputs).min() < span / pairs / 10:
+        if np.isnan(state.last).any() or np.diff(inputs).min() < span / pairs / 10:
             continue
         travels = mechanism == SliderCrank.mechanism.word
-        moved = state.travel if travels else np.unwrap(state.theta4)
+        moved = state.travel if travels else np.unwrap(state.last)
         outputs = moved[np.searchsorted(dense, inputs)]
         if not travels and np.ptp(outputs) > TURN:
             continue

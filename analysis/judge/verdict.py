@@ -75,6 +75,9 @@ class Verdict:
         pair to the greatest; NaN for other tasks, or where the motion does not cover the range.
     dwell : DwellFigures, optional
         Of a dwell: where it is, its band, and the swing; None where the driver or the output turns otherwise.
+    length_ratio : float
+        Length of the curve of P over that of the closed spline through the points of a path, where it is
+        limited; NaN elsewhere.
     outputs : TwoOutputs, optional
         Of two outputs: their swings, time ratios and synchrony.
     output_zero : float, rad
@@ -106,6 +109,7 @@ class Verdict:
     output_zero: float = np.nan
     output_sense: int = 1
     dwell: DwellFigures | None = None
+    length_ratio: float = np.nan
     outputs: TwoOutputs | None = None
 
     @property

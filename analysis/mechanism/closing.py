@@ -170,6 +170,14 @@ def closed_at(
     return close(linkage.mechanism, operands_of(linkage, assembly), angle)
 
 
+def closes(loops: Sequence[Loop]) -> BoolArray:
+    """Where all loops are closed, shape (...)."""
+    closed: BoolArray = np.logical_and.reduce(
+        np.broadcast_arrays(*(np.isfinite(x.closed.margin) for x in loops))
+    )
+    return closed
+
+
 def coupler_point(linkage: Linkage, frames: dict[int, Frame]) -> LinkPoint:
     """P of a linkage with these frames."""
     return link_point(frames, linkage.mechanism.carries, _pair(linkage, "coupler_point"))

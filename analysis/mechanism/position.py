@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from grashof.analysis.mechanism.closing import Frame, Loop, closed_at, coupler_point
+from grashof.analysis.mechanism.closing import Frame, Loop, closed_at, closes, coupler_point
 from grashof.analysis.mechanism.dyad import Vector
 from grashof.problems import Linkage
 from grashof.problems.values.arrays import FloatArray
@@ -76,7 +76,10 @@ class Position:
     @cached_property
     def p(self) -> FloatArray:
         """The coupler point."""
-        return self._global(coupler_point(self.linkage, self.frames)[:2])
+        at = self._global(coupler_point(self.linkage, self.frames)[:2])
+        if len(self.loops) == 1:
+            return at
+        return np.where(closes(self.loops)[..., None], at, np.nan)  # a loop that does not lead P may be open
 
     def point(self, name: str) -> FloatArray:
         """A point of the linkage by its name, shape (..., 2)."""
@@ -129,7 +132,8 @@ def solve_position(
     """
     loops, frames = closed_at(linkage, theta2, assembly)
     angle = np.asarray(theta2, dtype=np.float64)
-    return Position(linkage, np.broadcast_to(angle, np.shape(loops[-1].closed.margin)), tuple(loops), frames)
+    shape = np.broadcast_shapes(*(np.shape(loop.closed.margin) for loop in loops))
+    return Position(linkage, np.broadcast_to(angle, shape), tuple(loops), frames)
 
 
 def places(linkage: Linkage, state: Position) -> dict[str, FloatArray]:

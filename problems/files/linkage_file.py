@@ -19,8 +19,8 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import MECHANISMS
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, WORDS, mechanism
+from grashof.problems.values.linkages.mechanism import MECHANISMS, WORDS
+from grashof.problems.values.linkages.mechanisms import FOUR_BAR, mechanism
 from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.specs.problem import Problem
 

@@ -17,11 +17,17 @@ from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, DyadKind, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanism import (
+    MECHANISMS,
+    ONE_LOOP,
+    WORDS,
+    DyadKind,
+    Mechanism,
+    Parameter,
+)
 from grashof.problems.values.linkages.mechanisms import (
     FOUR_BAR,
     PARAMETERS,
-    WORDS,
     linkage_of,
     mechanism,
     not_had,

@@ -75,6 +75,7 @@ class MotionTable(TargetsTable):
 @keys_of(PathTask, _OF_TARGETS)
 class PathTable(TargetsTable):
     plain, fewest = [0.0], 3
+    beside = MappingProxyType({"length_ratio_max": {"closed": True}})
 
 
 @keys_of(StrokeTask, {"time_ratio": (float, ...)})

@@ -13,7 +13,7 @@ from grashof.problems.values.requirements.quantities import Quantity
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate, same_error
-from grashof.synth.theory.distinct import DISTINCT, origin_of, pick_apart, signature
+from grashof.synth.theory.distinct import DISTINCT, origin_of, pick_apart, signature, signatures
 
 BLOCK = 256  # designs compared with all others at once
 # Digits that count, the others being rounding noise: of errors in sizes and of sizes, of objectives (a right
@@ -59,8 +59,8 @@ def distinct(
     if not candidates:
         return ()
     origin = origin_of(problem.task)
-    signatures = np.array([signature(candidate.linkage, origin) for candidate in candidates])
-    picked = pick_apart(signatures, -np.arange(len(candidates), dtype=np.float64), least, most)
+    every = signatures([candidate.linkage for candidate in candidates], origin)
+    picked = pick_apart(every, -np.arange(len(candidates), dtype=np.float64), least, most)
     return tuple(candidates[i] for i in picked)
 
 

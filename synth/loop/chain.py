@@ -58,9 +58,9 @@ def chained(
 
 
 def gap_of(mechanism: Mechanism, given: Mapping[str, Any], driver: Vector, assemblies: Sequence[Any]) -> Any:
-    """The distance C-D that the last dyad closes; of a slide on the ground that of C from its line through O2.
+    """The distance C-D that the last dyad closes; of a slide that of C from its line through O2, to its left.
 
-    The distance from a slide counts to its left. Arguments as of `chained`; lengths of the last dyad may lack.
+    Arguments as of `chained`; the lengths of the last dyad may be missing.
     """
     frames = _grounded(driver)
     *earlier, last = mechanism.loops

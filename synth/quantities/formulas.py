@@ -200,6 +200,8 @@ INVERTED: Formulas = {
     "output_swing": (Part("output swing", lambda d: _swing(d, _block_angle(d))),),
     "time_ratio": (Part("time ratio", lambda d: (1 - d.double_crank) * _ratio_of(_block_angle(d))),),
 }
+
+
 def of_six_bars(lengths: Sequence[str]) -> Formulas:
     """Formulas of six-bars with links of these lengths; `ap` and `bp` lead from both joints of P's link."""
     links = [Part(name, attrgetter(name)) for name in lengths]
@@ -212,12 +214,30 @@ def of_six_bars(lengths: Sequence[str]) -> Formulas:
         "coupler_arms": FORMULAS["coupler_arms"],
         **{
             key: FORMULAS[key]
-            for key in ("o2", "o4", "a", "b", "ground_angle", "theta2_start", "driver_sense", "driver_rotation")
+            for key in (
+                "o2",
+                "o4",
+                "a",
+                "b",
+                "ground_angle",
+                "theta2_start",
+                "driver_sense",
+                "driver_rotation",
+            )
         },
     }
 
 
-LOGARITHMIC = {"link_length", "r1", "r2", "r3", "r4", "r5", "r6", "link_ratio"}  # ratios count, not differences
+LOGARITHMIC = {
+    "link_length",
+    "r1",
+    "r2",
+    "r3",
+    "r4",
+    "r5",
+    "r6",
+    "link_ratio",
+}  # ratios count, not differences
 
 
 def parts_of(limited: Collection[str], *formulas: Formulas) -> Iterator[tuple[str, Part]]:

@@ -63,6 +63,13 @@ class Kind(ABC):
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         """Lengths of loops from free numbers (n, 3): full cranks with their margin, unless any will do."""
 
+    def transmitting(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
+        """The same of full cranks that have the required transmission angle all round the turn.
+
+        Of kinds without such lengths those of `lengths`; their angle is a limit like others.
+        """
+        return self.lengths(proportions, longer_driver, wanted)
+
     def placed(
         self, o2: ComplexArray, ground: ComplexArray, a: ComplexArray, directions: Directions, r4: FloatArray
     ) -> tuple[ComplexArray, ComplexArray]:

@@ -19,7 +19,9 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanisms import ROWS
+from grashof.synth.loop.differences import Differences
 from grashof.synth.loop.dyad import as_vector, direction_of
+from grashof.synth.loop.feasible import Demand, feasible
 from grashof.synth.loop.instant import FourBarInstant, InvertedInstant, SliderCrankInstant
 from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
@@ -29,10 +31,18 @@ from grashof.synth.theory.functions.four_bar import FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.slider_crank import SliderCranks
 
+INSIDE = 1e-9  # share by which transmission angles by construction exceed the required one
+SHARES = np.array([1.0, 1.0, 2.0])  # by which free numbers spread as those of full cranks do
+
+
+def _sigmoid(numbers: FloatArray) -> FloatArray:
+    shares: FloatArray = 1 / (1 + np.exp(-numbers))
+    return shares
+
 
 def _crank(proportion: FloatArray, longer_driver: BoolArray) -> tuple[FloatArray, FloatArray]:
     """r2 with r1 = 1, sigmoid(a) or its inverse, and its derivative."""
-    sigmoid = 1 / (1 + np.exp(-proportion))
+    sigmoid = _sigmoid(proportion)
     r2 = np.where(longer_driver, 1 / sigmoid, sigmoid)
     return r2, np.where(longer_driver, -(1 - sigmoid) / sigmoid, sigmoid * (1 - sigmoid))
 
@@ -76,6 +86,19 @@ class FourBarKind(Kind):
         derivative = np.stack([r2_by, (total_by + difference_by) / 2, (total_by - difference_by) / 2], axis=1)
         return (r2, (total + difference) / 2, (total - difference) / 2), derivative
 
+    def transmitting(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
+        least = np.radians(wanted.transmission_min_deg) * (1 + INSIDE)
+        demand = Demand.turning(least, wanted.rotatability_margin)
+
+        def lengths(numbers: FloatArray) -> FloatArray:
+            longer = np.broadcast_to(longer_driver[:, None], numbers.shape[:-1])
+            sizes = feasible(self.dyad, _sigmoid(numbers * SHARES), longer, demand)
+            return np.stack([sizes.r2, sizes.r3, sizes.r4], axis=-1)
+
+        found = Differences(lengths, proportions)
+        r2, r3, r4 = found.values.T
+        return (r2, r3, r4), found.slopes
+
     def sine(self, d: Any, o4: ComplexArray, a: ComplexArray, b: ComplexArray) -> FloatArray:
         coupler, output = b - a, b - o4[:, None]
         d.output_turn = as_vector(output[:, :1]).angle_to(as_vector(output[:, -1:]))
@@ -118,7 +141,7 @@ class SliderCrankKind(Kind):
             return _any_of_two(a, b)
         # Of the room for 1 - r2 - |offset| >= margin (1 + r2 + |offset|) r2 takes a share, the offset one of
         # the rest.
-        margin, sigmoid, tanh = wanted.rotatability_margin, 1 / (1 + np.exp(-a)), np.tanh(b)
+        margin, sigmoid, tanh = wanted.rotatability_margin, _sigmoid(a), np.tanh(b)
         most = (1 - margin) / (1 + margin)
         r2, by_a = most * sigmoid, most * sigmoid * (1 - sigmoid)
         room = most - r2

@@ -10,13 +10,14 @@ from typing import Protocol
 
 import numpy as np
 
-from grashof.problems import Requirements
+from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.quantities.formulas import Formulas, Part, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
+STEEPEST = 80.0  # deg, the greatest transmission angle by construction: beyond, cranks are too short
 SHORTEST = 1e-3  # of the longest step between targets: no step counts as less
 
 
@@ -32,9 +33,11 @@ class SearchTargets:
     wanted: Requirements  # in the frame of the points; its limits draw the search inwards
     kind: Kind
     closed: bool = False  # the task motion is a full turn
+    exact: bool = False  # all are to be met; otherwise least squares
     # (N,), rad: rotation of the last link from the first target, in the driver's sense
     outputs: FloatArray | None = None
     formulas: Formulas | None = None  # by default those of the kind
+    spare: float = 0.0  # share by which limits are narrower here
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
@@ -42,7 +45,9 @@ class SearchTargets:
         limited = parts_of(
             self.wanted.limited, self.kind.formulas if self.formulas is None else self.formulas
         )
-        rows = tuple((name, part, range_of(self.wanted, name, part)) for name, part in limited)
+        rows = tuple(
+            (name, part, narrowed(range_of(self.wanted, name, part), self.spare)) for name, part in limited
+        )
         object.__setattr__(self, "limited", rows)
 
     @classmethod
@@ -61,6 +66,7 @@ class SearchTargets:
             timing=scaled.timing[:last],
             wanted=scaled.wanted,
             closed=scaled.closed,
+            exact=scaled.exact,
             kind=scaled.kind,
         )
 
@@ -68,6 +74,18 @@ class SearchTargets:
     def timed(self) -> bool:
         """Whether the driver rotations are prescribed."""
         return bool(self.timing.any())
+
+    @property
+    def transmitting(self) -> bool:
+        """Whether loops have the required transmission angle by construction: all round the turn.
+
+        Of least squares alone: where all targets are met, the search gains no time, and finds fewer designs.
+        """
+        wanted = self.wanted
+        turning = wanted.rotatability is not Rotatability.ANY
+        over_turn = self.closed or wanted.transmission_over is TransmissionOver.CYCLE
+        possible = 0 < wanted.transmission_min_deg <= STEEPEST
+        return turning and over_turn and possible and not self.exact
 
     @property
     def has_angles(self) -> bool:
@@ -96,6 +114,13 @@ class SearchTargets:
         if self.timed:
             return self.kind.proportions + 1
         return self.kind.proportions + len(self.points) + self.wanted.order
+
+
+def narrowed(limits: Limits, share: float) -> Limits:
+    """Limits that are narrower by a share of themselves, but by no more than that share of their width."""
+    low, high = limits
+    less, more = (share * min(abs(limit), high - low) if np.isfinite(limit) else 0.0 for limit in limits)
+    return low + less, high - more
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +193,8 @@ class Loop:
     def of(cls, target: SearchTargets, batch: Batch) -> Loop:
         """Close the loop of every linkage at every target."""
         proportions = batch.unknowns[:, :PROPORTIONS]
-        lengths, by_lengths = target.kind.lengths(proportions, batch.longer_driver, target.wanted)
+        shape = target.kind.transmitting if target.transmitting else target.kind.lengths
+        lengths, by_lengths = shape(proportions, batch.longer_driver, target.wanted)
         theta2 = driver_angles(target, batch.unknowns[:, PROPORTIONS:], batch.direction)
         e2 = np.exp(1j * theta2)
         e3, e4, rod, closes = target.kind.closed(lengths, e2, batch.assembly)

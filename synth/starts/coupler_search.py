@@ -40,28 +40,12 @@ class CouplerSearch(StartFinder):
     freedom: ClassVar[bool] = True
 
     def refuse(self) -> None:
-        """Raise `ProblemError` for too few distinct targets, or timed angles without places."""
-        task, count = self.scaled.problem.task, len(SearchTargets.of(self.scaled).points)
-        if task.is_timed and (placed := int(task.has_position.sum())) < 2:
-            raise ProblemError(
-                f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
-                "more: coupler angles alone are not searched for"
-            )
-        many = task.only_points or not self.scaled.exact
-        if count < (3 if many else 2):
-            where = " where requirements.exact is false" if many and not task.only_points else ""
-            raise ProblemError(
-                f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
-                f"it must have {'three' if many else 'two'} or more{where}"
-            )
+        """Raise `ProblemError` for too few targets."""
+        refuse_few(self.scaled)
 
     def degenerate(self) -> str:
         """Why a single position needs no linkage; empty for others."""
-        placed = self.scaled.targets[self.scaled.problem.task.has_position]
-        if np.abs(placed - placed[0]).max() > 0:
-            return ""
-        x, y = self.scaled.frame.outward(placed[0])
-        return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
+        return single_position(self.scaled)
 
     def near(self, rng: np.random.Generator) -> Screened:
         """Linkages of one round of the search."""
@@ -71,6 +55,32 @@ class CouplerSearch(StartFinder):
         """Starts that may miss what no linkage meets."""
         drawn, free = (search(self.scaled, 1, rng, to_boxes=to_boxes) for to_boxes in (True, False))
         return relaxed_starts(self.scaled, drawn) or relaxed_starts(self.scaled, free)
+
+
+def refuse_few(scaled: ScaledProblem) -> None:
+    """Raise `ProblemError` for too few distinct targets, or timed angles without places."""
+    task, count = scaled.problem.task, len(SearchTargets.of(scaled).points)
+    if task.is_timed and (placed := int(task.has_position.sum())) < 2:
+        raise ProblemError(
+            f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
+            "more: coupler angles alone are not searched for"
+        )
+    many = task.only_points or not scaled.exact
+    if count < (3 if many else 2):
+        where = " where requirements.exact is false" if many and not task.only_points else ""
+        raise ProblemError(
+            f"{task.kind}.{task.target}s has {counted(count, f'distinct {task.target}')}; "
+            f"it must have {'three' if many else 'two'} or more{where}"
+        )
+
+
+def single_position(scaled: ScaledProblem) -> str:
+    """Why a single position needs no linkage; empty for others."""
+    placed = scaled.targets[scaled.problem.task.has_position]
+    if np.abs(placed - placed[0]).max() > 0:
+        return ""
+    x, y = scaled.frame.outward(placed[0])
+    return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
 
 
 def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> Round:

@@ -6,14 +6,16 @@ eliminated (Schur complement): a step takes time and memory in proportion to the
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray
 from grashof.synth.quantities.driver_motion import meeting_order
-from grashof.synth.starts.closed_loop import Batch, Loop, SearchTargets, body_turns, by_theta3_of
+from grashof.synth.starts.closed_loop import PROPORTIONS, Batch, Loop, SearchTargets, body_turns, by_theta3_of
 from grashof.synth.starts.limit_residuals import Placement, oversteps
 from grashof.synth.starts.loop_search import PLACES, PULL, missed_places, project
 from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
@@ -26,7 +28,7 @@ HEAVY = 1e6  # damping under which no step is worth trying
 
 
 @dataclass(frozen=True, slots=True)
-class _Model:
+class Linear:
     """Misses of every target, linearised: gap - common @ what all share - own * its driver angle."""
 
     error: FloatArray  # (n,)
@@ -37,10 +39,10 @@ class _Model:
     by_over: FloatArray  # (n, L, C + 2), derivatives by what all share and the driver angles at the ends
     ends: IntArray  # (n, 2), of the motion
 
-    def where(self, better: BoolArray, fresh: _Model) -> _Model:
+    def where(self, better: BoolArray, fresh: Linear) -> Linear:
         """The fresh one of the linkages that are better."""
         pairs = ((getattr(fresh, name), getattr(self, name)) for name in self.__slots__)
-        return _Model(*(np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old) for new, old in pairs))
+        return Linear(*(np.where(better.reshape(-1, *[1] * (new.ndim - 1)), new, old) for new, old in pairs))
 
 
 def fitted_to_all(
@@ -54,15 +56,23 @@ def fitted_to_all(
     back are projected on the order by weighted isotonic regression, which is the solution of the step for
     given proportions; those that stand together are eliminated together.
     """
-    now = _with_angles(target, batch, PLACES * placed)
-    model = _linearised(target, now, weight)
-    damping, idle = np.full(len(batch), 1e-3), np.zeros(len(batch), dtype=np.int64)
+    linearised = partial(_linearised, target, weight=weight)
+    now = descended(target, linearised, _with_angles(target, batch, PLACES * placed), PROPORTIONS, steps)
+    return now if target.jumbled else _by_gaps(now, len(target.points))
+
+
+def descended(
+    target: SearchTargets, linearised: Callable[[Batch], Linear], now: Batch, shape: int, steps: int
+) -> Batch:
+    """Linkages after these steps; `shape` columns of a batch precede its driver angles at every target."""
+    model = linearised(now)
+    damping, idle = np.full(len(now), 1e-3), np.zeros(len(now), dtype=np.int64)
     raise_if_overdue()
     for _ in range(steps):
         if stop_requested():
             break
-        tried = _stepped(target, now, model, damping)
-        fresh = _linearised(target, tried, weight)
+        tried = _stepped(target, now, model, damping, shape)
+        fresh = linearised(tried)
         better = fresh.error < model.error
         idle = np.where(better & (fresh.error < (1 - DONE) * model.error), 0, idle + better)
         now = replace(now, unknowns=np.where(better[:, None], tried.unknowns, now.unknowns))
@@ -70,7 +80,7 @@ def fitted_to_all(
         damping = np.clip(np.where(better, damping / 5, damping * 8), 1e-12, 10 * HEAVY)
         if ((idle > 3) | (damping > HEAVY)).all():
             break
-    return now if target.jumbled else _by_gaps(now, len(target.points))
+    return now
 
 
 def costs_of_all(target: SearchTargets, batch: Batch, weight: float) -> FloatArray:
@@ -85,7 +95,7 @@ def _with_angles(target: SearchTargets, batch: Batch, places: int) -> Batch:
     return replace(batch, unknowns=np.concatenate([inner[:, :3], angles, last], axis=1))
 
 
-def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
+def _linearised(target: SearchTargets, batch: Batch, weight: float) -> Linear:
     """Misses of every target, linearised: of linkages as placed, or else where they fit best."""
     count = len(target.points)
     free = replace(target, wanted=replace(target.wanted, order=False))
@@ -119,7 +129,7 @@ def _linearised(target: SearchTargets, batch: Batch, weight: float) -> _Model:
         gaps.append(turned)
         own.append(by_turn[..., 3])
     error = (np.abs(residual) ** 2).sum(axis=1) + (turned**2).sum(axis=1) + weight**2 * (over**2).sum(axis=1)
-    return _Model(
+    return Linear(
         error=np.where(loop.closes & np.isfinite(error), error, np.inf),
         gap=np.nan_to_num(np.stack(gaps, axis=2)),
         common=np.nan_to_num(np.stack(rows, axis=2)),
@@ -153,7 +163,7 @@ def _overstepped(
     return oversteps(target, Placement(target, loop, by_theta2, by_theta3_of(loop, by_theta2), z, by_z))
 
 
-def _stepped(target: SearchTargets, batch: Batch, model: _Model, damping: FloatArray) -> Batch:
+def _stepped(target: SearchTargets, batch: Batch, model: Linear, damping: FloatArray, shape: int) -> Batch:
     """Linkages after a damped step."""
     common, own, gap, count = model.common, model.own, model.gap, model.gap.shape[1]
     flat, transposed = _flat(common), np.swapaxes(_flat(common), 1, 2)
@@ -172,17 +182,16 @@ def _stepped(target: SearchTargets, batch: Batch, model: _Model, damping: FloatA
     heavy[each, model.ends] += (by_ends**2).sum(axis=1)
     heavy *= (1 + damping)[:, None]
     parts = np.concatenate([border, heavy[..., None]], axis=2)
-    angles = batch.unknowns[:, 3 : 3 + count]
+    angles = batch.unknowns[:, shape : shape + count]
     if not target.jumbled:
         parts = _summed(parts, np.diff(angles, axis=1, prepend=np.nan) == 0)
     share = np.swapaxes(parts[..., :-1] / parts[..., -1:], 1, 2)
     step = np.clip(_solved(normal - share @ border, right - (share @ pull[..., None])[..., 0]), -1.5, 1.5)
-    moved = _moved(target, batch, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
-    places = batch.unknowns[:, 3 + count :]
-    places = places + step[:, 3 : 3 + places.shape[1]]
-    return replace(
-        batch, unknowns=np.concatenate([batch.unknowns[:, :3] + step[:, :3], moved, places], axis=1)
-    )
+    moved = _moved(target, batch, angles, (pull - (border @ step[..., None])[..., 0]) / heavy, heavy)
+    places = batch.unknowns[:, shape + count :]
+    places = places + step[:, shape : shape + places.shape[1]]
+    first = batch.unknowns[:, :shape] + step[:, :shape]
+    return replace(batch, unknowns=np.concatenate([first, moved, places], axis=1))
 
 
 def _weights(own: FloatArray) -> FloatArray:
@@ -192,12 +201,14 @@ def _weights(own: FloatArray) -> FloatArray:
     return least
 
 
-def _moved(target: SearchTargets, batch: Batch, step: FloatArray, weights: FloatArray) -> FloatArray:
+def _moved(
+    target: SearchTargets, batch: Batch, angles: FloatArray, step: FloatArray, weights: FloatArray
+) -> FloatArray:
     """Driver angles after a step (n, N), in order where that is required."""
     sense = batch.direction[:, None]
-    angles: FloatArray = batch.unknowns[:, 3 : 3 + step.shape[1]]
     if target.jumbled:
-        return angles + np.clip(step, -LONGEST, LONGEST)
+        moved: FloatArray = angles + np.clip(step, -LONGEST, LONGEST)
+        return moved
     desired = sense * (angles + np.clip(step, -LONGEST, LONGEST))
     ordered: FloatArray = np.stack([_in_order(*row) for row in zip(desired, weights, strict=True)])
     return sense * ordered

@@ -57,7 +57,7 @@ QUICK_STARTS = 2
 SEARCHES = 3  # rounds of the search for points after that of sampled dyads
 SUBSETS = 6  # fives of many poses that are tried
 NEARLY, EXACT = 1e-4, 1e-9  # radius error in sizes: before and after polishing
-NOT_TURNED = 1e-9  # of unit rotations
+STILL = 1e-9  # sizes: a point that moves less stands still
 EQUAL = 1e-12  # sizes and unit rotations: poses closer are the same one
 AT_ONCE = 1024  # poses compared with all others
 
@@ -86,26 +86,31 @@ class ExactPoses(StartFinder):
 
     def refuse(self) -> None:
         """Raise `ProblemError` when two of the poses are equal: fewer are required then."""
-        equal = first_equal(self.scaled.targets, self.motion.rotation)
-        if equal is not None:
-            i, j = equal
-            raise ProblemError(
-                f"motion.poses[{i}] and motion.poses[{j}] are equal; "
-                "they must be distinct, or requirements.exact = false"
-            )
+        refuse_equal(self.scaled, self.motion)
 
     def degenerate(self) -> str:
         """Why a pure rotation needs no linkage; empty for other poses."""
-        motion = self.motion
-        turn = motion.rotation[1:] - 1
-        if len(turn) == 1 or translate(motion):
-            return ""
-        widest = 1 + int(np.argmax(np.abs(turn)))
-        pole = motion.shift[widest] / (1 - motion.rotation[widest])
-        if np.abs(motion.apply(np.array([pole]))[0] - pole).max() >= 1e-9:
-            return ""
-        x, y = self.scaled.frame.outward(np.array(pole))
-        return f"the poses are a pure rotation about ({x:.6g}, {y:.6g}): a single pivot there does the job"
+        return pure_rotation(self.scaled, self.motion)
+
+
+def refuse_equal(scaled: ScaledProblem, motion: Displacements) -> None:
+    """Raise `ProblemError` when two of the poses are equal."""
+    equal = first_equal(scaled.targets, motion.rotation)
+    if equal is not None:
+        i, j = equal
+        raise ProblemError(
+            f"motion.poses[{i}] and motion.poses[{j}] are equal; "
+            "they must be distinct, or requirements.exact = false"
+        )
+
+
+def pure_rotation(scaled: ScaledProblem, motion: Displacements) -> str:
+    """Why a pure rotation needs no linkage; empty for other poses."""
+    pole = motion.pole(STILL) if len(scaled.targets) > 2 else None
+    if pole is None:
+        return ""
+    x, y = scaled.frame.outward(np.array(pole))
+    return f"the poses are a pure rotation about ({x:.6g}, {y:.6g}): a single pivot there does the job"
 
 
 class Parallelograms(ExactPoses):
@@ -114,7 +119,7 @@ class Parallelograms(ExactPoses):
     @staticmethod
     def suits(scaled: ScaledProblem) -> bool:
         """Three whole poses or more, all of one angle."""
-        return scaled.motion is not None and len(scaled.targets) > 2 and translate(scaled.motion)
+        return scaled.motion is not None and len(scaled.targets) > 2 and scaled.motion.translates
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """A single round."""
@@ -178,7 +183,7 @@ class FewPoses(DyadPairs):
 
     def quick_pass(self, rng: np.random.Generator) -> Round | None:
         """The best of far fewer dyads."""
-        if translate(self.motion):
+        if self.motion.translates:
             return None
         pairs = self.pairs(self.dyads(rng, QUICK_LINES, QUICK_SAMPLES), QUICK_PAIRS)
         starts = feasible_starts(self.scaled, pairs[pairs.feasible], QUICK_STARTS)
@@ -190,7 +195,7 @@ class FewPoses(DyadPairs):
             last = SEARCHES if len(self.scaled.targets) < 4 else 0
             return searched_round(self.scaled, enough, rng) if number <= last else None
         scaled = self.scaled
-        sideways = parallelogram_starts(scaled, enough, rng) if translate(self.motion) else []
+        sideways = parallelogram_starts(scaled, enough, rng) if self.motion.translates else []
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
         feasible = pairs[pairs.feasible]
@@ -275,11 +280,6 @@ class ManyPoses(DyadPairs):
             return f"the {count} poses have {found}, and a linkage needs two{sliding}"
         few = ", so one linkage at most, or its two drivers" if len(dyads) == 2 else ""
         return f"the {count} poses have {len(dyads)} real dyads only{few}{sliding}"
-
-
-def translate(motion: Displacements) -> bool:
-    """Whether all poses are pure translations of the first."""
-    return bool(np.abs(motion.rotation - 1).max() < NOT_TURNED)
 
 
 def first_equal(positions: ComplexArray, rotations: ComplexArray) -> tuple[int, int] | None:

@@ -49,12 +49,17 @@ def refined(
     assembly = np.broadcast_to(batch.assembly[:, :1], (len(batch), count))
     unknowns = batch.unknowns
     if not target.timed:
-        length = np.concatenate([[0.0], np.cumsum(target.steps)])
+        length = lengths_along(target)
         _, gone = shares_of_turn(unknowns[:, 4:])
         every = np.stack([np.interp(length, length[index], row) for row in gone])
         gaps = np.concatenate([np.diff(every, axis=1), 1 - every[:, -1:]], axis=1)
         unknowns = np.concatenate([unknowns[:, :4], np.log(np.maximum(gaps, SMALLEST))], axis=1)
     return replace(batch, unknowns=unknowns, assembly=assembly)
+
+
+def lengths_along(target: SearchTargets) -> FloatArray:
+    """The length of the path up to every target, (N,)."""
+    return np.concatenate([[0.0], np.cumsum(target.steps)])
 
 
 def _each_nearest(target: SearchTargets, index: IntArray, batch: Batch, places: ComplexArray | None) -> Batch:

@@ -15,6 +15,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, 
 STRAIGHT = 1e-6  # longest chord / radius: on a flatter circle, three positions lie on a straight line
 NO_PIVOT = complex(np.nan, np.nan)
 _ROUNDING = 1e-14  # share of the coordinates below which two positions are one
+_NOT_TURNED = 1e-9  # of unit rotations
 _NEAR = 0.5  # sizes: within this distance of the origin the lines that trace curves are evenly spaced
 
 
@@ -44,6 +45,20 @@ class Displacements:
         """Displacements of the ground as the body sees it: circle and centre points change places."""
         rotation = self.rotation.conj()
         return Displacements(rotation, -rotation * self.shift)
+
+    @property
+    def translates(self) -> bool:
+        """Whether all poses are pure translations of the first."""
+        return bool(np.abs(self.rotation - 1).max() < _NOT_TURNED)
+
+    def pole(self, slack: float) -> complex | None:
+        """The point about which all poses are turned, if none moves it farther than `slack`."""
+        if self.translates:
+            return None
+        widest = int(np.argmax(np.abs(self.rotation - 1)))
+        pole = complex(self.shift[widest] / (1 - self.rotation[widest]))
+        moved = np.abs(self.apply(np.array([pole]))[0] - pole).max()
+        return pole if moved < slack else None
 
     def apply(self, points: ComplexArray) -> ComplexArray:
         """Positions of body `points`, shape (...), at every pose; shape (..., N)."""

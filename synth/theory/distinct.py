@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -37,6 +37,15 @@ def signature(linkage: Linkage, origin: FloatArray | None = None) -> FloatArray:
     return np.concatenate(
         [linkage.o2 - middle, second, np.stack(list(lengths), axis=-1), linkage.coupler_point], axis=-1
     )
+
+
+def signatures(linkages: Sequence[Linkage], origin: FloatArray | None = None) -> FloatArray:
+    """Signatures of linkages of any kinds, (n, K); those of kinds with fewer numbers end with zeros."""
+    found = [signature(linkage, origin) for linkage in linkages]
+    rows = np.zeros((len(found), max(map(len, found), default=0)))
+    for row, numbers in zip(rows, found, strict=True):
+        row[: len(numbers)] = numbers
+    return rows
 
 
 def origin_of(task: Task) -> FloatArray | None:

@@ -30,7 +30,7 @@ def as_found(linkage: Linkage) -> Linkage:
 
 
 def share_apart(task: Task, one: FourBar, other: FourBar) -> float:
-    """As DESIGN section 2 words it, seen from the middle of the task; above 0.01 for distinct designs."""
+    """Largest difference of places from the middle of the task, lengths and coupler point, as a share."""
     middle = task.positions.mean(axis=0)
     x, y = (
         np.array([*(a.o2 - middle), *(a.o4 - middle), a.r2, a.r3, a.r4, *a.coupler_point])

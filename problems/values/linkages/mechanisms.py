@@ -9,7 +9,14 @@ from typing import Any
 from grashof.problems.values.checks import each_checked, hint, refuse
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.linkage import Linkage
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, DyadKind, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanism import (
+    MECHANISMS,
+    ONE_LOOP,
+    WORDS,
+    DyadKind,
+    Mechanism,
+    Parameter,
+)
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
 
@@ -112,7 +119,12 @@ def without_noise(length: float, linkage: Linkage) -> float:
 def not_had(what: str, given: Sequence[str], kinds: Sequence[str]) -> str:
     """The error of a key or quantity that only other kinds of linkages have."""
     ending = "has it" if len(kinds) == 1 else "have it"
-    return f"{what} does not go with mechanism {' and '.join(given)}; only {' and '.join(kinds)} {ending}"
+    return f"{what} does not go with mechanism {' and '.join(given)}; only {joined(kinds)} {ending}"
+
+
+def joined(words: Sequence[str]) -> str:
+    """Words in a list: "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def mechanisms(given: str | Sequence[str]) -> tuple[str, ...]:

@@ -16,8 +16,8 @@ import numpy as np
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.linkages.cylinder import Cylinder
-from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, Mechanism, Parameter
-from grashof.problems.values.linkages.mechanisms import DIMENSIONS, WORDS, having
+from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, Mechanism, Parameter
+from grashof.problems.values.linkages.mechanisms import DIMENSIONS, having
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import set_fields
@@ -279,6 +279,10 @@ MEASURED: dict[str, Quantity] = {
         Quantity(
             "swing", "swing", Unit.ANGLE, Scope.CYCLE, needs=Needs.DWELL_OF_LINK, digits=4,
             full="swing of the last link over the turn",
+        ),
+        Quantity(
+            "length_ratio", "length ratio", Unit.RATIO, Scope.CYCLE, -1, Needs.CLOSED,
+            about="length of the curve of P over that of the closed spline through the points, where limited",
         ),
         Quantity(
             "output_acceleration_max", "output acceleration", Unit.ANGULAR_ACCELERATION, better=-1,

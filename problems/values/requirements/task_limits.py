@@ -8,6 +8,7 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
+from grashof.problems.values.linkages.mechanisms import joined
 from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
@@ -59,7 +60,7 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     key = f"output{'' if task.law is None else '_range'}{unit}"
     return [
         f"function.{key} is a {what}, which mechanism {' and '.join(others)} does not generate; "
-        f"it goes with {' and '.join(suited)}"
+        f"it goes with {joined(suited)}"
     ]
 
 

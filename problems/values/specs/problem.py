@@ -15,6 +15,7 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres,
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     ROWS,
     freedoms,
@@ -25,7 +26,14 @@ from grashof.problems.values.linkages.mechanisms import (
 from grashof.problems.values.requirements import task_limits
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import BLOCKS, OF_SLIDES, ROCKERS, Needs, Quantity
+from grashof.problems.values.requirements.quantities import (
+    BLOCKS,
+    OF_SLIDES,
+    ROCKERS,
+    SLIDING,
+    Needs,
+    Quantity,
+)
 from grashof.problems.values.requirements.requirements import (
     LIMITS,
     QUANTITIES,
@@ -134,7 +142,7 @@ class Problem(ReadOnly):
         set_fields(self, task=grounded(self.task, self.requirements))
         check_fields(self, **dict.fromkeys(("name", "title", "source", "length_unit"), checks.plain_text))
         given = mechanisms(self.mechanism or self.task.usual_mechanism)
-        set_fields(self, mechanism=spelt_out(given, self.task.impossible))
+        set_fields(self, mechanism=spelt_out(given, self._unsuited))
         checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
         set_fields(self, requirements=self._met_by_all_kinds())
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
@@ -169,6 +177,10 @@ class Problem(ReadOnly):
         set_fields(self, task=self.task.sized(stated_size(self.requirements)))
         checks.refuse(wrong)
         set_fields(self, outlines=tuple(checks.each_checked(self.outlines, "scene.outlines", checks.outline)))
+
+    def _unsuited(self, word: str) -> str:
+        """Why "six-bar" does not stand for a kind; empty where it does."""
+        return self.task.impossible(word) or self.task.needless(word)
 
     def _met_by_all_kinds(self) -> Requirements:
         """The requirements, exact by default only if all the kinds can be expected to meet every target."""
@@ -215,9 +227,17 @@ class Problem(ReadOnly):
 
     def _not_of_these_kinds(self) -> list[str]:
         """Quantities weighed or limited that none of the kinds of linkage has, a line each."""
-        having = {where: quantity.kinds for where, quantity in self._weighed_or_limited.items()}
+        having: dict[str, Sequence[str]] = {
+            where: quantity.kinds for where, quantity in self._weighed_or_limited.items()
+        }
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
+        if self.task.in_plane or self.task.has_output.any():  # six-bars with a slide are for others
+            slides = set(SLIDING)
+            having = {
+                where: [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
+                for where, kinds in having.items()
+            }
         return [
             not_had(
                 where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds

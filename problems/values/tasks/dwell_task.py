@@ -17,6 +17,7 @@ from grashof.problems.values.value_bases import set_fields
 DWELLS_DEG, SWINGS_DEG = np.array([1.0, 350.0]), np.array([0.1, 179.0])
 BANDS, USUAL_BAND = np.array([1e-9, 0.5]), 0.05  # shares of the swing or stroke
 SWING_WITHIN = float(np.radians(0.01))  # rad, or share of the stroke
+USUAL_TOLERANCE = 2e-4  # of dimensions as made, over r1, where a problem states none
 # Kinds with a dwell: D of the last dyad on the ground, C on the coupler.
 DWELL_HOSTS = (3, 1)
 DWELLING = tuple(
@@ -118,6 +119,8 @@ class DwellTask(OutputTask):
                 ("band", "swing_deg", "band_deg") if of_swing else ("band_deg", "stroke", "band")
             )
             raise ProblemError(f"dwell.{given} does not go with {key}; use {other}")
+        if dwell_deg is None:
+            raise ProblemError("dwell.dwell_deg is missing")
         angles = {"dwell_deg": dwell_deg, "swing_deg": swing_deg, "band_deg": band_deg}
         dwell, swing, of_angle = (
             None if angle is None else float(np.radians(finite_number(angle, f"dwell.{key}")))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -18,9 +18,13 @@ from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly
 
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
 _SAME = 1e-12  # sizes, rad
 _FOUR_BAR_CURVES = ((2, 1), (4, 1))  # hosts of six-bars whose link 5 leads P as a four-bar does
 USUAL_MARGIN = 1e-3  # of full rotation
+USUAL_RATIO = 1.02  # of the length of a six-bar's curve to that of the spline through the points
 _Row = TypeVar("_Row")
 
 
@@ -65,6 +69,8 @@ class Task(ReadOnly, ABC):
     stroke: float | None = None
     #: Driver rotation over which the output stands still, rad.
     dwell: float | None = None
+    #: Greatest length of the curve over that of the closed spline through the points, where it is stated.
+    length_ratio_max: float | None = None
     #: Swings of links 4 and 6, rad, of a linkage with two outputs.
     swings: tuple[float, float] | None = None
     #: Their time ratios; None where free.
@@ -150,6 +156,44 @@ class Task(ReadOnly, ABC):
     def sized(self, reference: float) -> Self:  # noqa: ARG002
         """The same with a length that counts as the size, where the scale is free."""
         return self
+
+    @property
+    def is_curve(self) -> bool:
+        """Whether its targets are points of a closed curve."""
+        return self.closed and self.only_points and not self.is_timed
+
+    def most_length_ratio(self, kind: Mechanism) -> float:
+        """The greatest length of the curve of P over `curve_length`; infinite without a limit."""
+        usual = USUAL_RATIO if len(kind.loops) > 1 and self.is_curve else np.inf
+        return usual if self.length_ratio_max is None else self.length_ratio_max
+
+    @property
+    def curve(self) -> CubicSpline:
+        """The closed cubic spline through the positions over the length of their polygon, from 0 on."""
+        from scipy.interpolate import CubicSpline  # here: few problems need it
+
+        places = self.positions[:-1] if self.returns else self.positions
+        ring = np.concatenate([places, places[:1]])
+        steps = np.hypot(*np.diff(ring, axis=0).T)
+        return CubicSpline(np.concatenate([[0.0], np.cumsum(steps)]), ring, bc_type="periodic")
+
+    @property
+    def curve_length(self) -> float:
+        """The length of that spline.
+
+        Examples
+        --------
+        >>> from grashof.problems import PathTask
+        >>> turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+        >>> ring = PathTask(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
+        >>> round(ring.curve_length / (2 * np.pi), 4)
+        1.0
+        """
+        curve = self.curve
+        nodes, weights = np.polynomial.legendre.leggauss(8)
+        half = np.diff(curve.x)[:, None] / 2
+        at = curve.x[:-1, None] + half * (1 + nodes)
+        return float((half * weights * np.linalg.norm(curve(at, 1), axis=-1)).sum())
 
     @property
     def is_timed(self) -> bool:
@@ -265,15 +309,19 @@ class Task(ReadOnly, ABC):
             if host != 1
         )
 
+    def needless(self, word: str) -> str:
+        """Why no linkage of a kind is searched for it, in one line; empty where some are."""
+        if self.rows(word):
+            return ""
+        return (
+            f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
+            "it must be four-bar, or another six-bar"
+        )
+
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may."""
-        if word in self.kinds and self.rows(word):
-            return ""
         if word in self.kinds:
-            return (
-                f"mechanism is {word}; without timing its P traces the coupler curve of a four-bar: "
-                "it must be four-bar, or another six-bar"
-            )
+            return ""
         return f"mechanism is {word}; of {self.described} it must be {listing(list(self.kinds))}"
 
     @property

@@ -154,7 +154,7 @@ def best_rows(result: Result, digits: int = 4) -> list[dict[str, str]]:
         }
         for k in shown
     ]
-    left_out += [name for name in rows[0] if all(row[name] == "nan" for row in rows)]
+    left_out += [name for name in rows[0] if all(row[name] in ("nan", "-") for row in rows)]
     return [{name: cell for name, cell in row.items() if name not in left_out} for row in rows]
 
 

@@ -23,6 +23,7 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
@@ -124,10 +125,11 @@ def _best(problem: Problem) -> str:
         return f"least {error}; the list offers more transmission besides"
     if problem.by_objective:
         return f"{best}{missed and f', {missed}'}"
-    return (
-        f"least error (rms; errors up to {same_error(problem):g} sizes are equal, then {best}); "
-        f"the list offers more transmission or less size within {FACTORS[-1]:g} times that error"
-    )
+    offered = "more transmission besides"
+    if not set(ONE_LOOP).isdisjoint(problem.mechanism):
+        offered = f"more transmission or less size within {FACTORS[-1]:g} times that error"
+    same = f"errors up to {same_error(problem):g} sizes are equal, then {best}"
+    return f"least error (rms; {same}); the list offers {offered}"
 
 
 def _missed(problem: Problem) -> str:
@@ -208,7 +210,8 @@ def _motor(spec: DynamicsSpec) -> str:
 def _targets(task: Task, unit: str) -> str:
     kind = f"closed {task.kind}" if task.closed else task.kind
     timing = f" timed over {np.degrees(task.driver_turns[-1]):g} deg" if task.is_timed else ""
-    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}"
+    ratio = "" if task.length_ratio_max is None else f", length ratio up to {task.length_ratio_max:g}"
+    return f"{kind} through {len(task)} {task.target}s{timing}, size {task.size:g}{unit}{ratio}"
 
 
 def _motion(task: Task, unit: str) -> str:

@@ -65,13 +65,12 @@ def _line(proof: Proof, known: str) -> str:
 
 def _all_line(proof: Proof, known: str) -> str:
     """Statement for five poses or pairs, whose linkages are all known."""
-    dyads, meet = counted(proof.pieces[0], "dyad"), "meets" if proof.pieces[0] == 1 else "meet"
+    meet = "meets" if proof.pieces[0] == 1 else "meet"
+    known_dyads = f"{counted(proof.pieces[0], 'dyad')} {meet} the targets within the limits"
     if proof.claim is Claim.NONE:
-        return f"Proven: {dyads} {meet} the targets within the limits, and none of their linkages does it."
+        return f"Proven: {known_dyads}, and no {proof.mechanism} of these does it."
     has = f"; {known} the most, {_down(proof.lower)} deg" if known else ""
-    return (
-        f"Proven: {dyads} {meet} the targets within the limits, and no other linkage of these does it{has}."
-    )
+    return f"Proven: {known_dyads}, and no other {proof.mechanism} of these does it{has}."
 
 
 def _regions(proof: Proof) -> str:

@@ -1,13 +1,13 @@
-"""Linkages of any mechanism that come near points, angles and outputs: many at once, by rows of `MECHANISMS`.
+"""Linkages of any mechanism that come near points, angles and outputs: many at once.
 
-A linkage is a shape (see `shapes`) and its driver angles at the targets. P = z0 + z1 Q + z2 e, with the origin
-Q and direction e of the link that carries it, is linear in z0, z1, z2, which are solved for exactly (variable
-projection, see `loop_search`). Loops close by construction.
+A linkage is a shape (see `shapes`) and its driver angles at the targets. P = z0 + z1 Q + z2 e, with the
+origin Q and direction e of the link that carries it, is linear in z0, z1, z2, which are solved for exactly
+(variable projection, see `loop_search`). Loops close by construction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import Batch, SearchTargets, body_turns, by_body_turns
 from grashof.synth.starts.limit_residuals import limit_rows, slopes_of
-from grashof.synth.starts.loop_search import drawn_gaps, improve, project
+from grashof.synth.starts.loop_search import drawn_gaps, improve
 from grashof.synth.starts.six_bars.carried import Carried, Placing
 from grashof.synth.starts.six_bars.limits import SixBarView
 from grashof.synth.starts.six_bars.shapes import Shapes
@@ -32,13 +32,17 @@ NO_ERROR = 1e-22  # sizes squared, or rad squared
 # Numbers of the best that continue, their steps, and the weight of limits, in sizes.
 STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
 
+FIRST_STAGES = ((400, 8, 0.1), (100, 12, 1.0), (30, 20, 10.0))  # where a fit to more targets follows
+
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
     """Random linkages."""
     wanted = target.wanted
     first = rng.uniform(-np.pi, np.pi, (count, 1))
     angles = [first]
-    if not target.timed:  # the last gap is the rest of the turn
+    if target.jumbled:
+        angles.append(rng.uniform(-np.pi, np.pi, (count, len(target.points) - 1)))
+    elif not target.timed:  # the last gap is the rest of the turn
         gaps = drawn_gaps(target, count, rng)
         gaps -= np.log(np.exp(gaps).sum(axis=1, keepdims=True))
         low = 0.03 if shapes.turning else 0.3
@@ -51,9 +55,15 @@ def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Gener
     )
 
 
-def fitted(target: SearchTargets, shapes: Shapes, batch: Batch, until: int) -> tuple[Batch, FloatArray]:
+def fitted(
+    target: SearchTargets,
+    shapes: Shapes,
+    batch: Batch,
+    until: int,
+    stages: Sequence[tuple[int, int, float]] = STAGES,
+) -> tuple[Batch, FloatArray]:
     """The best of a batch improved, best first, and their errors (n,), sizes squared."""
-    for keep, steps, weight in STAGES:
+    for keep, steps, weight in stages:
         model = Fitting(target, shapes, weight)
         batch = batch[np.argsort(model.errors(batch), kind="stable")[:keep]]
         batch, error = improve(model, batch, steps, NO_ERROR, until, missed=model.missed)
@@ -92,8 +102,12 @@ class Fitting:
         placing = Placing(target, at) if target.weights.any() else None
         parts = [] if placing is None else [_places(target, at, placing)]
         parts += [_turns(target, at)] if target.has_angles else []
-        parts += [_outputs(target, at)] if target.outputs is not None else []
-        rows = [*limit_rows(target, SixBarView(self.shapes, at, placing))] if self.weight and target.limited else []
+        parts += [_outputs(target.outputs, at)] if target.outputs is not None else []
+        rows = (
+            [*limit_rows(target, SixBarView(self.shapes, at, placing))]
+            if self.weight and target.limited
+            else []
+        )
         if rows:
             over = np.concatenate([row.value for row in rows], axis=1)
             width = at.unknowns.count
@@ -105,7 +119,8 @@ class Fitting:
 
 def _squared(missed: FloatArray) -> FloatArray:
     """Sums of squares (n,), infinite where loops are open."""
-    return np.nan_to_num((missed**2).sum(axis=1), nan=np.inf, posinf=np.inf)
+    squared: FloatArray = np.nan_to_num((missed**2).sum(axis=1), nan=np.inf, posinf=np.inf)
+    return squared
 
 
 class _Part(NamedTuple):
@@ -118,7 +133,9 @@ class _Part(NamedTuple):
 def _places(target: SearchTargets, at: Carried, placing: Placing) -> _Part:
     """From P to the points, weighted, with derivatives of Kaufman's."""
     z = placing.z
-    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * np.sqrt(target.weights)
+    missed = (target.points - z[:, :1] - z[:, 1:2] * at.origin - z[:, 2:] * at.along) * np.sqrt(
+        target.weights
+    )
 
     def slope() -> FloatArray:
         rest = placing.rest
@@ -136,10 +153,10 @@ def _turns(target: SearchTargets, at: Carried) -> _Part:
     return _Part(body_turns(target, at)[0], slope)
 
 
-def _outputs(target: SearchTargets, at: Carried) -> _Part:
+def _outputs(wanted: FloatArray, at: Carried) -> _Part:
     """Outputs missed with the best zero."""
     sense = at.direction[:, None]
-    off = sense * np.unwrap(np.angle(at.output), axis=1) - target.outputs
+    off = sense * np.unwrap(np.angle(at.output), axis=1) - wanted
 
     def slope() -> FloatArray:
         turned = sense[..., None] * (at.output.conj()[..., None] * at.by_output.slope).imag
@@ -149,19 +166,13 @@ def _outputs(target: SearchTargets, at: Carried) -> _Part:
     return _Part(off - off.mean(axis=1, keepdims=True), slope)
 
 
-def linkages(
-    target: SearchTargets, shapes: Shapes, batch: Batch, place: Callable[[Carried], ComplexArray] | None = None
-) -> list[Linkage]:
-    """Linkages of a batch where they fit best, in the frame of the targets.
-
-    Without points `place` gives z0, z1, z2 (n, 3).
-    """
+def linkages(target: SearchTargets, shapes: Shapes, batch: Batch, z: ComplexArray) -> list[Linkage]:
+    """Linkages of a batch at places z0, z1, z2 (n, 3), in the frame of the targets."""
     with np.errstate(divide="ignore", invalid="ignore"):
         at = Carried(target, shapes, batch)
-        z = project(target, at)[0] if place is None else place(at)
         body_angle = body_turns(target, at)[1]
     made = list[Linkage]()
-    for k in np.flatnonzero(at.closes):
+    for k in np.flatnonzero(at.closes).tolist():
         given = {name: _number(each, k) for name, each in at.made.given.items()}
         linkage = _linkage(shapes, given, batch.assembly[k].tolist(), z[k], float(body_angle[k]))
         if linkage is not None:

@@ -12,14 +12,14 @@ import numpy as np
 from grashof.problems import Linkage, ProblemError, Requirements, SixBar, Task
 from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.linkages.mechanism import DyadKind
-from grashof.problems.values.tasks.dwell_task import DWELL_HOSTS
+from grashof.problems.values.tasks.dwell_task import DWELL_HOSTS, USUAL_TOLERANCE
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.loop.feasible import Demand
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch
-from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.finder import DesignFinder
+from grashof.synth.starts.six_bars.dwell_search import DwellAim, DwellLinkages, drawn, fitted, linkages
 from grashof.synth.starts.six_bars.placing import place_of
 
 ROUNDS = 3
@@ -28,7 +28,6 @@ FINDS = "feasible finds"
 # Beyond what is required, for peaks between samples: deg of transmission angle; shares of ratio and margin.
 SPARE_DEG, SPARE = 0.05, 1e-3
 LEAST_DEG = 1.0
-USUAL_TOLERANCE = 2e-4  # of r1, or of the stroke, where a problem states none
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class Dwells(DesignFinder):
 
     @property
     def _tolerance(self) -> float:
-        """The tolerance of dimensions as a share of the ground link, of a slide of its stroke."""
+        """The tolerance of dimensions as a share of the ground link; of a slide, roughly, of its stroke."""
         made = self.scaled.problem.manufacturing
         if made is None:
             return USUAL_TOLERANCE

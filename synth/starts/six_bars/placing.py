@@ -39,9 +39,7 @@ def place_of(
     return scale, turn, o2 if boxes[0] is None else _inside(boxes[0], o2)
 
 
-def _scales(
-    wanted: Requirements, lengths: Mapping[str, float], reached: ComplexArray
-) -> tuple[float, float]:
+def _scales(wanted: Requirements, lengths: Mapping[str, float], reached: ComplexArray) -> tuple[float, float]:
     """Least and greatest length of the ground by the limits of lengths and size."""
     limits = [(getattr(wanted, name) or wanted.link_length, length) for name, length in lengths.items()]
     limits.append((wanted.size, float(np.hypot(np.ptp(reached.real), np.ptp(reached.imag)))))

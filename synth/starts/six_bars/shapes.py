@@ -1,15 +1,14 @@
-"""Shapes of linkages of any mechanism, whose loops close by construction, with derivatives.
+"""Shapes of linkages whose first loop is a four-bar, and whose loops close by construction, with derivatives.
 
-With O2 = 0 and r1 = 1 (of a slide in the first loop r3 = 1) a shape is a row of free numbers: shares of the
-possible lengths of each loop (see `feasible`), the places of C and D, the direction of a slide. The gap
+With O2 = 0 and r1 = 1 a shape is a row of free numbers: shares of the possible lengths of each loop (see
+`feasible`), the places of C and D, the direction of a slide. The gap
 between C and D is sampled over the motion of the first loop, so that the last lengths close all of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,19 +16,18 @@ from scipy.special import expit, logit
 
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
-from grashof.synth.loop.chain import DYADS, gap_of
+from grashof.synth.loop.chain import gap_of
+from grashof.synth.loop.differences import Differences
 from grashof.synth.loop.dual import Dual
+from grashof.synth.loop.dyad import Bars
 from grashof.synth.loop.feasible import Demand, bars_between, feasible
 from grashof.synth.loop.vector import Vector
 
 SAMPLES = 48  # of a turn, or of a range, for the extremes of a gap
 SHORT = 2e-3  # share by which samples may understate these
-STEP = 1e-6  # of derivatives by differences
 SPREAD = 1.0  # of random places of C and D, over r1
 FIRST = 3  # free numbers of the first loop
 ENDS = 2  # ends of the task motion, among the columns of derivatives
-
-Function = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +89,7 @@ class Made:
     ) -> None:
         self.shapes, self.free, self.longer, self.sides, self.ends = shapes, free, longer, sides, ends
         self.columns = free.shape[1] + ENDS + 1
-        self.given: dict[str, Any] = {"o4": Vector(1.0, 0.0), "r3": 1.0, "slide_angle": 0.0}
+        self.given: dict[str, Any] = {"o4": Vector(1.0, 0.0)}
         self._first_loop()
         if len(shapes.mechanism.loops) > 1:
             self._later_loop()
@@ -115,20 +113,17 @@ class Made:
         return Dual(found.values[:, [column]], slope)
 
     def _first_loop(self) -> None:
-        loop, ends = self.shapes.mechanism.loops[0], range(self.shapes.width, self.shapes.width + ENDS)
-        dyad = DYADS[loop.dyad.kind]
+        ends = range(self.shapes.width, self.shapes.width + ENDS)
 
         def lengths(numbers: FloatArray) -> FloatArray:
             free, low, high = numbers[..., :FIRST], numbers[..., FIRST], numbers[..., FIRST + 1]
             longer = np.broadcast_to(self.longer[:, None], low.shape)
-            sizes = feasible(dyad, expit(free), longer, self._demand(low, high))
+            sizes = feasible(Bars(), expit(free), longer, self._demand(low, high))
             return np.stack([sizes.r2, sizes.r3, sizes.r4], axis=-1)
 
         found = Differences(lengths, np.concatenate([self.free[:, :FIRST], self.ends], axis=1))
-        names = "r2", *(loop.bars if len(loop.bars) == 2 else ("", "")), loop.offset
-        for name, column in zip(names, (0, 1, 2, 2), strict=True):
-            if name:
-                self.given[name] = self._made(found, column, [*range(FIRST), *ends])
+        for column, name in enumerate(("r2", "r3", "r4")):
+            self.given[name] = self._made(found, column, [*range(FIRST), *ends])
 
     def _demand(self, low: FloatArray, high: FloatArray) -> Demand:
         """The demand on the first loop, for ends of the motion from the ground line."""
@@ -158,16 +153,21 @@ class Made:
         near, far, near_mu, far_mu, first, second = np.moveaxis(numbers, -1, 0)
         shares = expit(np.stack([first, second], axis=-1))
         demand = Demand.turning(self.shapes.transmission, self.shapes.margin * self.shapes.turning)
-        wider = [length * (1 + SHORT * sign) for length, sign in ((near, -1), (far, 1))]
+        near, far = near * (1 - SHORT), far * (1 + SHORT)
         within = near_mu * (1 - SHORT), far_mu * (1 + SHORT)
-        return np.stack(bars_between(*wider, shares, demand, within), axis=-1)
+        return np.stack(bars_between(near, far, shares, demand, within), axis=-1)
 
     def _between_slides(self, numbers: FloatArray) -> FloatArray:
         """|offset - h| <= cos(mu) r5 for all distances h of C from the line through O2, to its left."""
         low, high, low_mu, high_mu, longer, share = np.moveaxis(numbers, -1, 0)
         cosine = np.cos(self.shapes.transmission)
         slack = SHORT * (high - low)
-        shortest = np.maximum((high - low + 2 * slack) / 2, (high_mu - low_mu + 2 * slack) / (2 * cosine))
+        least_of = (  # where both ranges of the offset, or one of each, meet
+            (high - low, 2.0),
+            (high_mu - low_mu, 2 * cosine),
+            (np.maximum(high - low_mu, high_mu - low), 1 + cosine),
+        )
+        shortest = np.maximum.reduce([(apart + 2 * slack) / share for apart, share in least_of])
         r5 = shortest * (1 + np.exp(longer))
         least = np.maximum(high + slack - r5, high_mu + slack - cosine * r5)
         most = np.minimum(low - slack + r5, low_mu - slack + cosine * r5)
@@ -184,7 +184,7 @@ class Made:
             round_turn = way is turn
             low, high = self.ends[:, :1], self.ends[:, 1:]
             theta2 = np.broadcast_to(way, (len(low), SAMPLES)) if round_turn else low + (high - low) * way
-            gap = self._gap({name: _plain(each) for name, each in self.given.items()}, theta2)
+            gap = self._gap(plain(self.given), theta2)
             for index in (np.argmin(gap, axis=1), np.argmax(gap, axis=1)):
                 if round_turn:
                     at: Any = way[index][:, None]
@@ -199,23 +199,12 @@ class Made:
         return gap_of(self.shapes.mechanism, given, driver, list(self.sides.T[..., None]))
 
 
-def _plain(each: Any) -> Any:
+def plain(given: Mapping[str, Any]) -> dict[str, Any]:
     """Dimensions without derivatives."""
+    return {name: _plain(each) for name, each in given.items()}
+
+
+def _plain(each: Any) -> Any:
     if isinstance(each, Vector):
         return Vector(_plain(each.x), _plain(each.y))
     return each.value if isinstance(each, Dual) else each
-
-
-class Differences:
-    """Values (n, m) of a function of (n, ..., k) numbers, and their derivatives (n, m, k) by differences."""
-
-    def __init__(self, function: Function, numbers: FloatArray) -> None:
-        self.function, self.numbers = function, numbers
-        self.values = function(numbers[:, None])[:, 0]
-
-    @cached_property
-    def slopes(self) -> FloatArray:
-        """Of second order."""
-        steps = STEP * np.eye(self.numbers.shape[1])
-        up, down = (self.function(self.numbers[:, None] + sign * steps) for sign in (1, -1))
-        return np.swapaxes(up - down, 1, 2) / (2 * STEP)

@@ -20,12 +20,10 @@ from grashof.problems import (
     LinkageSpec,
     SixBar,
     SliderCrank,
-    load,
     load_linkage_spec,
 )
 from grashof.study.asked import ON_REQUEST
 from grashof.survey import Asked, LinkageReport, report_on
-from grashof.wording.problem import judged_for
 
 ENGINE, SHAPER = load_linkage_spec("engine"), load_linkage_spec("crank-shaper")
 MASSES = DynamicsSpec(masses=(1, 2, 3), inertias=(100, 1000, 10), speed_rpm=60)
@@ -247,11 +245,6 @@ def test_links_that_turn_freely_are_refused() -> None:
     loose = SixBar((0, 0), (4, 0), 1, 4, 3, c=(4, 0), d=(3, 0), r5=4, r6=4, hosts=(3, 4))
     said = refusal(report_on, LinkageSpec(loose, "mine"))
     assert said.startswith("mine: C and D are one point at every driver angle")
-
-
-def test_a_six_bar_is_not_judged_by_tasks_yet() -> None:
-    said = refusal(judged_for, load("luggage"), load_linkage_spec("klann"))
-    assert said.startswith('mechanism is stephenson-3; of kind = "motion" it must be four-bar')
 
 
 def test_bars_that_are_dead_everywhere_but_for_rounding_are_refused_in_one_line(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ mechanism = "four-bar"\n<PAIRS>[requirements]\nstructural_error_max = [0, 1] |
     objective.maximise.coupler_fit_r2 does not apply to a function; remove it
 mechanism = ["four-bar", "slider-crank"]\n<PAIRS> |
     function.output_deg is a rotation, which mechanism slider-crank does not generate;
-    it goes with four-bar and inverted-slider-crank
+    it goes with four-bar, inverted-slider-crank, stephenson-3, stephenson-1, watt-1 and watt-2
 <PAIRS>[driver]\ncylinder = {} | driver.cylinder does not go with function, whose driver is link 2
 """
 

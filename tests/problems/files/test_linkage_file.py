@@ -191,7 +191,7 @@ TEXTS = {
     "BOTH": "four-bar and inverted-slider-crank have it",
     "SLIDES": "slider-crank and inverted-slider-crank have it",
     "KINDS": "four-bar, slider-crank, inverted-slider-crank, stephenson-3, stephenson-1, watt-1 or watt-2",
-    "SIX_BARS": "stephenson-3 and stephenson-1 and watt-1 and watt-2 have it",
+    "SIX_BARS": "stephenson-3, stephenson-1, watt-1 and watt-2 have it",
     "ZEROS": "0" * 5000,
 }
 BAD = r"""

@@ -61,18 +61,19 @@ def test_unknown_kinds_are_refused_in_one_line(given: str, line: str) -> None:
 
 NOT_OF_A_KIND = r"""
 "slider-crank" | r4 = [1, 2]\no4 = [0, 0]\nground_angle_deg = 3 |
-    requirements.r4 does not go with mechanism slider-crank; only four-bar has it\n
+    requirements.r4 does not go with mechanism slider-crank; only <BARS>\n
     requirements.o4 does not go with mechanism slider-crank; only <BOTH>\n
     requirements.ground_angle_deg does not go with mechanism slider-crank; only <BOTH>
 # | stroke = [1, 2] | requirements.stroke does not go with mechanism four-bar; only slider-crank has it
 ["slider-crank", "inverted-slider-crank"] | rotatability = "crank-rocker" |
     requirements.rotatability = "crank-rocker" does not go with mechanism slider-crank and
-    inverted-slider-crank; only four-bar has it
+    inverted-slider-crank; only <BARS>
 """
-BOTH = "four-bar and inverted-slider-crank have it"
+SIX = "stephenson-3, stephenson-1, watt-1 and watt-2 have it"
+BARS, BOTH = f"four-bar, {SIX}", f"four-bar, inverted-slider-crank, {SIX}"
 
 
-@pytest.mark.parametrize(("given", "requirements", "lines"), rows(NOT_OF_A_KIND, BOTH=BOTH))
+@pytest.mark.parametrize(("given", "requirements", "lines"), rows(NOT_OF_A_KIND, BOTH=BOTH, BARS=BARS))
 def test_requirements_that_no_kind_has_are_refused(given: str, requirements: str, lines: str) -> None:
     assert message(given, requirements) == lines
 

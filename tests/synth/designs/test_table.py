@@ -16,7 +16,7 @@ from grashof.problems.values.requirements.quantities import MEASURED
 from grashof.synth import Result
 from grashof.synth.designs.table import LISTED, NAMES, to_frame
 
-# DESIGN section 4, word for word, and what has been added since.
+# The columns in their order, which programs of users rely on.
 CONTRACT = """
 rank, id, mechanism, family, region, grashof_class, direction, assembly, o2_x, o2_y, o4_x, o4_y,
 r1, r2, r3, r4, p_u, p_v, body_angle_deg, theta2_start_deg, theta2_end_deg, error, error_max, error_rms,
@@ -27,7 +27,7 @@ torque_rms, joint_force_peak, coupler_fit_r2, size, pareto, cognate_of, start, i
 caution, hausdorff, frechet, move_r1, move_r2, move_r3, move_r4, move_u, move_v, worst_move,
 share_within_linear, share_within_made, offset, slide_angle_deg,
 assembly_2, hosts, point_link, r5, r6, c_u, c_v, d_u, d_v, offset_2, slide_angle_2_deg, dwell_from_deg,
-dwell_to_deg, band_deg, band, band_made_deg, band_made, swing_deg, output_acceleration_max,
+dwell_to_deg, band_deg, band, band_made_deg, band_made, swing_deg, length_ratio, output_acceleration_max,
 swing_4_deg, swing_6_deg, time_ratio_4, time_ratio_6, synchrony_error, move_r5, move_r6,
 move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,

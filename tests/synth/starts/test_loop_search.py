@@ -95,6 +95,47 @@ def test_draws_have_the_margin_wherever_their_driver_leaves_room(kind: tuple[str
     np.testing.assert_allclose(r3[~room], r4[~room], rtol=1e-9)
 
 
+@pytest.mark.parametrize("mu", [20, 60])
+@pytest.mark.parametrize("kind", CRANKS)
+def test_draws_transmit_all_round_the_turn(kind: tuple[str, bool, bool, bool], mu: float) -> None:
+    """By construction, and with the margin; the least angles come close to the required one."""
+    target = target_of(kind, transmission_min_deg=mu, transmission_over="cycle", rotatability_margin=0.01)
+    r1, r2, r3, r4 = lengths_of(target, draws(target, 300))
+    diagonal = np.abs(r1 - r2 * np.exp(1j * np.linspace(0, 2 * np.pi, 721)[:, None]))
+    angle = np.degrees(np.arccos((r3**2 + r4**2 - diagonal**2) / (2 * r3 * r4)))
+    least = np.minimum(angle, 180 - angle).min(axis=0)
+    assert least.min() == pytest.approx(mu, abs=1.0)
+    assert least.min() >= mu - 1e-6
+    shares = np.array([r3 + r4 - r1 - r2, np.abs(r1 - r2) - np.abs(r3 - r4)]) / (r1 + r2 + r3 + r4)
+    assert shares.min() >= 0.01 - 1e-9
+    assert {"crank-rocker": r2 < r1, "double-crank": r2 > r1}.get(kind[0], r2 > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("mu", "over", "closed", "rotatability", "by_construction"),
+    [
+        (20, "cycle", False, "full-crank", True),
+        (20, "task", True, "full-crank", True),
+        (20, "task", False, "full-crank", False),
+        (0, "cycle", True, "full-crank", False),
+        (20, "cycle", False, "any", False),
+        (89, "cycle", False, "full-crank", False),
+    ],
+)
+def test_where_the_angle_is_by_construction(
+    mu: float, over: str, closed: bool, rotatability: str, by_construction: bool
+) -> None:
+    """Elsewhere the same draws are the same linkages as without a required angle."""
+    kind = rotatability, True, True, False
+    target = replace(target_of(kind, transmission_min_deg=mu, transmission_over=over), closed=closed)
+    without = target_of(kind)
+    assert target.transmitting == by_construction
+    assert not replace(target, exact=True).transmitting
+    batch = draw(without, 50, np.random.default_rng(0))
+    same = np.array_equal(lengths_of(target, batch), lengths_of(without, batch), equal_nan=True)
+    assert same != by_construction
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_draws_are_in_order_and_of_one_assembly(kind: tuple[str, bool, bool, bool]) -> None:
     _, order, branch, timed = kind
@@ -151,10 +192,12 @@ def test_no_other_place_or_coupler_point_fits_better(kind: tuple[str, bool, bool
         np.testing.assert_allclose(placed.p[i], fit, atol=1e-6)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_gradient_is_that_of_differences(kind: tuple[str, bool, bool, bool]) -> None:
+@pytest.mark.parametrize(("kind", "mu"), [*((kind, 0) for kind in KINDS), *((kind, 30) for kind in CRANKS)])
+def test_the_gradient_is_that_of_differences(kind: tuple[str, bool, bool, bool], mu: float) -> None:
     """Kaufman's Jacobian leaves a term out that is orthogonal to the residual."""
-    target = target_of(kind, rotatability_margin=0.05)
+    target = target_of(
+        kind, rotatability_margin=0.05, transmission_min_deg=mu, transmission_over="cycle" if mu else "task"
+    )
     batch = draws(target, 160)
     _, residual, _ = fitting(target)(batch)
     batch = batch[(residual[:, 2 * len(target.points) :] == 0).all(axis=1)]  # on which no pull acts

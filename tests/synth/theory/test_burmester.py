@@ -213,3 +213,19 @@ def test_near_degenerate_poses_have_true_dyads(kind: str) -> None:
     assert radius_error(motion, polished).max() < 1e-10
     moved = np.hypot(np.abs(polished.moving - usual.moving), np.abs(polished.ground - usual.ground))
     assert np.median(moved) < 1e-8
+
+
+@pytest.mark.parametrize("about", [0j, 3 - 2j])
+def test_pole_of_a_rotation(about: complex) -> None:
+    turn = np.array([0.2, 0.5, 1.7])
+    motion = Displacements.from_poses(about + 2 * np.exp(1j * (turn + 1)), turn)
+    assert motion.pole(1e-9) == pytest.approx(about, abs=1e-12)
+    assert not motion.translates
+
+
+def test_no_pole_of_translations_and_other_motions() -> None:
+    places = np.array([0, 1, 2 + 1j])
+    translated = Displacements.from_poses(places, np.full(3, 0.4))
+    assert translated.translates
+    assert translated.pole(1e-9) is None
+    assert Displacements.from_poses(places, np.array([0.0, 0.3, 0.9])).pole(1e-9) is None

@@ -7,16 +7,16 @@ import pytest
 from linkages_of_rows import SIX_BARS
 
 from grashof.analysis import solve_position
-from grashof.problems import FourBar, InvertedSliderCrank, Linkage, Requirements, SixBar, SliderCrank
+from grashof.problems import FourBar, Linkage, Requirements, SixBar
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.synth.quantities.kinds import FOUR_BAR
-from grashof.synth.starts.six_bars.chains import Shapes, draw, fitted, linkages
 from grashof.synth.starts.closed_loop import SearchTargets
+from grashof.synth.starts.loop_search import project
+from grashof.synth.starts.six_bars.carried import Carried
+from grashof.synth.starts.six_bars.chains import Shapes, draw, fitted, linkages
 
 ONE_LOOP: dict[str, Linkage] = {
     "four-bar": FourBar((0, 0), (4, 0), 1, 4, 3, (2, 1)),
-    "slider-crank": SliderCrank((0, 0), 1, 4, offset=0.5, slide_angle=0.3, coupler_point=(2, 1)),
-    "inverted-slider-crank": InvertedSliderCrank((0, 0), (4, 0), 1, offset=0.3, coupler_point=(2, 1)),
 }
 # P on the coupler of the second dyad: on a driver it would trace a circle, on a slider a line.
 EVERY = ONE_LOOP | {name: SixBar(**one.stated | {"point_link": 5}) for name, one in SIX_BARS.items()}
@@ -41,7 +41,10 @@ def found(name: str, target: SearchTargets, seed: int = 1) -> list[Linkage]:
     """Those of no error to speak of."""
     shapes = Shapes(EVERY[name].mechanism)
     batch, error = fitted(target, shapes, draw(target, shapes, 3000, np.random.default_rng(seed)), 6)
-    return linkages(target, shapes, batch[error < 1e-18])
+    batch = batch[error < 1e-18]
+    nowhere = np.tile([0j, 1, 0], (len(batch), 1))
+    z = project(target, Carried(target, shapes, batch))[0] if target.weights.any() else nowhere
+    return linkages(target, shapes, batch, z)
 
 
 def p_of(linkage: Linkage, theta2: FloatArray) -> ComplexArray:

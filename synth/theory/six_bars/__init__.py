@@ -1,0 +1,1 @@
+"""Six-bars through five poses, by theory."""
