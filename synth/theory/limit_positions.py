@@ -97,7 +97,7 @@ def crank_rockers(swing: float, lag: float | FloatArray, share: FloatArray) -> S
     return StrokeLinkages(
         share=share,
         lengths=np.stack([r1, r2, r3, r4], axis=-1) / r1[:, None],
-        transmission=_worst(r1, r2, r3, r4),
+        transmission=worst_between(r3, r4, r1 - r2, r1 + r2),
         margin=np.minimum(sides, turns / (r1 + r2 + r3 + r4)),
         first=np.where(slow, stretched, folded),
         last=np.where(slow, folded, stretched + 2 * np.pi),
@@ -105,10 +105,10 @@ def crank_rockers(swing: float, lag: float | FloatArray, share: FloatArray) -> S
     )
 
 
-def _worst(r1: FloatArray, r2: FloatArray, r3: FloatArray, r4: FloatArray) -> FloatArray:
-    """Worst transmission angle over the turn; zero where the links do not close."""
-    ends = np.stack([r1 - r2, r1 + r2])
-    cosine = np.clip((r3**2 + r4**2 - ends**2) / (2 * r3 * r4), -1.0, 1.0)
+def worst_between(one: FloatArray, other: FloatArray, near: FloatArray, far: FloatArray) -> FloatArray:
+    """Worst transmission angle of two bars over diagonals from `near` to `far`; 0 where they do not close."""
+    ends = np.stack([near, far])
+    cosine = np.clip((one**2 + other**2 - ends**2) / (2 * one * other), -1.0, 1.0)
     angle: FloatArray = np.arccos(np.abs(cosine)).min(axis=0)
     return angle
 

@@ -10,14 +10,14 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted, finite_number, noted, refuse
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
 from grashof.problems.values.tasks.output_task import OF_POINTS, OutputTask
 from grashof.problems.values.tasks.stroke_task import most_ratio, rocker_swing, slow_over_quick
 from grashof.problems.values.value_bases import set_fields
 
 LINKS = (4, 6)  # that are outputs
-# Kinds whose links 4 and 6 both turn about the ground, each in a four-bar.
+# Kinds whose links 4 and 6 both turn about the ground: link 4 drives the second four-bar, or the crank does.
 TANDEM_HOSTS = ((4, 1), (2, 1))
 TANDEM = tuple(
     dict.fromkeys(row.word for row in MECHANISMS if row.dyads[1:] and row.dyads[1].hosts in TANDEM_HOSTS)
@@ -80,7 +80,7 @@ class TandemTask(OutputTask):
 
     Parameters
     ----------
-    outputs : sequence of LinkSwing
+    strokes : sequence of LinkSwing
         One of link 4, one of link 6.
 
     Raises
@@ -152,6 +152,8 @@ class TandemTask(OutputTask):
 
 def _one_of_each(strokes: Sequence[LinkSwing]) -> tuple[LinkSwing, LinkSwing]:
     """Strokes of links 4 and 6 in this order; `ProblemError` for others."""
+    if isinstance(strokes, str) or not all(isinstance(each, LinkSwing) for each in strokes):
+        raise wrong_value("stroke", strokes, "two LinkSwing, of links 4 and 6")
     by_link = {each.link: each for each in strokes}
     if len(strokes) == len(by_link) == len(LINKS):
         first, second = (by_link[link] for link in LINKS)

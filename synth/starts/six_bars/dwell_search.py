@@ -24,6 +24,7 @@ from grashof.synth.loop.feasible import Demand, bars_between, feasible, shares_o
 from grashof.synth.loop.vector import Vector
 from grashof.synth.starts.closed_loop import Batch, joined
 from grashof.synth.starts.loop_search import Model, improve
+from grashof.synth.theory.sampled import highest
 
 DRAWN, ARCS, BEGUN = 20_000, 400, 600  # four-bars, those with the best arcs, and starts from these
 STAGES = ((600, 8), (200, 12), (60, 25))  # numbers of the best that continue, and their steps
@@ -176,7 +177,7 @@ def _residuals(aim: DwellAim, batch: Batch, terms: Terms) -> FloatArray:
     turn = made.outputs(aim.kind, path)
     middle = made.within(aim, begins, 3)[..., 1, None]
     way = turn.real if aim.slides else np.angle(turn * middle.conj())
-    swing = _highest(way) + _highest(-way)
+    swing = highest(way) + highest(-way)
     unit = swing if aim.slides else np.ones_like(swing)
     rows = [_from_mean(made.still(aim, begins, WITHIN)) / unit[..., None]]
     if not aim.slides:
@@ -207,16 +208,6 @@ def _effects(aim: DwellAim, made: DwellLinkages, begins: FloatArray) -> list[Flo
         by_scale = by_scale - (value * np.conj(way)).real[..., None] * slope
         found.append(_from_mean(slope))
     return [*found, _from_mean(by_scale)]
-
-
-def _highest(values: FloatArray) -> FloatArray:
-    """The greatest of even samples of a period, by a parabola."""
-    top = values.argmax(axis=-1)[..., None] + np.arange(-1, 2)
-    before, at, after = np.moveaxis(np.take_along_axis(values, top % values.shape[-1], axis=-1), -1, 0)
-    bend = before - 2 * at + after
-    share = np.clip(np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0), -0.5, 0.5)
-    highest: FloatArray = at - 0.25 * (before - after) * share
-    return highest
 
 
 def _model(aim: DwellAim, terms: Terms) -> Model:

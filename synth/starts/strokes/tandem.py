@@ -61,8 +61,10 @@ class TandemRockers(DesignFinder):
         if number >= self.rounds_a_pass:
             return None
         hosts = self.aim.drives[number]
-        found = searched(self.aim, hosts, rng, generations=size * GENERATIONS)
-        feasible = found.taken(found.missed == 0)
+        for aim in dict.fromkeys((self.aim.usable, self.aim)):
+            found = searched(aim, hosts, rng, generations=size * GENERATIONS)
+            if (feasible := found.taken(found.missed == 0)).score.size:
+                break
         starts = self._distinct(hosts, feasible, JUDGED)
         return Round(starts, {FINDS: len(starts)}, size=size, together=bool(starts))
 

@@ -7,7 +7,7 @@ the limits by less is better, or where both keep them that of the better objecti
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -35,7 +35,8 @@ PLACES = 6  # numbers that place O2, O4 and D
 WIDTH = PLACES + SHAPE
 # Beyond what is required, for peaks between samples: deg of transmission angle; share of the margin.
 SPARE_DEG, SPARE = 0.02, 1e-3
-LEAST_DEG = 0.5  # transmission angle; a linkage with less is as good as locked
+# Transmission angles: with less a linkage is as good as locked, or peaks hide between samples.
+LEAST_DEG, USABLE_DEG = 0.5, 15.0
 BROAD = (0.25, 4.0)  # lengths of the ground that are tried where it is free, in sizes
 AWAY = (0.3, 6.0)  # distances of D from O2 likewise
 OF_SWINGS = 100.0  # weight of what makes a linkage one with both swings, beside other limits
@@ -43,7 +44,7 @@ TINY = 1e-12
 UNSOUND = 1e6  # miss of a linkage that does not close
 NEAR = 0.01  # spread of numbers about a known linkage
 STEP, CROSSING = (0.4, 0.9), 0.8  # of differential evolution (Storn & Price 1997)
-# Numbers that are angles or places of no kind of end, so that they go round.
+# Numbers that are angles, which go round.
 _ROUND = {
     DRIVEN_BY_4: (PLACES + 3, PLACES + 4),
     DRIVEN_BY_CRANK: (PLACES + 4,),
@@ -88,12 +89,20 @@ class TandemAim:
 
     problem: Problem
     wanted: Requirements  # resolved, in the problem's unit
+    least_deg: float = LEAST_DEG  # transmission angle
 
     @classmethod
     def of(cls, problem: Problem) -> TandemAim:
         """Of a problem."""
         task = problem.task
-        return cls(problem, problem.requirements.resolved(task.size, scale_free=task.scale_free))
+        wanted = problem.requirements.resolved(task.size, scale_free=task.scale_free)
+        return cls(problem, wanted, max(LEAST_DEG, wanted.transmission_min_deg))
+
+    @property
+    def usable(self) -> TandemAim:
+        """The same with a transmission angle that can be used, where none is required."""
+        stated = self.wanted.transmission_min_deg > 0
+        return self if stated else replace(self, least_deg=USABLE_DEG)
 
     @cached_property
     def swings(self) -> Swings:
@@ -162,7 +171,7 @@ class TandemAim:
         return found
 
     @property
-    def _lengths(self) -> Limits:
+    def _ground_lengths(self) -> Limits:
         """Least and greatest length of a ground line that is free."""
         if self.wanted.r1 is not None:
             least, most = self.wanted.r1
@@ -172,7 +181,7 @@ class TandemAim:
 
     def _ground(self, pair: FloatArray) -> ComplexArray:
         """From O2 to O4."""
-        low, high = np.log(self._lengths)
+        low, high = np.log(self._ground_lengths)
         turned = self.wanted.angle_of("ground_angle_deg")
         free = turned is None and any(box != ANYWHERE for box in self._boxes)
         angle = TURN * pair[:, 1] if free else np.full(len(pair), turned or 0.0)
@@ -180,7 +189,7 @@ class TandemAim:
         return way
 
     def _ground_numbers(self, way: complex) -> tuple[float, float]:
-        low, high = np.log(self._lengths)
+        low, high = np.log(self._ground_lengths)
         return float((np.log(abs(way)) - low) / ((high - low) or 1.0)), float(np.angle(way)) / TURN % 1
 
     def _away(self, pair: FloatArray) -> ComplexArray:
@@ -253,7 +262,7 @@ class TandemAim:
         total = values["r1"] + made.r2 + made.r3 + made.r4
         margin = 0.0 if wanted.rotatability is Rotatability.ANY else wanted.rotatability_margin * (1 + SPARE)
         yield OF_SWINGS * np.maximum(margin - np.min(turns, axis=0) / total, 0.0)
-        least = np.radians(max(wanted.transmission_min_deg, LEAST_DEG) + SPARE_DEG)
+        least = np.radians(self.least_deg + SPARE_DEG)
         yield np.maximum(least - values["transmission"], 0.0)
         for key, (low, high) in self._limits.items():
             yield np.maximum(np.log(max(low, TINY) / np.maximum(values[key], TINY)), 0.0)

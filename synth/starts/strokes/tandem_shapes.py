@@ -17,11 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.tasks.tandem_task import TANDEM_HOSTS
 from grashof.synth.loop.dyad import Bars, Closed, Rates, as_complex, as_vector, root_or_zero
-from grashof.synth.theory.limit_positions import StrokeLinkages, crank_rockers, lag_of
+from grashof.synth.theory.limit_positions import StrokeLinkages, crank_rockers, lag_of, worst_between
+from grashof.synth.theory.sampled import highest
 
 SAMPLES = 73  # of a turn
-DRIVEN_BY_4, DRIVEN_BY_CRANK = (4, 1), (2, 1)
+DRIVEN_BY_4, DRIVEN_BY_CRANK = TANDEM_HOSTS
 SHAPE = 5  # numbers of a shape in the unit interval
 ARMS = (0.1, 3.0)  # lengths O4C, over O4D, of those driven by link 4
 SHARES = (0.005, 0.995)  # r2 / r3
@@ -125,11 +127,8 @@ class TandemMotion:
             base, arm = o4, made.c[:, None] * across / made.r4[:, None]
             moved = first.speed, first.bend
         else:
-            base, arm, moved = (
-                o2,
-                made.c[:, None] * along,
-                (np.ones_like(first.speed), np.zeros_like(first.bend)),
-            )
+            base, arm = o2, made.c[:, None] * along
+            moved = np.ones_like(first.speed), np.zeros_like(first.bend)
         second = Chains.of(d - base, arm, (made.r5, made.r6), made.side_2, *moved)
         e = d + as_complex(second.loop.across)
         return cls(first, second, o2 + crank, o4 + across, base + arm, e)
@@ -137,7 +136,7 @@ class TandemMotion:
     @property
     def accelerations(self) -> FloatArray:
         """Greatest angular acceleration of either output, at 1 rad/s, (n,)."""
-        found: FloatArray = np.maximum(_highest(np.abs(self.first.bend)), _highest(np.abs(self.second.bend)))
+        found: FloatArray = np.maximum(_peak(np.abs(self.first.bend)), _peak(np.abs(self.second.bend)))
         return found
 
     def synchrony_errors(self, swings: tuple[float, float]) -> FloatArray:
@@ -146,10 +145,10 @@ class TandemMotion:
         for chain, swing in zip((self.first, self.second), swings, strict=True):
             across = as_complex(chain.loop.across)
             turned = np.unwrap(np.angle(across), axis=1)
-            middle = (_highest(turned) - _highest(-turned)) / 2
+            middle = (_peak(turned) - _peak(-turned)) / 2
             shares.append((turned - middle[:, None]) / swing)
         one, other = shares
-        found: FloatArray = np.minimum(_highest(np.abs(one - other)), _highest(np.abs(one + other)))
+        found: FloatArray = np.minimum(_peak(np.abs(one - other)), _peak(np.abs(one + other)))
         return found
 
     def sizes(self, made: Tandems) -> FloatArray:
@@ -160,15 +159,9 @@ class TandemMotion:
         return found
 
 
-def _highest(values: FloatArray) -> FloatArray:
-    """The greatest of even samples of a period whose last is the first again, by a parabola, (n,)."""
-    period = values[:, :-1]
-    top = period.argmax(axis=1)[:, None] + np.arange(-1, 2)
-    before, at, after = np.take_along_axis(period, top % period.shape[1], axis=1).T
-    bend = before - 2 * at + after
-    share = np.clip(np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0), -0.5, 0.5)
-    found: FloatArray = at - 0.25 * (before - after) * share
-    return found
+def _peak(values: FloatArray) -> FloatArray:
+    """The greatest of samples of a turn whose last is the first again, (n,)."""
+    return highest(values[:, :-1])
 
 
 def tandems(
@@ -266,15 +259,7 @@ def _driven_by_4(
 def transmissions(made: Tandems, motion: TandemMotion) -> FloatArray:
     """Worst transmission angle of both loops over the turn, rad, (n,); 0 where one does not close."""
     lengths = made.lengths
-    first = _worst(made.r3, made.r4, np.abs(lengths["r1"] - made.r2), lengths["r1"] + made.r2)
+    first = worst_between(made.r3, made.r4, np.abs(lengths["r1"] - made.r2), lengths["r1"] + made.r2)
     gap = np.abs(motion.c - made.d[:, None])
-    low, high = -_highest(-gap), _highest(gap)
-    return np.minimum(first, _worst(made.r5, made.r6, low, high))
-
-
-def _worst(one: FloatArray, other: FloatArray, near: FloatArray, far: FloatArray) -> FloatArray:
-    """Worst angle between two bars over diagonals from `near` to `far`."""
-    ends = np.stack([near, far])
-    cosine = np.clip((one**2 + other**2 - ends**2) / (2 * one * other), -1.0, 1.0)
-    angle: FloatArray = np.arccos(np.abs(cosine)).min(axis=0)
-    return angle
+    low, high = -_peak(-gap), _peak(gap)
+    return np.minimum(first, worst_between(made.r5, made.r6, low, high))

@@ -100,3 +100,7 @@ def test_in_python_too() -> None:
         TandemTask([replace(WIPER.strokes[1]), WIPER.strokes[1]])
     with pytest.raises(ProblemError, match=r"^stroke has 0 tables "):
         TandemTask([])
+    with pytest.raises(
+        ProblemError, match=r"^stroke is \[4, 6\]; it must be two LinkSwing, of links 4 and 6$"
+    ):
+        TandemTask([4, 6])  # type: ignore[list-item]

@@ -130,6 +130,14 @@ def test_a_search_is_as_good_as_the_best_of_many_random_ones(seed: int) -> None:
             assert best.score.max() >= some.score.max()
 
 
+def test_usable_transmission_is_looked_for_where_none_is_stated() -> None:
+    swings = np.radians([60, 40])
+    free, stated = aim_of(swings), aim_of(swings, transmission_min_deg=5.0)
+    assert (free.least_deg, free.usable.least_deg) == (0.5, 15.0)
+    assert stated.usable is stated
+    assert stated.least_deg == 5.0
+
+
 def test_pivots_stay_in_their_boxes() -> None:
     rng, boxes = np.random.default_rng(0), {"o2": Box((1, 2), (3, 3)), "d": Box((8, 9))}
     for wanted in (
