@@ -8,7 +8,7 @@ import pytest
 from body_coordinates import follow, rates, start
 from body_plans import plan_of
 
-from grashof.analysis import verify
+from grashof.analysis import link_stroke, verify
 from grashof.problems import Box, Linkage, LinkSwing, Objective, Problem, Requirements, TandemTask, load
 from grashof.synth import Result, synthesize, track
 from grashof.synth.designs.judging import alike
@@ -50,6 +50,20 @@ def test_the_tandem_wiper_in_body_coordinates(wipers: Result) -> None:
     for name, (x, y) in {"o2": (100, -50), "o4": (0, 0)}.items():
         np.testing.assert_allclose(frame[[f"{name}_x", f"{name}_y"]], [[x, y]] * len(frame), atol=1e-9)
     np.testing.assert_allclose(frame[["d_u", "d_v"]], [[560, 0]] * len(frame), atol=1e-9)
+
+
+@pytest.mark.slow
+def test_both_swings_are_met_to_rounding_in_body_coordinates(wipers: Result) -> None:
+    """Between the limit positions of each link, in which it stands still."""
+    for one in wipers.candidates[:12]:
+        plan = plan_of(one.linkage[None])
+        at_start = start(plan, 0.0)
+        for link, swing in ((4, 90), (6, 85)):
+            theta2 = link_stroke(one.linkage, link).theta2
+            q = follow(plan, at_start, 0.0, theta2)
+            column = 3 * (link - 2) + 2
+            assert np.degrees(np.ptp(q[..., column])) == pytest.approx(swing, abs=1e-8)
+            assert np.abs(rates(plan, q)[1][..., column]).max() < 1e-8
 
 
 @pytest.mark.slow
