@@ -48,7 +48,9 @@ class TargetsTable(SpecTable):
         if key == targets:
             return cls.beside.get(key, {})
         count = len(given) if isinstance(given, list) and key != "body" else cls.fewest
-        return None if count < cls.fewest else {targets: [[k, *cls.plain] for k in range(count)]}
+        if count < cls.fewest:
+            return None
+        return {targets: [[k, *cls.plain] for k in range(count)], **cls.beside.get(key, {})}
 
 
 Numbers = Annotated[list[float], listed("a list of numbers")]

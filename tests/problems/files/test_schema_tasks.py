@@ -28,6 +28,10 @@ kind = "path"\n[path]\npoints = [[0, 0], [1, 0]]\nwithin = [1, 2, -3] |
     path.within[2] is -3; it must be from 2e-12 to 1e+20
 <PATH>[requirements]\nstructural_error_max_deg = [0, 1] |
     path states no output; kind = "function" does; requirements.structural_error_max_deg needs it
+kind = "path"\n[path]\npoints = [[0, 0], [1, 0], [1, 1]]\nlength_ratio_max = 1.1 |
+    path.length_ratio_max goes with path.closed = true; remove it
+kind = "path"\n[path]\npoints = [[0, 0], [1, 0], [1, 1]]\nclosed = true\nlength_ratio_max = 0.9 |
+    path.length_ratio_max is 0.9; it must be from 1 to 1e+06
 <PATH>[stroke]\nswing_deg = 80\ntime_ratio = 1.1 | stroke does not belong to kind = "path"
 kind = "stroke" | stroke is missing
 <STROKE>time_ratio = 1.1\n[path]\npoints = [[0, 0], [1, 1], [2, 0]] | path does not belong to kind = "stroke"
@@ -112,3 +116,10 @@ def test_written_and_read_again_it_is_the_same(swing: float) -> None:
     document = tomllib.loads(text)
     assert document["stroke"] == {"swing_deg": swing, "time_ratio": 1.0}
     assert problem_toml(problem_from(document, "wiper")) == text
+
+
+def test_a_length_ratio_of_a_closed_path_is_kept() -> None:
+    ring = 'kind = "path"\n[path]\npoints = [[0, 0], [1, 0], [1, 1]]\nclosed = true\nlength_ratio_max = 1.5\n'
+    made = problem_from(tomllib.loads(ring), "ring")
+    assert made.task.length_ratio_max == 1.5
+    assert problem_from(tomllib.loads(problem_toml(made)), "ring").task.length_ratio_max == 1.5
