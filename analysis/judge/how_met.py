@@ -28,6 +28,7 @@ from grashof.problems import (
     Task,
 )
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray
+from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
@@ -94,7 +95,7 @@ def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
     most = task.most_length_ratio(linkage.mechanism)
     if not np.isfinite(most):
         return Met(targets, motion, targets.theta2, targets.assembly)
-    ratio = closed_length(linkage) / task.curve_length
+    ratio = closed_length(linkage) / spline_length(task.once_round)
     defects = [] if ratio <= most else [_too_long(ratio, most)]
     figures = {"length_ratio": ratio}
     return Met(targets, motion, targets.theta2, targets.assembly, figures=figures, defects=tuple(defects))

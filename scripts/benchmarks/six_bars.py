@@ -16,6 +16,7 @@ from grashof import load, synthesize
 from grashof.analysis import solve_position
 from grashof.analysis.judge.planted import planted_function, planted_motion, planted_path
 from grashof.problems import FunctionTask, PathTask, Problem, Requirements, Task, load_linkage
+from grashof.problems.values.tasks.closed_curve import even_places
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import attempt
@@ -84,8 +85,7 @@ def even(corners: np.ndarray[Any, Any]) -> PathTask:
 
 def gait() -> PathTask:
     """The gait of the catalogue by its closed spline."""
-    spline = PathTask(load("path-gait").task.positions, closed=True).curve
-    x, y = spline(np.linspace(0, spline.x[-1], 2000, endpoint=False)).T
+    x, y = even_places(PathTask(load("path-gait").task.positions, closed=True).once_round, 2000).T
     return even(x + 1j * y)
 
 

@@ -60,7 +60,7 @@ def best_related(problem: Problem, best_first: Sequence[Candidate]) -> IntArray:
         mine, kind = np.array(alike_in_kind), best_first[alike_in_kind[0]].linkage.mechanism
         signatures = np.array([signature(best_first[k].linkage, middle if placed else None) for k in mine])
         alike = best_alike(problem.task, signatures, kind)
-        if kind is FourBar.mechanism and problem.task.limits_size:
+        if len(kind.loops) == 1 and not kind.slides and problem.task.limits_size:
             heads = np.flatnonzero(alike == np.arange(len(mine)))
             akin = _akin([best_first[k] for k in mine[heads]], problem.task.size)
             alike = heads[akin][np.searchsorted(heads, alike)]

@@ -10,7 +10,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, OwnObjective
 from grashof.problems import Linkage, Objective, Problem, Requirements, Rotatability, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import has_one_loop
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.loop.dyad import direction_of
 from grashof.synth.quantities.frame import Frame
@@ -56,7 +56,7 @@ class ScaledProblem:
         kind = kind_of(problem)
         by_dyads = (
             kind.dyad.bars > 1
-            and problem.mechanism[0] in ONE_LOOP
+            and has_one_loop(problem.mechanism[0])
             and exact
             and task.is_whole
             and not task.is_timed
@@ -106,7 +106,7 @@ class ScaledProblem:
     @property
     def one_loop(self) -> bool:
         """Whether the linkages have a single loop."""
-        return self.problem.mechanism[0] in ONE_LOOP
+        return has_one_loop(self.problem.mechanism[0])
 
     @property
     def by_descent(self) -> bool:

@@ -88,6 +88,11 @@ def closing_dyad(kind: str) -> DyadKind:
     return ROWS[kind][0].dyads[0].kind
 
 
+def has_one_loop(word: str) -> bool:
+    """Whether linkages of a kind have a single loop."""
+    return len(ROWS[word][0].loops) == 1
+
+
 def freedoms(kinds: Iterable[Mechanism]) -> int:
     """The least number of dimensions of linkages of some kinds, without the angle of the guided body."""
     every = (

@@ -8,8 +8,9 @@ from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.linkages.mechanisms import joined
-from grashof.problems.values.requirements.quantities import ROCKERS, TRAVELLING, TURNING, Quantity
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import joined, not_had
+from grashof.problems.values.requirements.quantities import ROCKERS, SLIDING, TRAVELLING, TURNING, Quantity
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
@@ -46,6 +47,21 @@ def without_meaning(task: Task, wanted: Requirements, used: Mapping[str, Quantit
             if not getattr(wanted, name)
         ]
     return wrong
+
+
+def not_of_kinds(task: Task, given: Sequence[str], having: Mapping[str, Sequence[str]]) -> list[str]:
+    """Keys, with the kinds of linkages that have them, that none of the given kinds has, a line each."""
+    if task.in_plane or task.has_output.any():  # six-bars with a slide are for other tasks
+        slides = set(SLIDING)
+        having = {
+            where: [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
+            for where, kinds in having.items()
+        }
+    return [
+        not_had(where, given, [kind for kind in kinds if not task.impossible(kind)] or kinds)
+        for where, kinds in having.items()
+        if not set(kinds) & set(given)
+    ]
 
 
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:

@@ -15,12 +15,10 @@ from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres,
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
-from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import (
     ROWS,
     freedoms,
     mechanisms,
-    not_had,
     spelt_out,
 )
 from grashof.problems.values.requirements import task_limits
@@ -30,7 +28,6 @@ from grashof.problems.values.requirements.quantities import (
     BLOCKS,
     OF_SLIDES,
     ROCKERS,
-    SLIDING,
     Needs,
     Quantity,
 )
@@ -232,19 +229,7 @@ class Problem(ReadOnly):
         }
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
-        if self.task.in_plane or self.task.has_output.any():  # six-bars with a slide are for others
-            slides = set(SLIDING)
-            having = {
-                where: [kind for kind in kinds if kind in ONE_LOOP or not slides.issuperset(kinds)]
-                for where, kinds in having.items()
-            }
-        return [
-            not_had(
-                where, self.mechanism, [kind for kind in kinds if not self.task.impossible(kind)] or kinds
-            )
-            for where, kinds in having.items()
-            if not set(kinds) & set(self.mechanism)
-        ]
+        return task_limits.not_of_kinds(self.task, self.mechanism, having)
 
     def for_kind(self, kind: str) -> Problem:
         """The same for one kind of linkage alone, without limits and goals that do not apply to it.

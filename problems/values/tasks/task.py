@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +17,6 @@ from grashof.problems.values.linkages.mechanism import MECHANISMS, WORDS, Mechan
 from grashof.problems.values.tasks.function_law import FunctionLaw
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly
-
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
 
 _SAME = 1e-12  # sizes, rad
 _FOUR_BAR_CURVES = ((2, 1), (4, 1))  # hosts of six-bars whose link 5 leads P as a four-bar does
@@ -163,37 +160,14 @@ class Task(ReadOnly, ABC):
         return self.closed and self.only_points and not self.is_timed
 
     def most_length_ratio(self, kind: Mechanism) -> float:
-        """The greatest length of the curve of P over `curve_length`; infinite without a limit."""
+        """The greatest length of the curve of P over that of the closed spline; infinite without a limit."""
         usual = USUAL_RATIO if len(kind.loops) > 1 and self.is_curve else np.inf
         return usual if self.length_ratio_max is None else self.length_ratio_max
 
     @property
-    def curve(self) -> CubicSpline:
-        """The closed cubic spline through the positions over the length of their polygon, from 0 on."""
-        from scipy.interpolate import CubicSpline  # here: few problems need it
-
-        places = self.positions[:-1] if self.returns else self.positions
-        ring = np.concatenate([places, places[:1]])
-        steps = np.hypot(*np.diff(ring, axis=0).T)
-        return CubicSpline(np.concatenate([[0.0], np.cumsum(steps)]), ring, bc_type="periodic")
-
-    @property
-    def curve_length(self) -> float:
-        """The length of that spline.
-
-        Examples
-        --------
-        >>> from grashof.problems import PathTask
-        >>> turn = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-        >>> ring = PathTask(np.stack([np.cos(turn), np.sin(turn)], axis=1), closed=True)
-        >>> round(ring.curve_length / (2 * np.pi), 4)
-        1.0
-        """
-        curve = self.curve
-        nodes, weights = np.polynomial.legendre.leggauss(8)
-        half = np.diff(curve.x)[:, None] / 2
-        at = curve.x[:-1, None] + half * (1 + nodes)
-        return float((half * weights * np.linalg.norm(curve(at, 1), axis=-1)).sum())
+    def once_round(self) -> FloatArray:
+        """The positions, without a last one that is the first again, shape (M, 2)."""
+        return self.positions[:-1] if self.returns else self.positions
 
     @property
     def is_timed(self) -> bool:

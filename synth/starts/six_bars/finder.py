@@ -9,9 +9,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from grashof.problems import Linkage, ProblemError, Requirements, Rotatability, Task, TransmissionOver
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems import Linkage, ProblemError, Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.arrays import BoolArray, ComplexArray, IntArray
 from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.tasks.closed_curve import even_places, spline_length
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.formulas import of_six_bars
@@ -188,9 +189,9 @@ class SixBars(DesignFinder):
         most = self.scaled.problem.task.most_length_ratio(shapes.mechanism)
         if not np.isfinite(most):
             return np.ones(len(batch), dtype=bool)
-        p = around(shapes, batch, z, ROUND)
+        p, wanted = around(shapes, batch, z, ROUND), spline_length(self.scaled.problem.task.once_round)
         length = np.abs(np.diff(p, axis=1, append=p[:, :1])).sum(axis=1)
-        kept: BoolArray = length <= most * self.scaled.problem.task.curve_length / self.scaled.frame.scale
+        kept: BoolArray = length <= most * wanted / self.scaled.frame.scale
         return kept
 
     def target(self, row: Mechanism) -> SearchTargets:
@@ -201,7 +202,9 @@ class SixBars(DesignFinder):
             of_ratio = {"link_ratio": formulas["link_ratio"]}
             return replace(target, formulas=of_ratio, outputs=task.outputs)
         if task.is_curve and not self.scaled.exact:
-            places = self.scaled.frame.inward(even_points(task, max(CLOSED_TARGETS, len(target.points))))
+            places = self.scaled.frame.inward(
+                even_places(task.once_round, max(CLOSED_TARGETS, len(target.points)))
+            )
             free = np.zeros(len(places))
             target = replace(target, turns=free, turn_weights=free, timing=free)
             target = replace(target, points=places, weights=np.ones(len(places)))
@@ -242,10 +245,3 @@ class SixBars(DesignFinder):
         lengths = {"r1": 1.0} | {name: float(at.made.given[name].value[k, 0]) for name in row.lengths[1:]}
         scale, turn, o2 = place_of(self.wanted, lengths, at.reached[k], self.scaled.problem.task.size)
         return o2, scale * turn, 0j
-
-
-def even_points(task: Task, count: int) -> FloatArray:
-    """Even places (count, 2) on the closed spline of a path, from its first point on."""
-    curve = task.curve
-    places: FloatArray = curve(np.arange(count) * curve.x[-1] / count)
-    return places

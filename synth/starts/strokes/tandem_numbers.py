@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from grashof.problems import Linkage, SixBar
@@ -19,8 +21,13 @@ from grashof.synth.starts.strokes.tandem_shapes import (
 
 def numbers_of(linkage: Linkage, aim: TandemAim) -> tuple[tuple[int, int], FloatArray, BoolArray] | None:
     """Hosts, numbers in [0, 1] and signs, for the swings and limits of a problem; None of another linkage."""
-    if not isinstance(linkage, SixBar) or linkage.mechanism.slides:
+    if len(linkage.mechanism.loops) == 1 or linkage.mechanism.slides:
         return None
+    return _numbers_of_pins(cast("SixBar", linkage), aim)
+
+
+def _numbers_of_pins(linkage: SixBar, aim: TandemAim) -> tuple[tuple[int, int], FloatArray, BoolArray] | None:
+    """The same of a six-bar with pins alone."""
     if (hosts := linkage.mechanism.loops[1].dyad.hosts) not in aim.drives:
         return None
     o2, o4, d = (_complex(getattr(linkage, name)) for name in ("o2", "o4", "d"))

@@ -61,7 +61,7 @@ LISTS: dict[str, Made] = {
         "stephenson-3", starts=16, transmission_min_deg=30,
     ),
 }  # fmt: skip
-QUICK, STUDIES = ("five poses",), ("path of a watt-1", "function of a stephenson-1")
+QUICK, SLOW = ("five poses",), ("path", "function", "closed curve")
 
 
 def six_bars(result: Result) -> list[Candidate]:
@@ -77,7 +77,7 @@ def by_row(designs: list[Candidate]) -> list[list[Candidate]]:
 
 
 def marked(name: str) -> Any:
-    mark = pytest.mark.study if name in STUDIES else pytest.mark.slow
+    mark = pytest.mark.slow if name in SLOW else pytest.mark.study
     return name if name in QUICK else pytest.param(name, marks=mark)
 
 
@@ -185,7 +185,7 @@ def test_the_same_seed_finds_the_same_designs_in_two_processes() -> None:
     assert [each.id for each in one.candidates] == [each.id for each in two.candidates]
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_poses_that_no_six_bar_meets_end_with_a_reason() -> None:
     """Poses at random; the search is short, as its rounds are the same."""
     rng = np.random.default_rng(0)

@@ -141,7 +141,7 @@ def test_limits_are_kept(limits: dict[str, Any]) -> None:
     assert sum(one.ok for one in verdicts) >= 3
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_least_synchrony_error_is_a_goal() -> None:
     problem = problem_of((60, 60), "synchrony_error", transmission_min_deg=25.0, **PLACES)
     best = synthesize(problem, starts=30).best
@@ -153,11 +153,15 @@ def test_the_least_synchrony_error_is_a_goal() -> None:
     ("swings", "wanted", "line"),
     [
         ((90, 85), {"transmission_min_deg": 60.0, **PLACES}, "this alone would do: transmission_min_deg 43"),
-        ((90, 85), {"r5": (1, 2), "r6": (1, 2), **PLACES}, "the closest one misses r5"),
-        (
+        pytest.param(
+            *((90, 85), {"r5": (1, 2), "r6": (1, 2), **PLACES}, "the closest one misses r5"),
+            marks=pytest.mark.study,
+        ),
+        pytest.param(
             (90, 85),
             {"output_acceleration_max": (0, 0.7), "transmission_min_deg": 20.0},
             "output_acceleration_max up",
+            marks=pytest.mark.study,
         ),
     ],
 )

@@ -279,6 +279,7 @@ def test_poses_without_six_bars(name: str) -> None:
     assert found == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("places", "angles"),
     [

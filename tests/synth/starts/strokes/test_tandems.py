@@ -40,6 +40,7 @@ def drawn_linkages(aim: TandemAim, hosts: tuple[int, int], count: int) -> Any:
     return made, linkages(made), found
 
 
+@pytest.mark.slow
 @HOSTS
 def test_random_shapes_have_both_swings_and_turn_fully(hosts: tuple[int, int]) -> None:
     aim = aim_of(np.radians([80, 65]), link_ratio_max=50.0, **FIXED)
@@ -79,6 +80,7 @@ def test_different_time_ratios_leave_one_kind_of_drive() -> None:
     assert aim_of(swings, 1.1, 1.2).drives == [DRIVEN_BY_CRANK]
 
 
+@pytest.mark.slow
 @HOSTS
 def test_planted_linkages_are_among_them(hosts: tuple[int, int]) -> None:
     """Those whose first loop, or both, are crank-rockers and whose outputs turn back twice."""
@@ -110,7 +112,7 @@ def test_planted_linkages_are_among_them(hosts: tuple[int, int]) -> None:
     assert count >= 3
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize("seed", range(2))
 def test_a_search_is_as_good_as_the_best_of_many_random_ones(seed: int) -> None:
     rng = np.random.default_rng(seed)
