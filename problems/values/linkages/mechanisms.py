@@ -124,7 +124,7 @@ def without_noise(length: float, linkage: Linkage) -> float:
 def not_had(what: str, given: Sequence[str], kinds: Sequence[str]) -> str:
     """The error of a key or quantity that only other kinds of linkages have."""
     ending = "has it" if len(kinds) == 1 else "have it"
-    return f"{what} does not go with mechanism {' and '.join(given)}; only {joined(kinds)} {ending}"
+    return f"{what} does not go with mechanism {joined(given)}; only {joined(kinds)} {ending}"
 
 
 def joined(words: Sequence[str]) -> str:

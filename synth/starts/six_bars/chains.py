@@ -34,6 +34,8 @@ STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
 
 FIRST_STAGES = ((400, 8, 0.1), (100, 12, 1.0), (30, 20, 10.0))  # where a fit to more targets follows
 
+QUICK_STAGES = ((150, 8, 0.1), (50, 15, 1.0), (16, 60, 10.0))
+
 
 def draw(target: SearchTargets, shapes: Shapes, count: int, rng: np.random.Generator) -> Batch:
     """Random linkages."""

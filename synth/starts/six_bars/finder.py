@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 from typing import ClassVar
 
 import numpy as np
@@ -23,7 +24,7 @@ from grashof.synth.starts.exact_poses import pure_rotation, refuse_equal
 from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.loop_search import project
 from grashof.synth.starts.six_bars.carried import Carried, around
-from grashof.synth.starts.six_bars.chains import FIRST_STAGES, STAGES, draw, fitted, linkages
+from grashof.synth.starts.six_bars.chains import FIRST_STAGES, QUICK_STAGES, STAGES, draw, fitted, linkages
 from grashof.synth.starts.six_bars.every_target import fitted_to_all
 from grashof.synth.starts.six_bars.placing import place_of
 from grashof.synth.starts.six_bars.shapes import Shapes
@@ -33,7 +34,7 @@ from grashof.synth.theory.distinct import origin_of, pick_apart, signatures
 from grashof.synth.theory.six_bars.five_poses import six_bars_through
 from grashof.synth.theory.six_bars.link_motions import POSES
 
-DRAWS = 3000
+DRAWS, QUICK_DRAWS = 3000, 1000  # fewer where the reason for an empty list is looked for
 FEW_TARGETS = 16  # of a longer untimed task, among which linkages are found first
 CLOSED_TARGETS = 48  # places on a closed path, so that no curve fits the points alone
 ROUND = 512  # driver angles for the length of a curve
@@ -80,16 +81,26 @@ class SixBars(DesignFinder):
         """The row and the transmission angle, deg, of every round: the required one, and greater ones."""
         least = self.wanted.transmission_min_deg
         greater = [level for level in LEVELS if level > least + 1]
-        often = max(1, LEAST_ROUNDS // len(self.rows))
-        levels = [least] * often + greater
+        rows = max(1, len(self.rows))
+        levels = [least] * max(1, LEAST_ROUNDS // rows) + greater
         if self.scaled.exact:
-            levels = [least, *greater] * max(1, EXACT_PASSES // len(self.rows))
+            levels = [least, *greater] * max(1, EXACT_PASSES // rows)
         return [(row, level) for level in levels for row in self.rows]
 
     @property
     def rounds_a_pass(self) -> int:
         """One for each row and transmission angle, or more."""
-        return len(self.plan) + self.by_theory
+        return 0 if self.contradiction else len(self.plan) + self.by_theory
+
+    @cached_property
+    def contradiction(self) -> str:
+        """Two lengths whose limits leave no ratio that is allowed; empty where there are none."""
+        wanted, names = self.wanted, self.rows[0].lengths if self.rows else ()
+        limits = {name: getattr(wanted, name) or wanted.link_length or (0.0, np.inf) for name in names}
+        for (one, (least, _)), (other, (_, most)) in permutations(limits.items(), 2):
+            if least > wanted.link_ratio_max * most:
+                return f"limits of {one} and {other} contradict the greatest link ratio"
+        return ""
 
     def refuse(self) -> None:
         """Raise `ProblemError` for kinds whose P moves as that of a four-bar, for few or equal targets."""
@@ -147,23 +158,25 @@ class SixBars(DesignFinder):
         return [
             each
             for row, level in self.plan[: len(self.rows)]
-            for each in self._found(row, level, rng, 1)[:CLOSE]
+            for each in self._found(row, level, rng, 1, quick=True)[:CLOSE]
         ]
 
     def obstacle(self, _rng: np.random.Generator, counts: Mapping[str, int], /) -> str:
-        """That no linkage came through all targets, where that was looked for."""
-        if not self.scaled.exact or counts.get(FINDS):
-            return ""
+        """Contradictory limits; that no linkage came through all targets, where that was looked for."""
+        if self.contradiction or not self.scaled.exact or counts.get(FINDS):
+            return self.contradiction
         return f"no {self.scaled.problem.mechanism[0]} came through all targets"
 
-    def _found(self, row: Mechanism, level: float, rng: np.random.Generator, size: int) -> list[Linkage]:
+    def _found(
+        self, row: Mechanism, level: float, rng: np.random.Generator, size: int, *, quick: bool = False
+    ) -> list[Linkage]:
         """Distinct linkages of a row, best first, in the problem's unit."""
         target, shapes, exact = self.target(row), self._shapes(row, level), self.scaled.exact
         with np.errstate(all="ignore"):
             every = target.timed or target.jumbled
             some, index = thinned(target, len(target.points) if every else FEW_TARGETS)
-            stages = STAGES if some is target else FIRST_STAGES
-            batch = draw(some, shapes, size * DRAWS, rng)
+            stages = QUICK_STAGES if quick else STAGES if some is target else FIRST_STAGES
+            batch = draw(some, shapes, size * (QUICK_DRAWS if quick else DRAWS), rng)
             batch, error = fitted(some, shapes, batch, EXACT_JUDGED if exact else 1, stages)
             if some is target:
                 at = Carried(target, shapes, batch)
