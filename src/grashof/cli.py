@@ -55,7 +55,7 @@ class _Commands(TyperGroup):
 
 app = typer.Typer(
     cls=_Commands,
-    help="Find planar four-bar linkages that do a job, verify them, and rank them.",
+    help="Find planar four-bar and six-bar linkages that do a job, verify them, and rank them.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
