@@ -43,6 +43,7 @@ def test_from_the_file_to_the_drawing(grashof: Grashof) -> None:
     folder = Path(f"{NAME}-designs")
     table = pd.read_csv(folder / "candidates.csv")
     assert len(table) >= 10
+    assert f"{len(table)} distinct verified watt-2 designs in " in done.output
     np.testing.assert_allclose(table[["swing_4_deg", "swing_6_deg"]], [[90, 85]] * len(table), atol=1e-4)
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "swing 90 deg of link 4 and swing 85 deg of link 6" in page
