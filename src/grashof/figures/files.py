@@ -21,6 +21,7 @@ from grashof.figures.parts import missing_glyphs_unwarned
 from grashof.figures.subject import Linkage, Subject
 from grashof.problems import Problem
 from grashof.synth import Candidate
+from grashof.wording.problem import class_text
 
 # Settings of matplotlib. Fixed names inside the SVG and no date: the same design gives the same bytes.
 STYLE: Any = {
@@ -149,6 +150,6 @@ def _heading(problem: Problem, candidate: Candidate, rank: int) -> str:
     defect = "" if ok else f", {'branch' if verdict.circuit_ok else 'circuit'} defect"
     return (
         f"{shortened(problem.title or problem.name)}: design {rank} ({candidate.id}), "
-        f"{verdict.grashof_class}{fit}{defect}\n"
+        f"{class_text(candidate)}{fit}{defect}\n"
         f"{lengths}{unit};  worst transmission angle {', '.join(over)}"
     )

@@ -20,13 +20,13 @@ from grashof.output.process import say
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.linkages.mechanisms import LENGTHS, has_one_loop, having, without_noise
+from grashof.problems.values.linkages.mechanisms import LENGTHS, having, without_noise
 from grashof.problems.values.requirements.quantities import Quantity, Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth import Candidate, Progress, Result
 from grashof.synth.designs.ranking import pareto_optimal
-from grashof.wording.problem import error_meaning, goals
+from grashof.wording.problem import class_text, error_meaning, goals
 from grashof.wording.proof import enclosure_line, enclosures, proof_line
 
 _ROWS = 12
@@ -214,7 +214,8 @@ def heading(result: Result, verified: int) -> str:
     if task.has_output.any():
         least = min(each.structural_error_max for each in verdicts)
         error = f", structural error from {task.shown(least, result.problem.length_unit)}"
-    kind = _kind(result)
+    classes = {class_text(candidate) for candidate in result.candidates}
+    kind = classes.pop() if len(classes) == 1 else ""
     families = len(result.families)
     grouped = f" in {counted(families, 'family')}" if families < len(result) else ""
     found = counted(verified, f"distinct verified {f'{kind} ' if kind else ''}design") + grouped
@@ -234,13 +235,6 @@ def heading(result: Result, verified: int) -> str:
         f"{f'error rms: {counted_so}.' + chr(10) if counted_so else ''}"
         f"mu: worst transmission angle; *: Pareto-optimal in {goals(result.problem)}.{shown}"
     )
-
-
-def _kind(result: Result) -> str:
-    """The class of all designs, or of six-bars the mechanism of all; empty where they differ."""
-    one_loop = all(has_one_loop(word) for word in result.problem.mechanism)
-    kinds = _classes(result) if one_loop else set(result.problem.mechanism)
-    return kinds.pop() if len(kinds) == 1 else ""
 
 
 def _classes(result: Result) -> set[str]:

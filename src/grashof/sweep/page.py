@@ -25,7 +25,7 @@ _DIGITS = 5
 # Columns beside those varied and the deciding one: lengths, then properties of the design.
 _SHOWN = (
     "transmission_min_task_deg", "transmission_min_cycle_deg", "error", "torque_peak", "size", "r1", "r2",
-    "r3", "r4", "grashof_class",
+    "r3", "r4", "r5", "r6", "grashof_class",
 )  # fmt: skip
 
 

@@ -24,7 +24,7 @@ from grashof.problems import (
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import kinds_text
+from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
@@ -313,6 +313,12 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
     return Candidate(spec.linkage, verdict, of, 0, 0)
 
 
+def class_text(candidate: Candidate) -> str:
+    """The Grashof class of a linkage with one loop, otherwise its mechanism."""
+    word = candidate.linkage.mechanism.word
+    return str(candidate.verdict.grashof_class) if has_one_loop(word) else word
+
+
 def verdict_lines(candidate: Candidate, name: str) -> list[str]:
     """The verdict on a linkage: whether it meets all requirements, those that it misses, its quantities."""
     problem, verdict = candidate.problem, candidate.verdict
@@ -321,7 +327,7 @@ def verdict_lines(candidate: Candidate, name: str) -> list[str]:
     lines += [f"  missed: {line}" for line in missed]
     if not missed and (doubt := caution(problem, candidate)):
         lines.append(f"  but {doubt}")
-    lines.append(f"  {verdict.grashof_class}; driver {'turns fully' if verdict.full_rotation else 'swings'}")
+    lines.append(f"  {class_text(candidate)}; driver {'turns fully' if verdict.full_rotation else 'swings'}")
     for key in _KEYS:
         quantity = QUANTITIES[key]
         if quantity.over is Scope.CYCLE and not verdict.full_rotation:
