@@ -19,16 +19,18 @@ from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
     branch_index,
     circuit_index,
+    closes_everywhere,
     full_rotation,
     grashof_class,
     passes_change_point,
     rotatability,
 )
 from grashof.analysis.mechanism.position import solve_position
+from grashof.analysis.mechanism.second_loop import cut
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.tasks.task import row_of
 
@@ -232,6 +234,8 @@ def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> Iterato
     if least < margin - SLACK:
         allowed = f"from {margin:g} ({why})"
         yield Defect("rotatability", "the margin of full rotation", least, allowed, margin - least)
+    elif len(linkage.mechanism.loops) > 1:
+        yield from _stopped(linkage, why, at_change_points=margin > 0)
     kind = {Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(wanted.rotatability, 0)
     # As far as O4 of a slider-crank: it lies at infinity.
     difference = float(getattr(linkage, "r1", np.inf) - linkage.r2)
@@ -239,6 +243,21 @@ def _rotatability(linkage: Linkage, task: Task, wanted: Requirements) -> Iterato
     if miss > SLACK:
         allowed = f"{'greater' if kind > 0 else 'less'} than 0 ({wanted.rotatability})"
         yield Defect("rotatability", "r1 - r2", difference, allowed, miss)
+
+
+def _stopped(linkage: Linkage, why: str, *, at_change_points: bool) -> Iterator[Defect]:
+    """The defect of a second loop that stops a driver which the first loop lets turn.
+
+    The margin keeps change points out of the first loop alone; here they count if `at_change_points`.
+    """
+    found = cut(linkage)
+    if not closes_everywhere(linkage):
+        reach = float(np.ptp(found.ranges, axis=-1).max(initial=0.0))
+        what = "the driver rotation in deg over which both loops close"
+        yield Defect("rotatability", what, float(np.degrees(reach)), f"360 ({why})", 1 - reach / TURN)
+    elif at_change_points and len(found.touched):
+        what = "the number of change points of the second loop"
+        yield Defect("rotatability", what, len(found.touched), f"0 ({why})", 1.0)
 
 
 def _covered(targets: Targets) -> list[Defect]:

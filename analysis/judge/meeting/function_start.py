@@ -9,7 +9,7 @@ import numpy as np
 
 from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
-from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
+from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import worst_transmission
 from grashof.problems import Linkage, ProblemError, Task
@@ -133,7 +133,7 @@ class _Search:
         """Driver angles at the first pair from which the range is possible."""
         low, high = self.task.span
         ranges = driver_ranges(self.linkage, self.transmission).tolist()
-        if (rotatability(self.linkage) >= 0).all() and ranges[0][1] - ranges[0][0] >= TURN:
+        if closes_everywhere(self.linkage) and ranges[0][1] - ranges[0][0] >= TURN:
             return [(ranges[0][0], ranges[0][1])]
         back, on = (-low, high) if direction > 0 else (high, -low)
         ends = [(a + back, b - on) for a, b in ranges]

@@ -11,7 +11,7 @@ import numpy as np
 from grashof.analysis.curves.coupler_curve import PIECES, Track, between, coupler_curve, range_around, tracks
 from grashof.analysis.judge.meeting.assignment import Guess, nearest_guess, ordered_guesses
 from grashof.analysis.judge.meeting.task_motion import as_good, misses, squares, valleys
-from grashof.analysis.mechanism.mobility import driver_ranges, rotatability
+from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model, lowest, lowest_in_order
 from grashof.problems import Linkage, Task
@@ -237,7 +237,7 @@ def _first_angles(
 
 def _ranges(linkage: Linkage, turn: float, same_branch: bool) -> list[tuple[float, float]]:
     """Driver angles at the first target from which the entire rotation `turn` is possible."""
-    if not same_branch or (rotatability(linkage) >= 0).all():
+    if not same_branch or closes_everywhere(linkage):
         return [(float(linkage.theta1), float(linkage.theta1) + TURN)]
     back, on = max(-turn, 0.0), max(turn, 0.0)
     ends = driver_ranges(linkage)

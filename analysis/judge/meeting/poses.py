@@ -14,7 +14,7 @@ from grashof.analysis.judge.meeting.task_motion import (
     task_motion,
 )
 from grashof.analysis.mechanism.even_motion import closer_at_ends
-from grashof.analysis.mechanism.mobility import driver_ranges, range_index, rotatability
+from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges, range_index
 from grashof.analysis.numerics.minimisation import lowest_in_order
 from grashof.problems import Linkage, Task
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, turned_from
@@ -150,7 +150,7 @@ def _by_range(linkage: Linkage, task: Task) -> list[tuple[FloatArray, FloatArray
     angle, signs, _ = _valleys(linkage, task)
     bottoms = angle[signs == int(linkage.assembly)]
     ranges = list[tuple[FloatArray, float, float]]()
-    if (rotatability(linkage) >= 0).all():
+    if closes_everywhere(linkage):
         around = linkage.theta1 + np.linspace(0, TURN, _PLACES, endpoint=False)
         ranges.append((np.concatenate([around, bottoms]) % TURN, -np.inf, np.inf))
     else:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import coupler_motion
-from grashof.analysis.mechanism.mobility import range_index, rotatability
+from grashof.analysis.mechanism.mobility import closes_everywhere, range_index
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.minimisation import Model
 from grashof.problems import Linkage, Task
@@ -128,7 +128,7 @@ class TaskMotion:
 
 def task_motion(linkage: Linkage, theta2: FloatArray, ordered: bool) -> TaskMotion:
     """The motion through driver angles (N,) in sequence, or the shortest that holds them all."""
-    turns = bool((rotatability(linkage) >= 0).all())  # through a change point too, as circuits count it
+    turns = closes_everywhere(linkage)  # through a change point too, as circuits count it
     index, inside = range_index(linkage, theta2)
     if not turns and (index >= 0).all() and np.ptp(index) == 0:  # one range: no way around
         direction = 1 if inside[-1] >= inside[0] else -1

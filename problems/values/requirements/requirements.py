@@ -77,7 +77,8 @@ class Requirements(ReadOnly):
         covers the task). By default full-crank, of functions any.
     rotatability_margin : float
         r3+r4-r1-r2 and |r1-r2|-|r3-r4| are at least this share of r1+r2+r3+r4; by default 0.001, for the
-        stroke of a slide 0, as its transmission angle says the same.
+        stroke of a slide 0, as its transmission angle says the same. Unless it is 0, the second loop of a
+        six-bar has no change point, either.
     order : bool
         The driver meets the targets in sequence, in one sense, within one turn.
     same_branch : bool

@@ -4,9 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from body_coordinates import reach, start
+from body_plans import plan_of
 from linkages_of_rows import SIX_BARS
+from random_linkages import six_bars
 
-from grashof.analysis import solve_position, verify
+from grashof.analysis import driver_ranges, solve_position, verify
 from grashof.analysis.curves.coupler_curve import closed_length
 from grashof.analysis.judge.planted import random_six_bar
 from grashof.problems import FunctionTask, MotionTask, PathTask, Requirements, SixBar, Task
@@ -129,3 +132,72 @@ def test_arms_lead_to_the_joints_of_the_link_of_p() -> None:
         assert "coupler_arms" in {each.requirement for each in least.defects}
         held = verify(linkage, task, Requirements(exact=False, coupler_arms=(0, most * 1.01)))
         assert "coupler_arms" not in {each.requirement for each in held.defects}
+
+
+def stopped(hosts: tuple[int, int]) -> tuple[SixBar, float, float]:
+    """A six-bar whose first loop turns, and whose second one stops the driver; the ends of its range, rad."""
+    some = six_bars(f"pins {hosts[0]} {hosts[1]}", 60, np.random.default_rng(6), turning=False)
+    for k in range(60):
+        linkage = some[k].changed(point_link=5)
+        low, high = max(driver_ranges(linkage).tolist(), key=lambda ends: float(np.nan_to_num(np.ptp(ends))))
+        if 1.1 * np.pi < high - low < 1.9 * np.pi:
+            return linkage, low, high
+    raise ValueError(f"no six-bar with hosts {hosts} and such a range")
+
+
+def poses_at(linkage: SixBar, theta2: np.ndarray[Any, Any], timed: bool = False) -> MotionTask:
+    state = solve_position(linkage, theta2)
+    timing = theta2 - theta2[0] if timed else None
+    return MotionTask(state.p, np.unwrap(state.theta5), timing=timing)
+
+
+def without_sizes(**given: Any) -> Requirements:
+    return Requirements(exact=True, link_length=(0, 1e4), link_ratio_max=1e4, coupler_arms=(0, 1e4), **given)
+
+
+@pytest.mark.parametrize("hosts", HOSTS)
+def test_a_driver_that_the_second_loop_stops_does_not_turn_fully(hosts: tuple[int, int]) -> None:
+    linkage, low, high = stopped(hosts)
+    theta2 = low + (high - low) * np.array([0.05, 0.4, 0.6, 0.95])
+    plan = plan_of(linkage)
+    ends = reach(plan, start(plan, theta2[0]), theta2[0])[:, 0]
+    assert ends == pytest.approx([low, high], abs=1e-5)
+    for timed in (False, True):
+        task = poses_at(linkage, theta2, timed)
+        (defect,) = verify(linkage, task, without_sizes()).defects
+        assert defect.requirement == "rotatability"
+        assert defect.found == pytest.approx(np.degrees(high - low))
+        verdict = verify(linkage, task, without_sizes(rotatability="any"))
+        assert verdict.ok, verdict.defects
+        assert np.ptp(verdict.theta2) == pytest.approx(theta2[-1] - theta2[0])
+
+
+@pytest.mark.parametrize("hosts", HOSTS)
+def test_a_motion_does_not_pass_where_the_second_loop_is_open(hosts: tuple[int, int]) -> None:
+    """Two poses are joined the longer way round; three out of order are not met, though they would be."""
+    linkage, low, high = stopped(hosts)
+    wanted = without_sizes(rotatability="any")
+    theta2 = low + (high - low) * np.array([0.03, 0.97])
+    verdict = verify(linkage, poses_at(linkage, theta2), wanted)
+    assert verdict.ok, verdict.defects
+    assert np.ptp(verdict.theta2) == pytest.approx(theta2[1] - theta2[0])
+    assert verdict.transmission_min_task > 0
+    mixed = verify(linkage, poses_at(linkage, low + (high - low) * np.array([0.3, 0.9, 0.1])), wanted)
+    assert {each.requirement for each in mixed.defects} & {"exact", "order"}
+
+
+def test_change_points_of_the_second_loop_are_excluded_as_the_margin_demands() -> None:
+    parallel = {
+        "o2": (0, 0),
+        "o4": (4, 0),
+        "r2": 1,
+        "r3": 3.5,
+        "r4": 3,
+        "hosts": (2, 1),
+        "coupler_point": (1, 1),
+    }
+    linkage = SixBar(**parallel, c=(1, 0), d=(-4, 0), r5=4, r6=1)
+    task = PathTask(solve_position(linkage, np.array([0.5, 1.0, 1.5])).p, timing=[0, 0.5, 1.0])
+    (defect,) = verify(linkage, task, without_sizes()).defects
+    assert (defect.requirement, defect.allowed) == ("rotatability", "0 (full-crank)")
+    assert verify(linkage, task, without_sizes(rotatability_margin=0)).ok
