@@ -13,6 +13,7 @@ from grashof.problems import Cylinder, Linkage, Problem, ProblemError
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.driving import cylinder_for
+from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.stopping import overdue
 
@@ -25,6 +26,7 @@ def judged(
     points: ComplexArray,
     assembly: int,
     body_angle: float,
+    second: SecondLoop | None = None,
     *,
     start: int,
     iterations: int,
@@ -39,6 +41,7 @@ def judged(
     given = None if scaled.motion is not None else np.array(body_angle)
     try:
         linkage = scaled.linkages(points, np.array(assembly), given)
+        linkage = linkage if second is None else second.added_to(linkage, scaled.frame)
     except ProblemError:
         return None
     return judged_linkage(scaled, linkage, start=start, iterations=iterations, most_error=most_error)

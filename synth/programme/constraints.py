@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.synth.loop.chain import Frame
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import FREE, NONNEGATIVE, Builder, Fill, always
+from grashof.synth.programme.plane import column, cross, quarter_turn, rotated, track, unit, vector
+from grashof.synth.programme.second_loop import Joined, joined, links_of_first_loop
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
-from grashof.synth.programme.unknowns import FAR, INSET, Unknowns, interleaved
+from grashof.synth.programme.unknowns import FAR, INSET, SecondUnknowns, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at, on_symbols
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -39,6 +42,7 @@ class Positions:
     # derivatives.
     across: Callable[[int], Vector]
     fixed: Fixed
+    second: list[Joined] = field(default_factory=list)  # at every target, of two loops
 
 
 class Fixed(View):
@@ -50,6 +54,8 @@ class Fixed(View):
         self.normal = vector(unit(x.theta1))
         self.r1, self.r2, self.r3, self.r4 = ca.vertsplit(x.r)
         self.offset = self.r4
+        if x.second is not None:
+            self.r5, self.r6 = ca.vertsplit(x.second.bars)
 
 
 class Symbols(Fixed):
@@ -59,7 +65,7 @@ class Symbols(Fixed):
         super().__init__(form, x)
         self.theta1, self.theta2_start = x.theta1, x.theta2_start
         self.ap, self.bp = vector(places.ap), vector(places.bp)
-        self.a, self.b = (_track(points) for points in (places.a, places.b))
+        self.a, self.b = (track(points) for points in (places.a, places.b))
         self.body_turn, self.direction = x.body_turn, x.direction
         self.driver_turn = x.direction * (x.theta2[form.targets - 1] - x.theta2[0])
         self.turns, self.double_crank = x.turns, x.double_crank
@@ -130,10 +136,17 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     """The loop O2-A-B-O4 closes at every driver angle; P is fixed to the coupler."""
     n, fixed, dyad = form.targets, Fixed(form, x), form.kind.dyad
     a = [x.o2 + x.r[1] * unit(x.theta2[k]) for k in range(n)]
-    p = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)]
     at_a, along = [vector(point) for point in a], [vector(unit(x.theta3[k])) for k in range(n)]
     at_b = [dyad.b(fixed, at, turned) for at, turned in zip(at_a, along, strict=True)]
     b = [column(point) for point in at_b]
+    p, second = [a[k] + rotated(x.arm, x.theta3[k]) for k in range(n)], list[Joined]()
+    if x.second is not None:
+        frames = [
+            links_of_first_loop(fixed, vector(unit(x.theta2[k])), at_a[k], along[k], at_b[k])
+            for k in range(n)
+        ]
+        second = [second_loop(form, x.second, frames[k], x.second.turned[k]) for k in range(n)]
+        p = [column(each.frame.point(vector(x.arm))) for each in second]
 
     def across(k: int) -> Vector:
         return dyad.across(fixed, at_b[k], along[k])
@@ -141,16 +154,24 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
     timing = build.parameter(lambda scaled, start: scaled.timing[list(start.visit)], n)
     for k in range(n):
         build.zero(dyad.gap(fixed, at_a[k], at_b[k], across(k)))
+        build.zero(*(each.gap for each in second[k : k + 1]))
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
-            build.zero(x.theta3[k] + x.body_angle - targets.turns[k])
+            build.zero(_off(x, targets, k))
         if form.timed and k:
             build.zero(x.theta2[k] - x.theta2[0] - x.direction * (timing[k] - timing[0]))
     for point, at in ((x.a, a), (x.b, b)):
         if not point.is_empty():
             build.zero(point - sum((x.at_first[k] * at[k] for k in range(n)), ca.SX.zeros(2)))
-    return Positions(a, b, p, x.arm, x.arm - ca.vertcat(x.r[2], 0), across, fixed)
+    bar = second[0].loop.r3 if second else x.r[2]
+    return Positions(a, b, p, x.arm, x.arm - ca.vertcat(bar, 0), across, fixed, second)
+
+
+def second_loop(form: Form, second: SecondUnknowns, frames: Mapping[int, Frame], turned: ca.SX) -> Joined:
+    """The second dyad between the links of a first loop, P's link in a direction."""
+    arms = vector(second.c), vector(second.d)
+    return joined(form.row, frames, arms, ca.vertsplit(second.bars), vector(unit(turned)))
 
 
 def square(form: Form, x: Unknowns, places: Positions, targets: Targets) -> ca.SX:
@@ -177,6 +198,9 @@ def require_modes(build: Builder, form: Form, x: Unknowns, places: Positions) ->
             lever = vector(b - a).cross(places.across(k))
             sine = lever / form.kind.dyad.most_lever(places.fixed)
             build.require(("same_branch",), x.assembly * sine - 1e-6)
+        if x.second is not None:
+            sides = (x.second.side * each.sine for each in places.second)
+            build.require(("same_branch",), *(side - 1e-6 for side in sides))
     if form.crank:
         margin = build.parameter(lambda scaled, _: scaled.wanted.rotatability_margin + INSET)
         margins = form.kind.dyad.margins(Symbols(form, x, places))
@@ -310,12 +334,12 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Positions) 
 
 def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
     """Angle of the body from a pose."""
-    return x.theta3[k] + x.body_angle - targets.turns[k]
+    return x.carrying[k] + x.body_angle - targets.turns[k]
 
 
 def _turns(scaled: ScaledProblem, start: Start) -> FloatArray:
     """Angles of the body in the order of visit, moved by whole turns to be nearest to the start."""
-    turned = np.array(start.theta3) + start.body_angle
+    turned = np.array(start.carrying) + start.body_angle
     off = scaled.turns[list(start.visit)] - turned
     nearest: FloatArray = turned + np.angle(np.exp(1j * off))
     return nearest
@@ -329,7 +353,7 @@ def _target_weights(scaled: ScaledProblem, start: Start) -> FloatArray:
 def _square(scaled: ScaledProblem, start: Start) -> float:
     """Weighted squared misses of the targets at the start."""
     order = np.argsort(start.visit)
-    turned = np.array(start.theta3)[order] + start.body_angle
+    turned = np.array(start.carrying)[order] + start.body_angle
     return float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
 
 
@@ -347,40 +371,3 @@ def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:
     planes = free_regions(scaled.wanted, start, points_held(scaled))
     planes[..., 2] += INSET
     return planes.ravel()
-
-
-def vector(point: ca.SX) -> Vector:
-    """A point, shape (2,), as a plane vector."""
-    return Vector(point[0], point[1])
-
-
-def column(point: Vector) -> ca.SX:
-    """A plane vector as a point, shape (2,)."""
-    placed: ca.SX = ca.vertcat(point.x, point.y)
-    return placed
-
-
-def _track(points: list[ca.SX]) -> Vector:
-    """Points, each of shape (2,), as one plane vector of columns."""
-    return Vector(*(ca.vertcat(*(point[axis] for point in points)) for axis in (0, 1)))
-
-
-def unit(angle: ca.SX) -> ca.SX:
-    """Unit vector in a direction."""
-    return ca.vertcat(ca.cos(angle), ca.sin(angle))
-
-
-def rotated(point: ca.SX, angle: ca.SX) -> ca.SX:
-    """A vector turned by an angle."""
-    cos, sin = ca.cos(angle), ca.sin(angle)
-    return ca.vertcat(cos * point[0] - sin * point[1], sin * point[0] + cos * point[1])
-
-
-def quarter_turn(point: ca.SX) -> ca.SX:
-    """A vector turned by 90 degrees, counter-clockwise."""
-    return ca.vertcat(-point[1], point[0])
-
-
-def cross(first: ca.SX, second: ca.SX) -> ca.SX:
-    """Cross product of two plane vectors."""
-    return first[0] * second[1] - first[1] * second[0]

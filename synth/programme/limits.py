@@ -12,7 +12,8 @@ from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Fixed, Positions, Symbols, arm_of, vector
+from grashof.synth.programme.constraints import Fixed, Positions, Symbols, arm_of
+from grashof.synth.programme.plane import column, vector
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
@@ -33,7 +34,7 @@ ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
 def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
     """Every limit of a quantity: of a plain unknown by its bounds, of anything else by rows."""
-    design, formulas = Symbols(form, x, places), form.kind.formulas
+    design, formulas = Symbols(form, x, places), form.formulas
     smooth = {"link_ratio": smooth_ratio(*formulas["link_length"])}
     for name, part in parts_of(form.limited, smooth, formulas):
         if part.fixed:
@@ -107,8 +108,8 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Positions) ->
             cost -= weight * x.tau / (np.pi / 2)
         elif key == "size":
             cost += weight * size
-        elif key in form.kind.formulas:
-            (part,) = form.kind.formulas[key]
+        elif key in form.formulas:
+            (part,) = form.formulas[key]
             cost -= weight * QUANTITIES[key].better * ca.SX(part.of(design))
     if "size" in form.limited:
         most = build.parameter(
@@ -134,7 +135,8 @@ def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.S
         for k, name in enumerate(("low", "high"))
     )
     ground = (getattr(x, name) for name in form.kind.linkage.mechanism.ground)
-    for point in (*ground, *places.a, *places.b, *places.p):
+    joints = [column(each) for loop in places.second for each in (loop.c, loop.d, loop.e)]
+    for point in (*ground, *places.a, *places.b, *places.p, *joints):
         build.row(point - low, high - point)
     return ca.sqrt(ca.sumsqr(high - low) + 1e-12)
 
@@ -190,9 +192,7 @@ def _share(form: Form, key: str) -> Fill:
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
         return (
-            start.terms.goals[key]
-            * unit
-            / (scaled.scale(QUANTITIES[key]) if key in form.kind.formulas else 1.0)
+            start.terms.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in form.formulas else 1.0)
         )
 
     def share(scaled: ScaledProblem, start: Start) -> float:

@@ -25,7 +25,9 @@ from grashof.synth.programme.constraints import (
     square,
     stand_nearest,
 )
+from grashof.synth.programme.instants import bound_second_loop, overlooked_instants
 from grashof.synth.programme.limits import ADDED, cost_of_goals, peak_unit, require_limits
+from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, interleaved
@@ -55,12 +57,20 @@ class Solve:
     iterations: int
     # the greatest magnitude along the motion, by the key of each quantity in the programme; `Problem.scale`
     peaks: Mapping[str, float] = field(default_factory=dict)
+    second: SecondLoop | None = None  # of a six-bar
+
+    @classmethod
+    def unchanged(cls, start: Start, status: str) -> Solve:
+        """One that leaves its start as it is."""
+        points = (start.o2, start.o4, start.a, start.b, start.p)
+        return cls(points, start.theta2, start.theta3, start.body_angle, status, 0, second=start.second)
 
 
 @one_at_a_time
 def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> Solve:
     """Run Ipopt from one start, by default with more iterations than usual where the error is bounded."""
-    patience = PATIENCE[scaled.bounded] if start.terms.bounded else MOST_ITERATIONS
+    long = start.terms.bounded and start.second is None
+    patience = PATIENCE[scaled.bounded] if long else MOST_ITERATIONS
     if start.terms.stay and not scaled.constraints:
         patience = MENDING
     form = Form.of(scaled, start)
@@ -70,11 +80,11 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
             raise_if_stopped()
         programme = _programme(form, most, scaled.constraints, scaled.own_objective)
     except StopRequested:
-        return _as_it_is(start, STOPPED)
+        return Solve.unchanged(start, STOPPED)
     given = programme.arguments(scaled, start)
     fixed = sum(np.count_nonzero(given[f"lb{kind}"] == given[f"ub{kind}"]) for kind in "xg")
     if (given["lbx"] > given["ubx"]).any() or fixed > len(given["lbx"]):  # nothing is left to solve for
-        return _as_it_is(start, "Contradictory_Limits")
+        return Solve.unchanged(start, "Contradictory_Limits")
     answer = np.asarray(programme.solver(**given)["x"]).ravel()
     stats = programme.solver.stats()
     status = str(stats["return_status"])
@@ -88,7 +98,8 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         turned = complex(np.exp(1j * theta3[start.visit.index(0)]))
         p = pivots["a"] + complex(*found["arm"]) * turned
         pivots |= form.kind.completed(pivots, turned, {name: float(one[0]) for name, one in found.items()})
-    return Solve(
+    second = None if start.second is None else start.second.solved(found)
+    done = Solve(
         points=(pivots["o2"], pivots["o4"], pivots["a"], pivots["b"], p),
         theta2=tuple(found["theta2"].tolist()),
         theta3=theta3,
@@ -96,13 +107,12 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
         status=status,
         iterations=int(stats["iter_count"]),
         peaks={key: float(found[key][0]) * peak_unit(form, scaled, start, key) for key in form.along},
+        second=second,
     )
-
-
-def _as_it_is(start: Start, status: str) -> Solve:
-    """A solve that leaves its start unchanged."""
-    points = (start.o2, start.o4, start.a, start.b, start.p)
-    return Solve(points, start.theta2, start.theta3, start.body_angle, status, 0)
+    if second is None:
+        return done
+    p = begun_from(start, done).track[2][start.visit.index(0)]
+    return replace(done, points=(*done.points[:4], complex(p)))
 
 
 _IPOPT = {
@@ -150,6 +160,7 @@ def _stated(
     stand_nearest(build, form, x, places, targets)
     bound_error(build, form, x, places, targets)
     bound_transmission(build, form, x, places)
+    bound_second_loop(build, form, x)
     require_limits(build, form, x, places)
     keep_out(build, form, x, places)
     require_own(build, form, x, places, constraints)
@@ -172,7 +183,7 @@ def _stated(
 
 
 def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
-    """Solve; add driver angles where a bound is exceeded, and repeat from there.
+    """Solve; add driver angles where a bound is exceeded, and repeat from there; of six-bars exchange them.
 
     An exchange method for a bound that holds over an interval (Hettich & Kortanek 1993, section 7).
     """
@@ -183,7 +194,7 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
         points, theta2 = np.array(solved.points), np.array(solved.theta2)
         ways = points, theta2, start.direction, start.assembly
         found = {key: overlooked(scaled, key, *ways, bound) for key, bound in solved.peaks.items()}
-        if not any(found.values()):
+        if not any(found.values()) and not _overlooked(scaled, start, solved):
             break
         added = {key: (*peaks, *start.terms.peaks_at.get(key, ()))[:ADDED] for key, peaks in found.items()}
         start = begun_from(start, solved).under(peaks_at=added)
@@ -194,6 +205,10 @@ def solve_by_exchange(scaled: ScaledProblem, start: Start) -> Solve:
     return solved
 
 
+def _overlooked(scaled: ScaledProblem, start: Start, solved: Solve) -> bool:
+    return overlooked_instants(Form.of(scaled, start), start, begun_from(start, solved))
+
+
 def begun_from(start: Start, solved: Solve) -> Start:
     """A start where a solve ended."""
-    return start.at(solved.points, solved.theta2, solved.theta3, solved.body_angle)
+    return start.at(solved.points, solved.theta2, solved.theta3, solved.body_angle, solved.second)

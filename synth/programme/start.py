@@ -9,9 +9,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position
-from grashof.problems import Linkage, Objective
+from grashof.problems import Linkage, Objective, SixBar
 from grashof.problems.values.arrays import ComplexArray
-from grashof.synth.loop.dyad import Sizes
+from grashof.synth.loop.dyad import PlacedLoop, Sizes, as_vector
+from grashof.synth.programme.second_loop import SecondLoop
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
@@ -79,12 +80,16 @@ class Start:
     body_angle: float = 0.0  # from the coupler to the body, where the first pose does not fix it; else zero
     expected_error: float = 0.0  # root mean square error of a least-squares search here, limits included
     terms: Terms = field(default_factory=Terms)
+    second: SecondLoop | None = None  # of a six-bar: the other fields but P are those of its first loop
 
     @classmethod
     def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:
         """A start at a linkage where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
+        second = None
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
+        if isinstance(linkage, SixBar):
+            second = SecondLoop.of(linkage, scaled.frame, state.carrying[visit])
         o2, a, b, p = (
             complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0])
         )
@@ -98,14 +103,20 @@ class Start:
             terms=Terms(scaled.objective),
             body_angle=float(linkage.body_angle),
             kind=scaled.kind,
+            second=second,
         )  # fmt: skip
 
     def at(
-        self, points: Sequence[complex], theta2: Sequence[float], theta3: Sequence[float], body_angle: float
+        self,
+        points: Sequence[complex],
+        theta2: Sequence[float],
+        theta3: Sequence[float],
+        body_angle: float,
+        second: SecondLoop | None = None,
     ) -> Start:
         """The start with another linkage, its angles in the order of visit."""
         o2, o4, a, b, p = (complex(point) for point in points)
-        moved = replace(self, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle)
+        moved = replace(self, o2=o2, o4=o4, a=a, b=b, p=p, body_angle=body_angle, second=second)
         return replace(moved, theta2=tuple(theta2), theta3=tuple(theta3))
 
     def under(self, **terms: Any) -> Start:
@@ -124,7 +135,9 @@ class Start:
 
     @property
     def arm(self) -> complex:
-        """The coupler point as u + iv."""
+        """P in the frame of its link as u + iv."""
+        if self.second is not None:
+            return self.second.arm
         return (self.p - self.a) * abs(self.b - self.a) / (self.b - self.a or np.nan)
 
     @property
@@ -135,7 +148,17 @@ class Start:
         a = np.asarray(self.o2 + r2 * e2, dtype=np.complex128)
         turned: ComplexArray = np.exp(1j * np.array(self.theta3))
         b = self.kind.b_of(self.lengths, self.o4, a, turned)
-        return np.stack([a, b, a + self.arm * turned])
+        if self.second is None:
+            return np.stack([a, b, a + self.arm * turned])
+        loop = PlacedLoop()
+        loop.o2, loop.o4 = (as_vector(np.asarray(pivot)) for pivot in (self.o2, self.o4))
+        *_, loop.r4 = self.lengths
+        return np.stack([a, b, self.second.p(loop, np.array(self.theta2), a, turned, b)])
+
+    @property
+    def carrying(self) -> tuple[float, ...]:
+        """Directions of P's link at the targets, in the order of visit, rad."""
+        return self.theta3 if self.second is None else self.second.turned
 
     @property
     def lengths(self) -> tuple[float, float, float, float]:

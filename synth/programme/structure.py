@@ -8,11 +8,13 @@ import numpy as np
 
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.dynamics.motor import MotorSpec
+from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.requirements.quantities import Needs, Scope
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
 from grashof.synth.quantities.driver_motion import drive_of
+from grashof.synth.quantities.formulas import Formulas, of_six_bars
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -26,7 +28,8 @@ STEPS = 24  # of the driver in every half turn, at whose ends quantities along t
 class Form:
     """The contents of a programme."""
 
-    kind: Kind
+    kind: Kind  # of the first loop
+    row: Mechanism
     targets: int
     poses: bool  # targets are whole poses, met exactly: A, B and P move with the body
     positions: tuple[bool, ...]  # which targets, in the order of visit, have a position
@@ -58,8 +61,20 @@ class Form:
         return not (self.exact or self.most_error or self.zoned)
 
     @property
+    def two_loops(self) -> bool:
+        """Whether a second dyad carries P."""
+        return len(self.row.loops) > 1
+
+    @property
+    def formulas(self) -> Formulas:
+        """Quantities of the design."""
+        return of_six_bars(self.row.lengths) if self.two_loops else self.kind.formulas
+
+    @property
     def along(self) -> tuple[str, ...]:
-        """Keys of the quantities bounded along the motion."""
+        """Keys of the quantities bounded along the motion; of two loops the judge alone knows them."""
+        if self.two_loops:
+            return ()
         limited = [LIMITS[name].quantity.key for name in self.limited]
         return tuple(key for key in ALONG if key in limited or key in self.goals)
 
@@ -70,6 +85,7 @@ class Form:
         plain = start.terms.stay or bool(start.terms.relaxed) or not (scaled.exact or start.terms.bounded)
         made = cls(
             kind=scaled.kind,
+            row=scaled.kind.linkage.mechanism if start.second is None else start.second.row,
             targets=len(start.visit),
             poses=scaled.motion is not None,
             positions=tuple((scaled.weights > 0)[list(start.visit)].tolist()),
@@ -119,7 +135,7 @@ def _grid_size(start: Start, closed: bool) -> int:
 def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     """Targets at which a limit, or the objective, depends on the driver angle that the judge finds."""
     wanted, count = scaled.wanted, len(start.visit)
-    if scaled.exact or start.terms.relaxed or start.terms.loose:
+    if scaled.exact or start.terms.relaxed or start.terms.loose or start.second is not None:
         return (False,) * count
     moving = (
         set(wanted.keep_out_for) - set(scaled.kind.linkage.mechanism.ground) if wanted.keep_out else set()

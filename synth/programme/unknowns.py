@@ -19,6 +19,7 @@ FAR = 1e3  # sizes: stands for "no limit"
 INSET = 1e-8  # sizes, rad: by which limits are tightened, so that the polished design keeps them
 SHORTEST = 1e-6  # sizes, of a link
 LEAST_TRANSMISSION = 1e-3  # rad: keeps the motion away from dead positions
+LEAST_OF_TWO_LOOPS = 0.05  # rad: where one closes at instants alone, it opens between them below that
 LIFTED = 10 * np.pi  # rad: angles are unwrapped along the motion
 
 
@@ -48,6 +49,12 @@ class Unknowns:
     turns: ca.SX  # 1 where the driver of the start turns fully, else 0
     double_crank: ca.SX  # 1 where r2 stays longer than r1, else 0
     body_turn: ca.SX  # of the body against the frame that AP is in: the first pose, or `body_angle`
+    second: SecondUnknowns | None = None
+
+    @property
+    def carrying(self) -> ca.SX:
+        """Directions of P's link at the targets, (N,), in the order of visit."""
+        return self.theta3 if self.second is None else self.second.turned
 
     @classmethod
     def of(cls, build: Builder, form: Form) -> Unknowns:
@@ -78,12 +85,40 @@ class Unknowns:
             turns=build.parameter(_turns),
             double_crank=build.parameter(_double_crank),
             body_turn=first_turn if form.poses else found["body_angle"],
+            second=SecondUnknowns.of(build, form) if form.two_loops else None,
         )
 
     @property
     def theta2_start(self) -> ca.SX:
         """Driver angle at the first target."""
         return ca.dot(self.at_first, self.theta2)
+
+
+@dataclass(frozen=True, slots=True)
+class SecondUnknowns:
+    """Symbols of a second loop, see `SecondLoop`; P's arm is among the others."""
+
+    c: ca.SX  # (2,), as d and the bars
+    d: ca.SX
+    bars: ca.SX
+    turned: ca.SX  # (N,)
+    side: ca.SX  # +1 or -1
+
+    @classmethod
+    def of(cls, build: Builder, form: Form) -> SecondUnknowns:
+        """The unknowns of a form."""
+
+        def given(name: str) -> Fill:
+            return lambda _, start: getattr(start.second, name)
+
+        wide = always(-FAR, FAR)
+        return cls(
+            c=build.unknown("c", 2, lambda _, start: interleaved(given("c")(_, start)), wide),
+            d=build.unknown("d", 2, lambda _, start: interleaved(given("d")(_, start)), wide),
+            bars=build.unknown("bars", 2, given("bars"), always(SHORTEST, FAR)),
+            turned=build.unknown("turned", form.targets, given("turned"), always(-100.0, 100.0)),
+            side=build.parameter(given("side")),
+        )
 
 
 def _lengths(build: Builder, kind: Kind) -> ca.SX:
@@ -131,7 +166,7 @@ def _least_transmission(scaled: ScaledProblem, start: Start) -> Limits:
         + start.terms.tightened_by("transmission_min_deg")
     )
     least = 0.0 if start.terms.relaxes("transmission_min_deg") else min(least, np.pi / 2 - INSET)
-    return max(LEAST_TRANSMISSION, least), np.pi / 2
+    return max(LEAST_TRANSMISSION if start.second is None else LEAST_OF_TWO_LOOPS, least), np.pi / 2
 
 
 def _turns(scaled: ScaledProblem, start: Start) -> float:

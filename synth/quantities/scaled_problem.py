@@ -13,6 +13,7 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.linkages.mechanisms import has_one_loop
 from grashof.problems.values.requirements.quantities import Quantity
 from grashof.synth.loop.dyad import direction_of
+from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.kinds import kind_of
@@ -112,6 +113,19 @@ class ScaledProblem:
     def by_descent(self) -> bool:
         """Whether a programme minimises the error of targets in the plane."""
         return self.has_targets and not self.exact
+
+    @property
+    def has_programme(self) -> bool:
+        """Whether a programme covers the targets, functions of the user, and goals where these count.
+
+        Of six-bars it has no functions, and goals with a formula alone.
+        """
+        if self.one_loop or not self.problem.task.in_plane:
+            return self.has_targets
+        own = self.constraints or self.own_objective is not None
+        known = {"transmission", "size", *of_six_bars(())}
+        by_goals = self.exact or self.bounded
+        return not own and (not by_goals or set(self.problem.objective.goals) <= known)
 
     @property
     def timed(self) -> bool:

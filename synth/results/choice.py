@@ -24,14 +24,16 @@ NEAR = 1.6  # times the error that is allowed: solves begin from least-squares d
 SAME_LEAST, NO_ERROR = 1.001, 1e-9  # times the least error, or errors, that count as the least one
 LEVEL, AT = 5.0, 0.01  # deg of transmission: steps of lists, and the tolerance of designs to them
 LOCAL = "least error nearby"
-SEEDS = 12  # designs from which solves begin
+SEEDS, SEEDS_OF_SIX_BARS = 12, 6  # designs from which solves begin
 
 
 def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
     """All exact designs, a choice about the least error, or the best where targets may be missed."""
     ledger = ledgers[-1]
     with run.timed("choosing"):
-        if not (scaled.has_targets or scaled.exact):
+        if not (scaled.has_programme or scaled.exact) or not (
+            scaled.one_loop or scaled.exact or scaled.bounded
+        ):
             problem, every = scaled.problem, ledger.best
             if scaled.bounded and problem.task.in_plane:  # found without zones
                 again = judged_in_time(scaled, [each for one in ledgers for each in one.verified])
@@ -53,11 +55,12 @@ def _best_within_bounds(
     """The best designs by the objective that miss targets by no more than they may; `ledger` is the last."""
     problem, factor = scaled.problem, scaled.problem.requirements.error_factor
     most = np.inf if factor is None else factor * max(ledger.least, same_error(problem))
+    seeds = SEEDS if scaled.one_loop else SEEDS_OF_SIX_BARS
     allowed = most if factor is not None else max(error_of_use(scaled), ledger.least)
     # from designs found without zones or error_factor: exact ones, or of least squares
     starts = [
         started_at(scaled, one, scaled.objective, most_error=most, zoned=scaled.zones is not None)
-        for one in seeds_of(problem, found, NEAR * allowed, round(SEEDS * max(1.0, run.search.effort)))
+        for one in seeds_of(problem, found, NEAR * allowed, round(seeds * max(1.0, run.search.effort)))
     ]
     attempts = [] if run.ended() else run.solve(scaled, starts, ledger.solved)
     solved = len(attempts)

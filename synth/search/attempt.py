@@ -14,6 +14,7 @@ from grashof.synth.designs.alike import verified_alike
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import MISSED, judged, judged_linkage, shares
 from grashof.synth.designs.polishing import polished_solve, polished_start
+from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.nonlinear_programme import SOLVED, Solve, begun_from, solve_by_exchange
 from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
 from grashof.synth.programme.structure import Form
@@ -28,6 +29,7 @@ AS_IT_IS = "Not_Solved"  # status of a design that was judged as the search prop
 # `MORE` solves at most are tightened by `BEYOND` times the miss, unless it exceeds a limit (as in
 # `Defect.miss`; share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
+STRIDE, STRIDES = 0.3, 3  # sizes that pivots of a six-bar move in a solve; such solves
 # Fields that can be tightened.
 TIGHTENED = {
     "within", "transmission_min_deg", "size",
@@ -77,13 +79,12 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
         return Attempt(AS_IT_IS, judged_linkage(scaled, start, start=number, iterations=0))
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
-    if start.terms.settled or not scaled.has_targets or not set(UNSMOOTH).isdisjoint(start.terms.relaxed):
-        points = (start.o2, start.o4, start.a, start.b, start.p)
-        as_it_is = Solve(points, start.theta2, start.theta3, start.body_angle, AS_IT_IS, 0)
-        done = polished_and_judged(scaled, start, as_it_is, number)
+    solvable = scaled.has_targets or start.second is not None
+    if start.terms.settled or not solvable or not set(UNSMOOTH).isdisjoint(start.terms.relaxed):
+        done = polished_and_judged(scaled, start, Solve.unchanged(start, AS_IT_IS), number)
     may_move = scaled.has_targets and start.terms.settled and finder.freedom
     if done is None or (may_move and not done.verified):
-        done = _solved(scaled, start, number)
+        done = (_solved if start.second is None else _in_strides)(scaled, start, number)
     if cognates and done.verified and finder.cognates:
         done = replace(done, cognates=verified_alike(scaled, done.verified[0], start.terms.most_error))
     return done
@@ -107,6 +108,31 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
         solve = replace(again, iterations=solve.iterations + again.iterations)
         done = polished_and_judged(scaled, start, solve, number)
     return done
+
+
+def _in_strides(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
+    """Solves of a six-bar one after the other, while they help, in each of which its pivots move little.
+
+    Far from a start its loops seldom close.
+    """
+    done = _solved(scaled, start.under(radius=STRIDE), number)
+    for _ in range(STRIDES - 1):
+        here = done.candidate
+        if here is None or not np.isfinite(here.verdict.theta2).all() or stop_requested():
+            break
+        if scaled.exact and not done.verified:
+            break
+        there = replace(Start.of_linkage(scaled, here.linkage, here.verdict), terms=start.terms)
+        again = _solved(scaled, there.under(radius=STRIDE), number)
+        if done.verified and (not again.verified or _key(scaled, again) >= _key(scaled, done)):
+            break
+        done = again
+    return done
+
+
+def _key(scaled: ScaledProblem, one: Attempt) -> tuple[float, ...]:
+    """Where a verified design ranks."""
+    return ranking_key(scaled.problem, one.verified[0])
 
 
 def _more(scaled: ScaledProblem, start: Start, candidate: Candidate | None) -> dict[str, float]:
@@ -135,8 +161,9 @@ def polished_and_judged(scaled: ScaledProblem, start: Start, solve: Solve, numbe
         "most_error": start.terms.most_error,
     }
     for version in (polished_solve(scaled, start, solve), solve):
-        points = np.array(version.points)
-        done = replace(done, candidate=judged(scaled, points, start.assembly, version.body_angle, **about))
+        points, second = np.array(version.points), version.second
+        candidate = judged(scaled, points, start.assembly, version.body_angle, second, **about)
+        done = replace(done, candidate=candidate)
         if done.verified or scaled.exact or version is solve:
             break
     return done

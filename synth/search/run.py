@@ -20,7 +20,7 @@ from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.journal import Journal
-from grashof.synth.search.ledger import Ledger
+from grashof.synth.search.ledger import Ledger, nearest_of_kinds
 from grashof.synth.search.recorded_designs import are_attempts, is_round
 from grashof.synth.search.workers import CRASHED, Work, screen
 from grashof.synth.starts.finder import DesignFinder
@@ -107,12 +107,15 @@ class Run:
         return self.step("quick_pass", (seed,), scaled, lambda: finder_for(scaled).quick_pass(rng), is_round)
 
     def onward(self, ledger: Ledger) -> Sequence[Proposal]:
-        """Linkages that verified designs lead to, of a finder that proposes whole designs."""
+        """What designs, and the nearest misses, lead to, of a finder that proposes whole designs."""
         scaled, finder = ledger.scaled, finder_for(ledger.scaled)
-        if not isinstance(finder, DesignFinder) or not ledger.best:
+        if not isinstance(finder, DesignFinder):
             return ()
-        of = tuple(each.id for each in ledger.best)
-        found = self.step("onward", of, scaled, lambda: Round(finder.onward(ledger.best), {}), is_round)
+        misses = [each.candidate for each in nearest_of_kinds(ledger.rejected) if each.candidate is not None]
+        of = tuple(each.id for each in (*ledger.best, *misses))
+        found = self.step(
+            "onward", of, scaled, lambda: Round(finder.onward(ledger.best, misses), {}), is_round
+        )
         return found.starts
 
     def screened(self, scaled: ScaledProblem, number: int) -> Round | None:

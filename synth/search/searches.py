@@ -87,6 +87,8 @@ def finished(ledger: Ledger, run: Run) -> Ledger:
     elif ledger.complete and not run.ended():
         with run.timed("solving"):
             _look_onward(ledger, run)
+        if not ledger.scaled.exact and ledger.scaled.problem.task.in_plane:
+            _continue_best(ledger, run)
     return ledger
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from grashof.problems import Linkage
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -94,8 +93,10 @@ class StartFinder(Finder):
 class DesignFinder(Finder):
     """A finder that proposes finished designs: nothing remains to be solved."""
 
-    def onward(self, _designs: Sequence[Candidate]) -> Sequence[Linkage]:
-        """Linkages that designs lead to, which are examined last."""
+    def onward(
+        self, _designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /
+    ) -> Sequence[Proposal]:
+        """Linkages, or starts, that designs and the nearest misses lead to, which are examined last."""
         return []
 
     @abstractmethod

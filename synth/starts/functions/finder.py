@@ -117,9 +117,9 @@ class Functions(DesignFinder):
             for optimum in search.optima(starts, few=True)
         ]
 
-    def onward(self, designs: Sequence[Candidate]) -> list[Linkage]:
+    def onward(self, designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /) -> list[Linkage]:
         """The least errors that designs for some transmission angle lead to; the best to all its digits."""
-        if self.aims.exact:
+        if self.aims.exact or not designs:
             return []
         found = [
             (optimum, search)

@@ -15,7 +15,7 @@ from grashof.problems.values.arrays import BoolArray, ComplexArray, IntArray
 from grashof.problems.values.linkages.mechanism import Mechanism
 from grashof.problems.values.tasks.closed_curve import even_places, spline_length
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.closed_loop import Batch, SearchTargets
@@ -45,6 +45,7 @@ LEVELS = (20.0, 35.0, 50.0)  # deg: transmission angles that designs are made fo
 MET = 1e-9  # sizes, or rad: a greater error of an exact design is none
 JUDGED, EXACT_JUDGED, POSES_JUDGED = 8, 24, 60  # designs of a round
 CLOSE = 3  # designs of each row that miss a requirement
+CONTINUED, EXACT_CONTINUED = 8, 4  # designs, and misses, from which a programme is solved
 WORSE = 3.0  # times the least error of a round
 APART = 0.03  # between designs of a round, as `distinct` counts
 # Beyond what is required, for peaks between samples: deg of transmission angle; share of the margin.
@@ -147,6 +148,16 @@ class SixBars(DesignFinder):
         made = [self._outward(each) for each in found]
         chosen = [made[k] for k in self._apart(made, POSES_JUDGED)]
         return Round(chosen, {FINDS: len(made)})
+
+    def onward(self, designs: Sequence[Candidate], misses: Sequence[Candidate] = (), /) -> Sequence[Start]:
+        """Starts at different designs and misses, the best first, where the programme covers the task."""
+        scaled = self.scaled
+        overdetermined = scaled.exact and scaled.has_angles and len(scaled.targets) > POSES
+        if overdetermined or not scaled.has_programme:
+            return []
+        every = [each for each in (*designs, *misses) if np.isfinite(each.verdict.theta2).all()]
+        chosen = self._apart([each.linkage for each in every], EXACT_CONTINUED if scaled.exact else CONTINUED)
+        return [Start.of_linkage(scaled, every[k].linkage, every[k].verdict) for k in chosen]
 
     def follow(self, design: Candidate) -> Sequence[Proposal]:
         """The design itself."""
