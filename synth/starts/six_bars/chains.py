@@ -30,7 +30,7 @@ LONGER_ONES = {Rotatability.CRANK_ROCKER: 0.0, Rotatability.DOUBLE_CRANK: 1.0}
 SENSES = {"ccw": [1.0], "cw": [-1.0]}
 NO_ERROR = 1e-22  # sizes squared, or rad squared
 # Numbers of the best that continue, their steps, and the weight of limits, in sizes.
-STAGES = ((400, 8, 0.1), (100, 15, 1.0), (30, 150, 10.0))
+STAGES = ((300, 8, 0.1), (60, 15, 1.0), (20, 150, 10.0))
 
 FIRST_STAGES = ((400, 8, 0.1), (100, 12, 1.0), (30, 20, 10.0))  # where a fit to more targets follows
 
