@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from functools import cached_property, partial
+from itertools import permutations
 from operator import attrgetter
 
 import numpy as np
@@ -289,6 +290,12 @@ def _lengths(values: Values) -> dict[str, FloatArray]:
     return dict(zip(values.linkage.mechanism.lengths, values.linkage.lengths[:, None], strict=True))
 
 
+def _ratios(values: Values) -> dict[str, FloatArray]:
+    """Of any two links."""
+    every = permutations(_lengths(values).items(), 2)
+    return {f"{one}/{other}": length / under for (one, length), (other, under) in every}
+
+
 def _arms(values: Values) -> dict[str, FloatArray]:
     """From P to the joints of the link that carries it."""
     arm, kind = complex(*values.linkage.coupler_point), values.linkage.mechanism
@@ -322,6 +329,7 @@ _NOWHERE = {axis: np.array([np.nan]) for axis in "xy"}
 # Of those that have several parts.
 PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "link_length": _lengths,
+    "link_ratios": _ratios,
     "coupler_arms": _arms,
     "o2": partial(_place, "linkage.o2"),
     "o4": partial(_place, "linkage.o4"),
@@ -355,6 +363,8 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
         quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place
+                continue
+            if not {part, ""} & set(ranges):  # a ratio without limits
                 continue
             allowed = ranges[part if part in ranges else ""]
             for value in np.unique([numbers.min(), numbers.max()]).tolist():

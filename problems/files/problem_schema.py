@@ -105,6 +105,7 @@ _BY_KIND = {
     Kind.INSIDE: Place,
     Kind.ON_BODY: Place,
     Kind.WORD: str,
+    Kind.RATIOS: dict[str, Direction],
 }
 _MODES: dict[str, Any] = {
     **dict.fromkeys(("exact", "order", "same_branch"), bool),

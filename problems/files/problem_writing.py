@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
+from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.specs.problem import Problem
@@ -144,7 +145,7 @@ def _value(value: Any) -> str:
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{key} = {_value(each)}' for key, each in value.items())} }}"
+        return f"{{ {', '.join(f'{shown_key(key)} = {_value(each)}' for key, each in value.items())} }}"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, (str, bool)):

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
@@ -48,7 +49,9 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -
             build.bound(unknown, _less(allowed, ahead), gives=(name, part.name))
         elif leaf:
             build.bound(value, _inset(allowed), gives=(name, part.name))
-        if leaf or angle:
+        if LIMITS[name].kind is Kind.RATIOS and build.slack is None:  # a single row, as it may be fixed
+            build.row(value, limits=_ratio(name, part))
+        elif leaf or angle:
             build.require_if_relaxed((name, part.name), *_rows(build, design, part, value, allowed))
         else:
             build.require((name, part.name), *_rows(build, design, part, value, allowed))
@@ -59,9 +62,20 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -
 
 def _range(name: str, part: Part) -> Fill:
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        low, high = range_of(scaled.wanted, name, part)
+        low, high = near(range_of(scaled.wanted, name, part))
         more, of_ratio = start.terms.tightened_by(name), LIMITS[name].quantity.unit is Unit.RATIO
-        return near((low + more * (low if of_ratio else 1.0), high - more * (high if of_ratio else 1.0)))
+        return low + more * (low if of_ratio else 1.0), high - more * (high if of_ratio else 1.0)
+
+    return limits
+
+
+def _ratio(name: str, part: Part) -> Fill:
+    """Limits of a ratio, of which those without limits are free."""
+
+    def limits(scaled: ScaledProblem, start: Start) -> Limits:
+        low, high = range_of(scaled.wanted, name, part)
+        more = min(start.terms.tightened_by(name), (high - low) / (high + low) if high < np.inf else np.inf)
+        return low * (1 + more), high * (1 - more)
 
     return limits
 

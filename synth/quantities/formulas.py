@@ -92,9 +92,15 @@ def smooth_ratio(*links: Part) -> tuple[Part, ...]:
 
 
 def _lengths(longest: Callable[[View], Any], shortest: Callable[[View], Any], *links: Part) -> Formulas:
-    """The lengths of links, and the ratio of the longest to the shortest."""
+    """The lengths of links, and ratios: of the longest to the shortest, and of any two."""
     ratio = Part("longest to shortest", longest, per=shortest)
-    return {"link_length": links, **{link.name: (link,) for link in links}, "link_ratio": (ratio,)}
+    found = {"link_length": links, **{link.name: (link,) for link in links}, "link_ratio": (ratio,)}
+    return found | {"link_ratios": tuple(_ratio(*both) for both in permutations(links, 2))}
+
+
+def _ratio(one: Part, other: Part) -> Part:
+    name = f"{one.name}/{other.name}"
+    return Part(f"link_ratios.{name}", lambda d: one.of(d) / other.of(d), axis=name)
 
 
 def _lengths_of_two(one: Part, other: Part) -> Formulas:
@@ -237,6 +243,7 @@ LOGARITHMIC = {
     "r5",
     "r6",
     "link_ratio",
+    "link_ratios",
 }  # ratios count, not differences
 
 
@@ -251,5 +258,4 @@ def parts_of(limited: Collection[str], *formulas: Formulas) -> Iterator[tuple[st
 
 def range_of(wanted: Requirements, name: str, part: Part) -> Limits:
     """The limits that a field of `wanted` sets for a part."""
-    low, high = wanted.ranges(name)[part.axis]
-    return low, high
+    return wanted.ranges(name).get(part.axis, (-np.inf, np.inf))  # of a ratio without limits

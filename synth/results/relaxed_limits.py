@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
@@ -145,6 +145,8 @@ def _changes(
         yield _areas_drawn_in(wanted, missed)
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
+    elif kind is Kind.RATIOS:
+        yield _ratios_widened(key, asked, missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
     elif isinstance(asked, tuple):
@@ -162,6 +164,18 @@ def _changes(
     else:
         value = max(_rounded(found[0], asked), 0.0)
         yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
+
+
+def _ratios_widened(
+    key: str, asked: Mapping[str, Limits], missed: list[Defect]
+) -> tuple[dict[str, Any], str]:
+    """Ratios of links with limits that those of a design keep."""
+    reached = {
+        name: _reaching(asked[name], [defect.found for defect in missed if defect.what == name])
+        for name in dict.fromkeys(defect.what for defect in missed)
+    }
+    words = [_range_words(f'{key}."{name}"', asked[name], limits) for name, limits in reached.items()]
+    return {key: {**asked, **reached}}, " with ".join(words)
 
 
 def _turning_less(wanted: Requirements, missed: list[Defect]) -> Iterator[tuple[dict[str, Any], str]]:

@@ -117,6 +117,10 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
         low = of.ends(name, "x")[:, 0]
         least = float(np.median(low))
         return Box(x=(least, np.inf)), least - low
+    if limit.kind is Kind.RATIOS:
+        low = of.ends(name, "r3/r2")[:, 0]
+        least = float(np.median(low))
+        return {"r3/r2": (least, 1e6)}, least - low
     low, high = of.ends(name).T
     if limit.kind is Kind.WORD:
         return "ccw", -low

@@ -326,6 +326,7 @@ class Kind(Enum):
     INSIDE = auto()  # a box in the plane
     ON_BODY = auto()  # a box in the body's frame
     WORD = auto()  # one of several words, each allowing a range
+    RATIOS = auto()  # [lo, hi] of each of some ratios of links
 
     @property
     def is_angle(self) -> bool:
@@ -349,9 +350,14 @@ class Limit:
         return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
 
     def ranges(self, value: Any) -> dict[str, Limits]:
-        """The ranges that a value of the field allows, angles in rad: by axis of a box, else by ""."""
+        """The ranges that a value of the field allows, angles in rad.
+
+        By the axis of a box, or the name of a ratio; else by "".
+        """
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
+        if self.kind is Kind.RATIOS:
+            return dict(value)
         if self.kind is Kind.WORD:
             return {"": self.words[value]}
         low, high = value if isinstance(value, tuple) else (value, value)

@@ -11,18 +11,21 @@ from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
 from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
+from grashof.problems.values.requirements.link_ratios import LinkRatios
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
 KEPT_OUT = f"a list of {listing(MAY_KEEP_OUT, 'and')}"
 
 
-def limits(limited: Limit, value: Any, where: str) -> Box | Limits | float | str:
-    """A checked limit of a quantity: a box, a pair, an angle, a number or a word."""
+def limits(limited: Limit, value: Any, where: str) -> Box | LinkRatios | Limits | float | str:
+    """A checked limit of a quantity: a box, ratios, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise wrong_value(where, value, "a Box")
         return value
+    if limited.kind is Kind.RATIOS:
+        return value if isinstance(value, LinkRatios) else LinkRatios.checked(value, where)
     low, high = limited.allowed
     if limited.kind is Kind.BETWEEN:
         return checks.limits(value, where, least=low, most=high)

@@ -16,6 +16,7 @@ from grashof.problems.values.checks import GREATEST, some_of, true_or_false, wit
 from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
+from grashof.problems.values.requirements.link_ratios import LinkRatios
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
     OUTPUTS,
@@ -91,6 +92,8 @@ class Requirements(ReadOnly):
         (lo, hi) for all links; r1, r2, r3, r4 and r5, r6 of a six-bar override it for single ones.
     link_ratio_max : float
         Longest to shortest of r1..r4, of a six-bar r1..r6.
+    link_ratios : mapping of str to float or tuple of float, optional
+        Ratios of two links, such as ``{"r4/r2": 1, "r3/r2": (2, 2.5)}``: a number, or (lo, hi).
     coupler_arms : tuple of float, optional
         (lo, hi) for the distances of P from the joints of its link: A-P and B-P, of a six-bar C-P and E-P.
     o2, o4, d : Box, optional
@@ -177,6 +180,9 @@ class Requirements(ReadOnly):
         Kind.AT_MOST,
         default=20.0,
         allowed=(1.0, 1e6),
+    )
+    link_ratios: LinkRatios | None = limit(
+        Quantity("link_ratios", "ratio of two links", Unit.RATIO, listed=False), Kind.RATIOS
     )
     o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
     o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
@@ -266,25 +272,6 @@ class Requirements(ReadOnly):
         """Limits of r1, r2, r3, r4 (of resolved requirements)."""
         every = self.link_length or (0.0, np.inf)
         return self.r1 or every, self.r2 or every, self.r3 or every, self.r4 or every
-
-    def contradictions(self, task: Task) -> list[str]:
-        """Contradictions between these requirements and a task, a line each."""
-        wrong = []
-        if task.zones is not None and self.exact:
-            wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
-        if task.zones is not None and self.error_factor is not None:
-            wrong.append(f"requirements.error_factor does not go with {task.kind}.within; give one of them")
-        if self.error_factor is not None and self.is_exact(task):
-            wrong.append("requirements.error_factor needs least squares, exact = false")
-        directions = (name for name, limited in LIMITS.items() if limited.kind is Kind.DIRECTION)
-        wrong += [
-            f"requirements.{name} is a range; of a {task.kind} it must be a single angle"
-            for name in directions
-            if isinstance(getattr(self, name), tuple) and not task.has_position.any()
-        ]
-        if self.keep_out and "body" in self.keep_out_for and task.body is None:
-            wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
-        return wrong
 
     def is_exact(self, task: Task) -> bool:
         """Whether a design has to meet every target of the task.

@@ -9,9 +9,17 @@ from dataclasses import astuple
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import joined, not_had
-from grashof.problems.values.requirements.quantities import ROCKERS, SLIDING, TRAVELLING, TURNING, Quantity
-from grashof.problems.values.requirements.requirements import Requirements, Rotatability
+from grashof.problems.values.linkages.mechanisms import LENGTHS, ROWS, joined, not_had
+from grashof.problems.values.requirements.link_ratios import contradictions, links_of
+from grashof.problems.values.requirements.quantities import (
+    ROCKERS,
+    SLIDING,
+    TRAVELLING,
+    TURNING,
+    Kind,
+    Quantity,
+)
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 
@@ -62,6 +70,38 @@ def not_of_kinds(task: Task, given: Sequence[str], having: Mapping[str, Sequence
         for where, kinds in having.items()
         if not set(kinds) & set(given)
     ]
+
+
+def requirements_wrong(task: Task, wanted: Requirements) -> list[str]:
+    """Contradictions between these requirements and a task, a line each."""
+    wrong = []
+    if task.zones is not None and wanted.exact:
+        wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
+    if task.zones is not None and wanted.error_factor is not None:
+        wrong.append(f"requirements.error_factor does not go with {task.kind}.within; give one of them")
+    if wanted.error_factor is not None and wanted.is_exact(task):
+        wrong.append("requirements.error_factor needs least squares, exact = false")
+    lengths = {name: getattr(wanted, name) or wanted.link_length for name in LENGTHS}
+    wrong += contradictions(wanted.link_ratios, lengths, wanted.link_ratio_max)
+    directions = (name for name, limited in LIMITS.items() if limited.kind is Kind.DIRECTION)
+    wrong += [
+        f"requirements.{name} is a range; of a {task.kind} it must be a single angle"
+        for name in directions
+        if isinstance(getattr(wanted, name), tuple) and not task.has_position.any()
+    ]
+    if wanted.keep_out and "body" in wanted.keep_out_for and task.body is None:
+        wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
+    return wrong
+
+
+def kinds_of_ratios(wanted: Requirements) -> dict[str, list[str]]:
+    """The kinds that have both links of each limited ratio, by its key."""
+    return {
+        f'requirements.link_ratios."{name}"': [
+            word for word, rows in ROWS.items() if set(links_of(name)) <= set(rows[0].lengths)
+        ]
+        for name in wanted.link_ratios or ()
+    }
 
 
 def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:

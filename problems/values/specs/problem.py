@@ -160,7 +160,7 @@ class Problem(ReadOnly):
                 )
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
-        wrong += self.requirements.contradictions(self.task)
+        wrong += task_limits.requirements_wrong(self.task, self.requirements)
         if self.objective != Objective(**self.task.usual_objective) and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
         if self.driver is not None:
@@ -229,6 +229,7 @@ class Problem(ReadOnly):
         }
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
+        having |= task_limits.kinds_of_ratios(self.requirements)
         return task_limits.not_of_kinds(self.task, self.mechanism, having)
 
     def for_kind(self, kind: str) -> Problem:
@@ -247,6 +248,8 @@ class Problem(ReadOnly):
         plain = Requirements()
         others = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
         wanted = replace(self.requirements, **{name: getattr(plain, name) for name in others})
+        if wanted.link_ratios is not None:
+            wanted = replace(wanted, link_ratios=wanted.link_ratios.of(ROWS[kind][0].lengths) or None)
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}

@@ -13,7 +13,7 @@ from grashof.problems.values.requirements.requirements import LIMITS
 
 Parts: TypeAlias = tuple[str | int, ...]
 
-_PART = r"[A-Za-z0-9_-]+(?:\[[0-9]+\])*"
+_PART = r"[A-Za-z0-9_/-]+(?:\[[0-9]+\])*"
 _KEY = re.compile(rf"{_PART}(?:\.{_PART})*")
 _COORDINATES = {"x": 0, "y": 1, "angle": 2}  # of a pose or point that is stated as a list
 _PLACES = {name for name, limit in LIMITS.items() if limit.kind in (Kind.INSIDE, Kind.ON_BODY)}
@@ -27,7 +27,7 @@ def key_parts(key: str, where: str = "key") -> Parts:
     """
     if not _KEY.fullmatch(key):
         raise wrong_value(where, key, "a dotted key such as requirements.o2.x or motion.poses[1].x")
-    found = re.findall(r"([A-Za-z0-9_-]+)|\[([0-9]+)\]", key)
+    found = re.findall(r"([A-Za-z0-9_/-]+)|\[([0-9]+)\]", key)
     return tuple(name or int(index) for name, index in found)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.requirements.link_ratios import LinkRatios, links_of
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.functions.fit import DesiredOutput
@@ -58,7 +59,7 @@ class FunctionAims:
         lengths = [_over(each, unit) for each in sizes]
         limits = ShapeLimits(
             span=task.span[1] - task.span[0],
-            caps=_caps(kind, sizes, wanted.link_ratio_max),
+            caps=_caps(kind, dict(zip(names, sizes, strict=True)), wanted),
             transmission=float(np.radians(wanted.transmission_min_deg)) + INSIDE,
             over_cycle=wanted.transmission_over is TransmissionOver.CYCLE,
             margin=None if rotatability is Rotatability.ANY else wanted.rotatability_margin + INSIDE,
@@ -149,15 +150,20 @@ class FunctionAims:
         return self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
 
 
-def _caps(kind: type[Generators], sizes: list[Limits], ratio: float) -> FloatArray:
+def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requirements) -> FloatArray:
     """Greatest logarithm of one length over another."""
-    low, high = np.array(sizes, dtype=np.float64).T
-    most = np.full((len(sizes), len(sizes)), np.log(ratio))
+    low, high = np.array(list(sizes.values()), dtype=np.float64).T
+    most, names = np.full((len(sizes), len(sizes)), np.log(wanted.link_ratio_max)), list(sizes)
     if not kind.FIRST_IS_LINK:
         most[0], most[:, 0] = np.inf, np.inf
+    for name, (least, greatest) in (wanted.link_ratios or LinkRatios()).of(names).items():
+        one, other = map(names.index, links_of(name))
+        most[one, other] = min(most[one, other], np.log(greatest))
+        most[other, one] = min(most[other, one], -np.log(least))
     with np.errstate(divide="ignore", invalid="ignore"):
-        caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low)) - INSIDE
-    return caps
+        caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low))
+    room = (caps + caps.T) / 2
+    return caps - np.where(room > -INSIDE, np.clip(room, 0.0, INSIDE), INSIDE)  # none where a ratio is fixed
 
 
 def _over(limits: Limits, unit: float) -> Limits:

@@ -223,7 +223,7 @@ class SixBars(DesignFinder):
         task, formulas = self.scaled.problem.task, of_six_bars(row.lengths)
         target = replace(SearchTargets.of(self.scaled), spare=LIMIT_SPARE)
         if not task.in_plane:  # the scale is free
-            of_ratio = {"link_ratio": formulas["link_ratio"]}
+            of_ratio = {key: formulas[key] for key in ("link_ratio", "link_ratios")}
             return replace(target, formulas=of_ratio, outputs=task.outputs)
         if task.is_curve and not self.scaled.exact:
             places = self.scaled.frame.inward(

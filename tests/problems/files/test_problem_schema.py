@@ -78,6 +78,7 @@ EVERY_LIMIT = f"""length_unit = "m"
 closed = true
 [requirements]
 size = [0, 9]
+link_ratios = {{ "r4/r2" = 1, "r3/r2" = [2, 2.5] }}
 omega4_max = [0, 9]
 point_speed_max = [0, 9]
 point_acceleration_max = [0, 9]

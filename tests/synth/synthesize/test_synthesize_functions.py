@@ -334,3 +334,15 @@ def test_an_empty_list_states_why(
 ) -> None:
     result = synthesize(Problem(task=task, requirements=Requirements(**wanted), mechanism=mechanism))
     assert why in result.note
+
+
+@pytest.mark.slow
+def test_equal_links_steer_alike_in_both_senses() -> None:
+    # Ackermann's condition over both locks: cot(outer) - cot(inner) = track / wheelbase = 0.5
+    wheel = np.radians(np.linspace(-30.0, 38.8, 15))
+    other = np.arctan2(np.sin(wheel), np.cos(wheel) + 0.5 * np.sin(wheel))
+    task = FunctionTask(inputs=wheel - wheel[0], outputs=other - other[0])
+    wanted = Requirements(link_ratios={"r4/r2": 1}, exact=False, transmission_min_deg=20)
+    best = synthesize(Problem(task=task, requirements=wanted), seed=0).best
+    assert best.linkage.r4 == pytest.approx(best.linkage.r2, rel=1e-9)
+    assert np.degrees(best.verdict.structural_error_max) < 1.0

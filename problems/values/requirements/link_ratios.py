@@ -1,0 +1,109 @@
+"""Limits of ratios of link lengths."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any, cast
+
+import numpy as np
+
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.errors import ProblemError, shown, wrong_value
+
+_PAIR = re.compile(r"(r[1-6])/(r[1-6])")
+_EXAMPLE = 'a table such as { "r3/r2" = [2, 2.5] }'
+LEAST, GREATEST = 1e-6, 1e6
+LEAST_LENGTH, ROUNDING = 1e-300, 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRatios(Mapping[str, Limits]):
+    """Limits of ratios by their names, such as "r3/r2"; read-only, and equal links have the ratio 1.
+
+    Examples
+    --------
+    >>> ratios = LinkRatios.checked({"r4/r2": 1, "r3/r2": (2, 3)}, "link_ratios")
+    >>> ratios["r4/r2"], ratios.of(["r2", "r3"])
+    ((1.0, 1.0), LinkRatios(rows=(('r3/r2', (2.0, 3.0)),)))
+    """
+
+    rows: tuple[tuple[str, Limits], ...] = ()
+
+    @classmethod
+    def checked(cls, value: Any, where: str) -> LinkRatios:
+        """From a mapping to numbers or (lo, hi); ProblemError with a line for each error."""
+        if not isinstance(value, Mapping) or not value:
+            raise wrong_value(where, value, _EXAMPLE)
+        return cls(tuple(checks.each_checked(tuple(value.items()), where, _row)))
+
+    def __getitem__(self, name: str) -> Limits:
+        return dict(self.rows)[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict(self.rows))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def of(self, lengths: Iterable[str]) -> LinkRatios:
+        """Those of two of some lengths."""
+        known = set(lengths)
+        return LinkRatios(tuple(row for row in self.rows if known.issuperset(links_of(row[0]))))
+
+
+def _row(row: tuple[Any, Any], where: str) -> tuple[str, Limits]:
+    name, value = row
+    found = _PAIR.fullmatch(name) if isinstance(name, str) else None
+    place = where.rpartition("[")[0]
+    if found is None or found[1] == found[2]:
+        raise ProblemError(f'{place} has {shown(name)}; it must be two of r1 to r6, such as "r3/r2"')
+    both = value if isinstance(value, tuple | list) else (value, value)
+    return name, checks.limits(cast("Limits", tuple(both)), f'{place}."{name}"', least=LEAST, most=GREATEST)
+
+
+def links_of(name: str) -> tuple[str, str]:
+    """The two lengths of a ratio."""
+    one, _, other = name.partition("/")
+    return one, other
+
+
+def contradictions(
+    ratios: LinkRatios | None, lengths: Mapping[str, Limits | None], greatest: float
+) -> list[str]:
+    """Ratios that the other limits do not allow, a line each.
+
+    The others are those of lengths, the greatest ratio of any two, and the other ratios.
+    """
+    wrong = []
+    stated = {name: limits for name, limits in lengths.items() if limits is not None}
+    for name, asked in (ratios or LinkRatios()).items():
+        others = LinkRatios(tuple(row for row in ratios.rows if row[0] != name) if ratios else ())
+        low, high = _allowed(name, others, stated, greatest)
+        if asked[0] > high * (1 + ROUNDING) or asked[1] < low * (1 - ROUNDING):
+            allowed = f"the other limits allow [{low:.6g}, {high:.6g}]"
+            wrong.append(f'requirements.link_ratios."{name}" is {shown(list(asked))}; {allowed}')
+    return wrong
+
+
+def _allowed(name: str, ratios: LinkRatios, lengths: Mapping[str, Limits], greatest: float) -> Limits:
+    """The range of a ratio by chains of other limits, the shortest ways between logarithms of lengths."""
+    one, other = links_of(name)
+    names = list(dict.fromkeys(["", one, other, *lengths, *chain.from_iterable(map(links_of, ratios))]))
+    most = np.full((len(names), len(names)), np.log(greatest))  # of a row's length over a column's
+    most[0] = most[:, 0] = np.inf  # the unit of length
+    np.fill_diagonal(most, 0.0)
+    for (over, under), (low, high) in [
+        *((links_of(each), limits) for each, limits in ratios.items()),
+        *(((each, ""), limits) for each, limits in lengths.items()),
+    ]:
+        i, j = names.index(over), names.index(under)
+        most[i, j] = min(most[i, j], np.log(max(high, LEAST_LENGTH)))
+        most[j, i] = min(most[j, i], -np.log(max(low, LEAST_LENGTH)))
+    for k in range(len(names)):
+        most = np.minimum(most, most[:, [k]] + most[[k]])
+    i, j = names.index(one), names.index(other)
+    return float(np.exp(-most[j, i])), float(np.exp(most[i, j]))
