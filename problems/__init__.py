@@ -26,6 +26,7 @@ from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCra
 from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.requirements.objective import Objective
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 from grashof.problems.values.specs.problem import Problem, Search
 from grashof.problems.values.tasks.dwell_task import DwellTask
@@ -72,6 +73,7 @@ __all__ = [
     "StrengthSpec",
     "StrokeTask",
     "TandemTask",
+    "TargetLimits",
     "Task",
     "TransmissionOver",
     "catalogue",

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from grashof.analysis.forces.from_spec import TRAVEL_ROUNDING
+from grashof.analysis.judge.at_targets import missed_at_targets
 from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_travel
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.how_met import HOW_MET
@@ -124,6 +125,7 @@ def verify(
         *missed(
             Values(linkage, verdict, problem or Problem(task=task, mechanism=linkage.mechanism.word)), wanted
         ),
+        *(missed_at_targets(linkage, task, wanted, verdict) if wanted.at else []),
         *(_own(Design.judged(linkage, verdict), constraints) if constraints else []),
         *(_kept_out(linkage, targets, motion, task, wanted, joined=branch_ok) if wanted.keep_out else []),
     )

@@ -26,6 +26,7 @@ from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
+from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
 
@@ -107,11 +108,22 @@ _BY_KIND = {
     Kind.WORD: str,
     Kind.RATIOS: dict[str, Direction],
 }
+
+
+_AT_TARGETS = {"targets": list[int], "a": (Place | None, None), "b": (Place | None, None)}
+
+
+@tables.keys_of(TargetLimits, {**_AT_TARGETS, "past_deg": (Pair | None, None)})
+class TargetTable(tables.SpecTable):
+    beside = MappingProxyType({"*": {"targets": [1], "transmission_min_deg": 1.0}})
+
+
 _MODES: dict[str, Any] = {
     **dict.fromkeys(("exact", "order", "same_branch"), bool),
     **dict.fromkeys(("rotatability", "transmission_over"), str),
     "keep_out": Areas,
     "keep_out_for": Parts,
+    "at": list[Annotated[TargetTable, AfterValidator(TargetTable.value)]],
 }
 
 

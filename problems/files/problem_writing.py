@@ -14,6 +14,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.requirements.requirements import Requirements
+from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.problem import Problem
 from grashof.problems.values.tasks.dwell_task import DwellTask
 from grashof.problems.values.tasks.function_task import FunctionTask
@@ -142,6 +143,8 @@ def _degrees(angles: FloatArray) -> FloatArray:
 def _value(value: Any) -> str:
     if isinstance(value, Box):
         value = asdict(value)
+    if isinstance(value, TargetLimits):
+        value = {name: getattr(value, name) for name in ("targets", *value.limited)}
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, Mapping):

@@ -304,7 +304,7 @@ def require_own(
     for constraint in constraints:
         value = on_symbols(constraint, symbolic_design(build, form, x, places))
         for one in value if isinstance(value, (list, tuple)) else [value]:
-            build.require(("constraints",), -ca.vec(ca.SX(one)) - OWN_INSET)
+            build.require((getattr(constraint, "group", "constraints"),), -ca.vec(ca.SX(one)) - OWN_INSET)
 
 
 def own_goal(build: Builder, form: Form, x: Unknowns, places: Positions, objective: OwnObjective) -> ca.SX:

@@ -71,14 +71,14 @@ def solve(scaled: ScaledProblem, start: Start, max_iter: int | None = None) -> S
     """Run Ipopt from one start, by default with more iterations than usual where the error is bounded."""
     long = start.terms.bounded and start.second is None
     patience = PATIENCE[scaled.bounded] if long else MOST_ITERATIONS
-    if start.terms.stay and not scaled.constraints:
+    if start.terms.stay and not scaled.every_constraint:
         patience = MENDING
     form = Form.of(scaled, start)
     most = patience if max_iter is None else max_iter
     try:
         if form.targets > LONG:
             raise_if_stopped()
-        programme = _programme(form, most, scaled.constraints, scaled.own_objective)
+        programme = _programme(form, most, scaled.every_constraint, scaled.own_objective)
     except StopRequested:
         return Solve.unchanged(start, STOPPED)
     given = programme.arguments(scaled, start)

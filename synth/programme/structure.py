@@ -145,7 +145,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         for name, limit in wanted.limited.items()
     )
     zoned = start.terms.zoned and (scaled.has_angles or scaled.timed)
-    own = scaled.constraints or (start.terms.bounded and start.terms.objective is None)
+    own = scaled.every_constraint or (start.terms.bounded and start.terms.objective is None)
     every = bool(placed or moving or own or zoned)
     if scaled.timed:
         return (every and wanted.theta2_start_deg is None,) * count

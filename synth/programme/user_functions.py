@@ -81,9 +81,11 @@ def _refuse(scaled: ScaledProblem, function: Constraint, kind: _Kind, in_process
         ) from None
 
 
-def own_violations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
-    """Amounts by which linkages violate the user's constraints; shape (n,)."""
-    amounts = _values(scaled, linkages, scaled.constraints)
+def own_violations(
+    scaled: ScaledProblem, linkages: Screened, constraints: tuple[Constraint, ...]
+) -> FloatArray:
+    """Amounts by which linkages violate constraints; shape (n,)."""
+    amounts = _values(scaled, linkages, constraints)
     missed: FloatArray = np.nan_to_num(np.maximum(amounts, 0.0), nan=1.0, posinf=FAR).sum(axis=0)
     return missed
 
@@ -121,7 +123,7 @@ def _numbers(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
 
 def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Proposal]:
     """Starts; those that miss a user's constraint may move, but no farther than it requires."""
-    if not scaled.constraints:
+    if not scaled.every_constraint:
         return starts
     return [
         start
@@ -144,7 +146,7 @@ def relaxed_by_own(scaled: ScaledProblem, starts: Sequence[Proposal]) -> list[St
 
 def _met(scaled: ScaledProblem, start: Start) -> bool:
     design = _design(scaled, start)
-    return all(greatest(constraint, design) <= 0 for constraint in scaled.constraints)
+    return all(greatest(constraint, design) <= 0 for constraint in scaled.every_constraint)
 
 
 def magnitude_at(scaled: ScaledProblem, start: Start, objective: OwnObjective) -> float:

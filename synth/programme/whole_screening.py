@@ -24,7 +24,7 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages with these violations added."""
     wanted = scaled.wanted
     along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
-    if not len(linkages) or not (along or wanted.size or scaled.constraints or wanted.keep_out):
+    if not len(linkages) or not (along or wanted.size or scaled.every_constraint or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
     if wanted.keep_out:
@@ -36,8 +36,9 @@ def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
         violations[:, GROUPS.index("size")] = np.maximum(np.maximum(low - size, size - high), 0.0)
     for name in along:
         violations[:, GROUPS.index(name)] = _beyond(scaled, linkages, name)
-    if scaled.constraints:
-        violations[:, GROUPS.index("constraints")] += own_violations(scaled, linkages)
+    for group, constraints in (("constraints", scaled.constraints), ("at", scaled.at_targets)):
+        if constraints:
+            violations[:, GROUPS.index(group)] += own_violations(scaled, linkages, constraints)
     return replace(linkages, violations=violations)
 
 

@@ -17,6 +17,7 @@ from grashof.synth.quantities.formulas import of_six_bars
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.kinds import kind_of
+from grashof.synth.quantities.target_constraints import target_constraints
 from grashof.synth.theory.burmester import Displacements
 
 
@@ -90,6 +91,16 @@ class ScaledProblem:
         return self.problem.objective if self.own_objective is None else None
 
     @property
+    def at_targets(self) -> tuple[Constraint, ...]:
+        """Limits at single targets as constraints."""
+        return target_constraints(self.problem)
+
+    @property
+    def every_constraint(self) -> tuple[Constraint, ...]:
+        """The user's own constraints, and limits at single targets."""
+        return (*self.constraints, *self.at_targets)
+
+    @property
     def bounded(self) -> bool:
         """Whether the objective decides among designs that may miss the targets."""
         return self.zones is not None or self.problem.requirements.error_factor is not None
@@ -122,7 +133,7 @@ class ScaledProblem:
         """
         if self.one_loop or not self.problem.task.in_plane:
             return self.has_targets
-        own = self.constraints or self.own_objective is not None
+        own = self.every_constraint or self.own_objective is not None
         known = {"transmission", "size", *of_six_bars(())}
         by_goals = self.exact or self.bounded
         return not own and (not by_goals or set(self.problem.objective.goals) <= known)

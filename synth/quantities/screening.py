@@ -19,7 +19,7 @@ from grashof.synth.quantities.kind import LENGTHS, Kind
 ROUNDING = 1e-10  # sizes, rad: up to which a limit counts as kept
 TOUCHING = 1e-10  # sizes: a point no deeper inside an area counts as on its boundary
 # The requirements that linkages can violate, named by their fields.
-GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "keep_out", "within")
+GROUPS = ("order", "same_branch", "rotatability", *LIMITS, "constraints", "at", "keep_out", "within")
 
 
 @dataclass(frozen=True, slots=True)

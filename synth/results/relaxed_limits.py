@@ -50,7 +50,7 @@ class RelaxedConstraint:
 def limiting(problem: Problem, constraints: Sequence[Constraint]) -> list[str]:
     """Keys of the requirements that differ from the defaults, exactness aside."""
     wanted, usual = problem.requirements, Requirements()
-    keys = [key for key in (*LIMITS, "keep_out") if getattr(wanted, key) != getattr(usual, key)]
+    keys = [key for key in (*LIMITS, "keep_out", "at") if getattr(wanted, key) != getattr(usual, key)]
     keys += ["constraints"] * bool(constraints)  # the user's own
     if wanted.rotatability is not Rotatability.ANY and not (
         problem.task.closed and problem.task.has_position.any()
@@ -72,7 +72,7 @@ def loosest(problem: Problem, key: str) -> Requirements:
         "rotatability": Rotatability.ANY,
         "link_ratio_max": max(100.0, wanted.link_ratio_max),
         "transmission_min_deg": 0.0,
-        "keep_out": (),
+        **dict.fromkeys(("keep_out", "at"), ()),
         **dict.fromkeys(UNSMOOTH, False),
     }
     if key == "constraints":
@@ -141,6 +141,8 @@ def _changes(
         )
         words = [f"constraint {name} up to {by:g} instead of 0" for name, by in allowed.items()]
         yield {"constraints": eased}, " with ".join(words)
+    elif key == "at":
+        yield {"at": ()}, "no limits at single targets"
     elif key == "keep_out":
         yield _areas_drawn_in(wanted, missed)
     elif kind in (Kind.INSIDE, Kind.ON_BODY):

@@ -33,7 +33,7 @@ class Surrogate:
     def of(cls, scaled: ScaledProblem, best: Candidate, least: float) -> Surrogate:
         """The surrogate of a problem, unless user functions may depend on any target."""
         count = len(scaled.problem.task)
-        if count <= LONG or scaled.constraints or scaled.own_objective is not None:
+        if count <= LONG or scaled.every_constraint or scaled.own_objective is not None:
             return cls(scaled)
         index = np.unique(np.round(np.linspace(0, count - 1, FEW)).astype(np.int64))
         try:

@@ -121,7 +121,7 @@ def _free_round(scaled: ScaledProblem, batch: Batch, size: int) -> Round | None:
         return None
     order = np.argsort(feasible.error, kind="stable")
     starts = [_start(scaled, feasible, feasible.error, int(k)) for k in order]
-    if target.timed and len(target.points) > FEW_TARGETS and not scaled.constraints:
+    if target.timed and len(target.points) > FEW_TARGETS and not scaled.every_constraint:
         starts = [start.under(settled=True) for start in starts]  # as `_start` has it of the untimed
     counts = {"feasible finds": len(feasible)}
     most = size * MOST_CURVES * (2 if scaled.of_use else 1)
@@ -247,7 +247,7 @@ def _distinct(placed: Placed) -> IntArray:
 
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
     start = Start.of_screened(linkages, index, scaled.objective)
-    fitted = _all_fitted(SearchTargets.of(scaled)) and not scaled.constraints
+    fitted = _all_fitted(SearchTargets.of(scaled)) and not scaled.every_constraint
     met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
     return replace(start, expected_error=float(error[index])).under(settled=met or fitted)
 

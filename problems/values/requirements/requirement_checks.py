@@ -13,6 +13,7 @@ from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.requirements.link_ratios import LinkRatios
 from grashof.problems.values.requirements.quantities import Kind, Limit
+from grashof.problems.values.requirements.target_limits import TargetLimits
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
 KEPT_OUT = f"a list of {listing(MAY_KEEP_OUT, 'and')}"
@@ -47,6 +48,13 @@ def areas(values: Sequence[FloatArray], where: str) -> tuple[FloatArray, ...]:
     from grashof.problems.values.areas import polygons
 
     return polygons(values, where)
+
+
+def at_targets(values: Sequence[TargetLimits], where: str) -> tuple[TargetLimits, ...]:
+    """Limits at single targets."""
+    if not isinstance(values, Sequence) or not all(isinstance(each, TargetLimits) for each in values):
+        raise wrong_value(where, values, "a list of TargetLimits")
+    return tuple(values)
 
 
 def word(kind: type[StrEnum], value: str, where: str) -> StrEnum:

@@ -29,6 +29,7 @@ from grashof.problems.values.requirements.quantities import (
     Quantity,
     Scope,
 )
+from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly, check_fields
@@ -144,6 +145,8 @@ class Requirements(ReadOnly):
     keep_out_for : sequence of {"o2", "o4", "a", "b", "p", "links", "body"}
         Parts that keep out of them: pivots, coupler point, all links as straight lines (O2A, AB, O4B,
         AP, BP), or the outline of the body; all but o2 and o4 over the motion from first to last target.
+    at : sequence of TargetLimits
+        Limits at single targets.
     """
 
     exact: bool | None = None
@@ -246,6 +249,7 @@ class Requirements(ReadOnly):
     b_on_body: Box | None = limit(on_body("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
     keep_out_for: tuple[str, ...] = ("o2", "o4")
+    at: tuple[TargetLimits, ...] = ()
 
     def __post_init__(self) -> None:
         check_fields(self, "requirements.", **_CHECKS)
@@ -365,6 +369,7 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **{name: within(*limits) for name, limits in _RANGES.items()},
     **{name: partial(check.limits, limited) for name, limited in LIMITS.items()},
     "keep_out": check.areas,
+    "at": check.at_targets,
     "keep_out_for": partial(some_of, words=check.MAY_KEEP_OUT, wanted=check.KEPT_OUT),
 }
 

@@ -72,8 +72,8 @@ def not_of_kinds(task: Task, given: Sequence[str], having: Mapping[str, Sequence
     ]
 
 
-def requirements_wrong(task: Task, wanted: Requirements) -> list[str]:
-    """Contradictions between these requirements and a task, a line each."""
+def requirements_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -> list[str]:
+    """Contradictions between requirements, a task and kinds of linkages, a line each."""
     wrong = []
     if task.zones is not None and wanted.exact:
         wrong.append(f"{task.kind}.within does not go with requirements.exact = true; it takes its place")
@@ -89,6 +89,10 @@ def requirements_wrong(task: Task, wanted: Requirements) -> list[str]:
         for name in directions
         if isinstance(getattr(wanted, name), tuple) and not task.has_position.any()
     ]
+    for number, limits in enumerate(wanted.at, 1):
+        wrong += limits.wrong(task, kinds, f"requirements.at[{number}]")
+    if wanted.at and not wanted.order:
+        wrong.append("requirements.order is false; it must be true with requirements.at")
     if wanted.keep_out and "body" in wanted.keep_out_for and task.body is None:
         wrong.append(f"{task.kind}.body is missing; requirements.keep_out_for has body")
     return wrong

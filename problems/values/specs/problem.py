@@ -160,7 +160,7 @@ class Problem(ReadOnly):
                 )
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
-        wrong += task_limits.requirements_wrong(self.task, self.requirements)
+        wrong += task_limits.requirements_wrong(self.task, self.requirements, self.mechanism)
         if self.objective != Objective(**self.task.usual_objective) and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
         if self.driver is not None:
@@ -250,6 +250,8 @@ class Problem(ReadOnly):
         wanted = replace(self.requirements, **{name: getattr(plain, name) for name in others})
         if wanted.link_ratios is not None:
             wanted = replace(wanted, link_ratios=wanted.link_ratios.of(ROWS[kind][0].lengths) or None)
+        if wanted.at:
+            wanted = replace(wanted, at=tuple(filter(None, (each.for_kind(kind) for each in wanted.at))))
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}

@@ -23,10 +23,12 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
 from grashof.problems.values.requirements.quantities import Scope
 from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
@@ -90,6 +92,7 @@ def summary(problem: Problem) -> list[str]:
     if wanted.keep_out:
         names = ", ".join(wanted.keep_out_for)
         lines.append(f"  kept out of {counted(len(wanted.keep_out), 'area')}: {names}")
+    lines += [f"  {_at_targets(limits, unit)}" for limits in wanted.at]
     if problem.manufacturing is not None:
         made = problem.manufacturing
         band = "" if problem.task.dwell is not None else f", band {made.band:g}{unit}"
@@ -109,6 +112,22 @@ def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
     unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
     limits = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
     return f"{quantity.words}: {limits} {unit}".strip()
+
+
+def _at_targets(limits: TargetLimits, unit: str) -> str:
+    """Limits at single targets."""
+    where = f"at {'targets' if len(limits.targets) > 1 else 'target'} {listing(limits.targets, 'and')}"
+    said = []
+    for name, box in (("A", limits.a), ("B", limits.b)):
+        sides = () if box is None else ((f"{name}.x", *box.x), (f"{name}.y", *box.y))
+        said += [f"{axis} {low:g} to {high:g}{unit}" for axis, low, high in sides if high - low < np.inf]
+    if limits.past_deg is not None:
+        said.append("driver and coupler {:g} to {:g} deg past their line".format(*limits.past_deg))
+    if limits.transmission_min_deg is not None:
+        said.append(f"mu from {limits.transmission_min_deg:g} deg")
+    if limits.mechanical_advantage_min is not None:
+        said.append(f"mechanical advantage from {limits.mechanical_advantage_min:g}")
+    return f"{where}: {', '.join(said)}"
 
 
 def _best(problem: Problem) -> str:

@@ -83,7 +83,7 @@ class LimitPositions(DesignFinder):
     def elsewhere(self) -> bool:
         """Whether more than lengths, pivots and transmission is limited: more places are tried then."""
         beyond = set(self.wanted.limited) - self.stroke_kind.kept
-        return bool(beyond or self.scaled.constraints or self.wanted.keep_out)
+        return bool(beyond or self.scaled.every_constraint or self.wanted.keep_out)
 
     @cached_property
     def kinds(self) -> list[tuple[Family, bool]]:

@@ -1,0 +1,78 @@
+"""Limits that hold at single targets, as the judge measures them there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.mechanism.kinematics import solve_kinematics
+from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.problems import Linkage, Requirements, Task
+from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.requirements.target_limits import TargetLimits
+
+SLACK = 1e-9  # sizes, rad or ratio
+SAMPLES = 181  # of the motion between two targets
+
+
+def missed_at_targets(
+    linkage: Linkage, task: Task, wanted: Requirements, verdict: Verdict
+) -> Iterator[Defect]:
+    """A defect for every limit at a single target that is missed."""
+    if not np.isfinite(verdict.theta2).all():
+        return
+    state = solve_position(linkage, verdict.theta2, verdict.assembly)
+    for limits in wanted.at:
+        for number in limits.targets:
+            for what, found, allowed, scale in _figures(linkage, verdict, state, limits, number - 1):
+                miss = max(allowed[0] - found, found - allowed[1]) / (task.size if scale == "length" else 1.0)
+                if not miss <= SLACK:
+                    unit = float(np.degrees(1.0)) if scale == "angle" else 1.0
+                    text = _range_text(allowed, unit)
+                    yield Defect("at", f"{what} at target {number}", unit * found, text, miss)
+
+
+def _figures(
+    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int
+) -> Iterator[tuple[str, float, Limits, str]]:
+    """What is limited at a target, its value, its limits and their unit."""
+    for name in ("a", "b"):
+        box = getattr(limits, name)
+        if box is not None:
+            for axis, side, value in zip("xy", (box.x, box.y), getattr(state, name)[k].tolist(), strict=True):
+                yield f"{name}.{axis}", value, side, "length"
+    if limits.past_deg is not None:
+        low, high = np.radians(limits.past_deg).tolist()
+        past = past_line(linkage, verdict, k)
+        yield "driver and coupler past their line in deg", past, (low, high), "angle"
+    if limits.transmission_min_deg is not None:
+        sine = min(abs(float(np.sin(state.theta4[k] - state.theta3[k]))), 1.0)
+        least = float(np.radians(limits.transmission_min_deg))
+        yield "the transmission angle in deg", float(np.arcsin(sine)), (least, np.inf), "angle"
+    if limits.mechanical_advantage_min is not None:
+        moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+        with np.errstate(divide="ignore"):
+            advantage = float(1.0 / np.abs(moving.omega4))
+        yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), "ratio"
+
+
+def past_line(linkage: Linkage, verdict: Verdict, k: int) -> float:
+    """How far driver and coupler are past the line through O2, A and B at target k, rad.
+
+    Positive where the motion from the first target, or back from the last one to the first, passes it.
+    """
+    start, end = verdict.theta2[[0 if k else -1, k]].tolist()
+    theta2 = np.linspace(start, end, SAMPLES)
+    turned: FloatArray = solve_position(linkage, theta2, verdict.assembly[k]).theta3 - theta2
+    turned = np.unwrap(turned)
+    line = np.pi * np.round(turned[-1] / np.pi)
+    return float(-np.sign(turned[0] - line) * (turned[-1] - line))
+
+
+def _range_text(limits: Limits, unit: float) -> str:
+    low, high = (f"{unit * side:.6g}" for side in limits)
+    if np.isinf(limits[1]):
+        return f"from {low}"
+    return f"up to {high}" if np.isinf(limits[0]) else f"{low} to {high}"

@@ -1,0 +1,137 @@
+"""Limits that hold at single targets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.box import Box
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
+from grashof.problems.values.linkages.mechanisms import not_had
+from grashof.problems.values.tasks.task import Task
+from grashof.problems.values.value_bases import check_fields
+
+NARROWEST, FARTHEST = 0.1, 45.0  # deg, of the range of `past_deg`
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TargetLimits:
+    """Limits at some of the targets, besides those of `Requirements`.
+
+    Parameters
+    ----------
+    targets : sequence of int
+        Numbers of the targets, counted from 1.
+    a, b : Box, optional
+        Where this moving pivot may be there.
+    past_deg : tuple of float, deg, optional
+        Driver and coupler are so far past the line through O2, A and B there, (lo, hi), from -45 to 45: the
+        toggle of a clamp or brace. Positive where the motion from the first target, or back from the last one
+        to the first, passes the line.
+    transmission_min_deg : float, deg, optional
+        Least min(mu, pi - mu) there.
+    mechanical_advantage_min : float, optional
+        Least ``|omega2 / omega4|`` there.
+
+    Raises
+    ------
+    ProblemError
+        Values outside these limits, no target, or nothing that is limited.
+
+    Examples
+    --------
+    >>> TargetLimits(targets=[3], past_deg=(2, 5)).past_deg
+    (2.0, 5.0)
+    """
+
+    targets: Sequence[int]
+    a: Box | None = None
+    b: Box | None = None
+    past_deg: Limits | None = None
+    transmission_min_deg: float | None = None
+    mechanical_advantage_min: float | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self, "", **_CHECKS)
+        if not self.limited:
+            raise ProblemError(f"targets have no limit; it must be one of {', '.join(LIMITED)}")
+
+    @property
+    def limited(self) -> tuple[str, ...]:
+        """Names of the limits that are stated."""
+        return tuple(name for name in LIMITED if getattr(self, name) is not None)
+
+    def wrong(self, task: Task, kinds: Sequence[str], where: str) -> list[str]:
+        """Contradictions with a task and kinds of linkages, a line each."""
+        if not task.in_plane:
+            return [f"{where} does not go with a {task.kind}; it needs poses or points"]
+        beyond = [number for number in self.targets if number > len(task)]
+        wrong = [f"{where}.targets has {number}; the last target is {len(task)}" for number in beyond]
+        for name in self.limited:
+            had = _kinds_with(name)
+            wrong += [] if set(kinds) & set(had) else [not_had(f"{where}.{name}", kinds, had)]
+        return wrong
+
+    def for_kind(self, kind: str) -> TargetLimits | None:
+        """Those that apply to a kind of linkage; None where none does."""
+        kept: dict[str, Any] = {
+            name: getattr(self, name) for name in self.limited if kind in _kinds_with(name)
+        }
+        return TargetLimits(targets=self.targets, **kept) if kept else None
+
+
+def _kinds_with(name: str) -> list[str]:
+    """Kinds of one loop on which a limit has a meaning."""
+    return [word for word, kind in ONE_LOOP.items() if _POINTS[name] <= set(kind.points)]
+
+
+def _targets(values: Sequence[int], where: str) -> tuple[int, ...]:
+    if isinstance(values, (str, bytes)) or not isinstance(values, Sequence) or not len(values):
+        raise wrong_value(where, values, "a list of numbers of targets, counted from 1")
+    return tuple(checks.each_checked(values, where, _target))
+
+
+def _target(number: int, where: str) -> int:
+    return checks.whole_number(number, 1, where)
+
+
+def _box(value: Any, where: str) -> Box | None:
+    if value is not None and not isinstance(value, Box):
+        raise wrong_value(where, value, "a Box")
+    return value
+
+
+def _past(value: Any, where: str) -> Limits | None:
+    if value is None:
+        return None
+    low, high = checks.limits(value, where, least=-FARTHEST, most=FARTHEST)
+    if high - low < NARROWEST:
+        raise wrong_value(where, [low, high], f"[lo, hi] at least {NARROWEST:g} deg apart")
+    return low, high
+
+
+def _number(low: float, high: float) -> Callable[[Any, str], float | None]:
+    return lambda value, where: None if value is None else checks.number_within(value, low, high, where)
+
+
+_CHECKS: dict[str, Callable[[Any, str], Any]] = {
+    "targets": _targets,
+    "a": _box,
+    "b": _box,
+    "past_deg": _past,
+    "transmission_min_deg": _number(0.0, 90.0),
+    "mechanical_advantage_min": _number(0.0, 1e6),
+}
+LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name != "targets")
+# Points without which a limit has no meaning.
+_POINTS = {
+    "a": {"a"},
+    "b": {"b"},
+    "past_deg": {"b"},
+    "transmission_min_deg": {"b", "o4"},
+    "mechanical_advantage_min": {"b", "o4"},
+}

@@ -1,0 +1,110 @@
+"""Limits at single targets in the search: smooth functions of a design, zero or negative where kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, ClassVar
+
+import numpy as np
+
+from grashof.analysis.judge.design import Constraint, Design
+from grashof.problems import Problem
+from grashof.problems.values.requirements.target_limits import TargetLimits
+
+INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
+FLAT = 1e-4  # sine of a rotation between two targets below which its sense is not certain
+
+
+@dataclass(frozen=True, slots=True)
+class AtTarget:
+    """One limit at one target, which counts from 0."""
+
+    limits: TargetLimits
+    name: str
+    k: int
+    group: ClassVar[str] = "at"  # the requirement that it belongs to
+
+    @property
+    def __name__(self) -> str:
+        return f"{self.name} at target {self.k + 1}"
+
+    def __call__(self, design: Design) -> Any:
+        """Excess over the limits: lengths, or numbers of no unit."""
+        if self.name in ("a", "b"):
+            place, box = getattr(design, self.name)[self.k], getattr(self.limits, self.name)
+            sides = zip((place[0], place[1]), (box.x, box.y), strict=True)
+            return [over for value, side in sides for over in _beyond(value, *side)]
+        return [_EXCESS[self.name](self, design)]
+
+    def past(self, design: Design) -> Any:
+        """1 - cos of twice the way beyond the middle of the range, over that of its half."""
+        low, high = np.radians(self.limits.past_deg or (0.0, 0.0)).tolist()
+        cos, sin = _of_coupler(design, self.k)
+        there = _of_coupler(design, 0 if self.k else -1)
+        ahead = there[1] * cos - there[0] * sin  # sine of the turn to the other target
+        sense = ahead / (ahead**2 + FLAT**2) ** 0.5
+        double, by_double = cos**2 - sin**2, -2 * sense * sin * cos
+        middle, half = low + high, high - low - INSIDE
+        return float(np.cos(half)) - double * float(np.cos(middle)) - by_double * float(np.sin(middle))
+
+    def transmission(self, design: Design) -> Any:
+        """By the square of the sine."""
+        coupler, output = _links(design, self.k)[1:]
+        least = float(np.sin(np.radians(self.limits.transmission_min_deg or 0.0) + INSIDE) ** 2)
+        return least - _cross(coupler, output) ** 2 / (_square(coupler) * _square(output))
+
+    def advantage(self, design: Design) -> Any:
+        """By the squares of the moments of link 3 about O2 and O4."""
+        driver, coupler, output = _links(design, self.k)
+        least = float((self.limits.mechanical_advantage_min or 0.0) * (1 + INSIDE))
+        by_driver, by_output = (_cross(link, coupler) ** 2 / _square(coupler) for link in (driver, output))
+        return (least**2 * by_driver - by_output) / _square(output)
+
+
+_EXCESS: dict[str, Any] = {
+    "past_deg": AtTarget.past,
+    "transmission_min_deg": AtTarget.transmission,
+    "mechanical_advantage_min": AtTarget.advantage,
+}
+
+
+def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
+    """Those of all limits of a problem at single targets."""
+    return tuple(
+        AtTarget(limits, name, number - 1)
+        for limits in problem.requirements.at
+        for name, number in product(limits.limited, limits.targets)
+    )
+
+
+def _beyond(value: Any, low: float, high: float) -> list[Any]:
+    """Excess over the sides that are there."""
+    return [low - value] * bool(np.isfinite(low)) + [value - high] * bool(np.isfinite(high))
+
+
+def _links(design: Design, k: int) -> tuple[Any, Any, Any]:
+    """Vectors O2-A, A-B and O4-B at a target."""
+    a, b = design.a[k], design.b[k]
+    o4 = b if design.o4 is None else design.o4
+    return _from(design.o2, a), _from(a, b), _from(o4, b)
+
+
+def _of_coupler(design: Design, k: int) -> tuple[Any, Any]:
+    """Cosine and sine of the angle from driver to coupler at a target."""
+    driver, coupler, _ = _links(design, k)
+    lengths = (_square(driver) * _square(coupler)) ** 0.5
+    dot = driver[0] * coupler[0] + driver[1] * coupler[1]
+    return dot / lengths, _cross(driver, coupler) / lengths
+
+
+def _from(start: Any, end: Any) -> tuple[Any, Any]:
+    return end[0] - start[0], end[1] - start[1]
+
+
+def _cross(one: Any, other: Any) -> Any:
+    return one[0] * other[1] - one[1] * other[0]
+
+
+def _square(vector: Any) -> Any:
+    return vector[0] ** 2 + vector[1] ** 2
