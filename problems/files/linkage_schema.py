@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
-from grashof.problems.files.tables import Table, Text, listed, of_length, one_of, stated
+from grashof.problems.files.tables import TWO, Table, Text, listed, of_length, one_of, stated
 from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError, shown
@@ -87,8 +87,8 @@ _OF_DYAD = dict(
 _PARAMETERS = {row.key: row for row in PARAMETERS} | {
     key: replace(row, name=row.name.removesuffix("_2")) for key, row in _OF_DYAD.items()
 }
-Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
-_Arm = Annotated[list[float], listed("[u, v]"), of_length(2, "[u, v]")]
+Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]"), TWO]
+_Arm = Annotated[list[float], listed("[u, v]"), of_length(2, "[u, v]"), TWO]
 _Hosts = Annotated[list[int], listed("two numbers of links"), of_length(2, "two numbers of links")]
 _TYPES: dict[str, Any] = {"place": Point, "arm": Point, "sign": int}
 _USUAL: dict[str, Any] = {

@@ -106,6 +106,7 @@ for _run in (
     commands.judge,
     commands.problems,
     commands.linkages,
+    commands.schema,
     commands.analyse,
     commands.live,
     commands.animate,

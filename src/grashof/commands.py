@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import webbrowser
 from collections.abc import Callable, Iterable
 from contextlib import closing, suppress
@@ -35,6 +36,7 @@ from grashof.problems import (
     load_linkage_spec,
     problem_text,
 )
+from grashof.problems.schema import FileKind
 
 
 def check(problem: ProblemName) -> None:
@@ -107,6 +109,15 @@ def linkages(
 ) -> None:
     """List the linkages of the catalogue, or print one."""
     _say_catalogue(name, linkage_text, linkage_catalogue(), lambda each: load_linkage_spec(each).title)
+
+
+def schema(
+    file: Annotated[FileKind, typer.Argument(help="The files that it is for.")] = FileKind.PROBLEM,
+) -> None:
+    """Print a JSON Schema of problem or linkage files, by which editors complete and check their keys."""
+    from grashof.problems.schema.json_schema import json_schema
+
+    say(json.dumps(json_schema(file), indent=1))
 
 
 def _say_catalogue(
