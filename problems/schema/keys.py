@@ -34,7 +34,18 @@ from grashof.problems.values.specs.linkage_spec import LinkageSpec
 from grashof.problems.values.specs.problem import Problem
 
 _UNITS = {
-    *("length", "length^2", "length^4", "deg", "kg", "kg/length", "kg/m^3", "kg and kg length^2", "kg m^2"),
+    *(
+        "length",
+        "length^2",
+        "length^4",
+        "deg",
+        "rad",
+        "kg",
+        "kg/length",
+        "kg/m^3",
+        "kg and kg length^2",
+        "kg m^2",
+    ),
     *("m/s^2", "N", "N m", "N/m", "N s/m", "N m/rad", "N m s/rad", "Pa", "s"),
 }
 _PLAIN = {float: "number", int: "whole number", str: "string", bool: "true or false", Any: ""}
@@ -231,7 +242,7 @@ def _unit(name: str, known: Described | None, limited: Limit | None) -> str:
     if limited is not None:
         return str(limited.quantity.unit)
     parts = [] if known is None else known.type.split(", ")
-    unit = next((part for part in parts if part in _UNITS), "deg" if name.endswith("_deg") else "")
+    unit = "deg" if name.endswith("_deg") else next((part for part in parts if part in _UNITS), "")
     for power, sign in (("^2", "²"), ("^3", "³"), ("^4", "⁴")):
         unit = unit.replace(power, sign)
     return unit

@@ -104,6 +104,7 @@ for _run in (
     commands.check,
     commands.prove,
     commands.judge,
+    commands.show,
     commands.problems,
     commands.linkages,
     commands.schema,
