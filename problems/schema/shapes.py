@@ -22,6 +22,7 @@ from grashof.problems.files.task_schema import TASKS, MotionTable
 from grashof.problems.values.linkages.cylinder import CARRIERS
 from grashof.problems.values.linkages.mechanism import WORDS
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SIX_BAR
+from grashof.problems.values.requirements.link_ratios import PAIR
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
 
@@ -55,6 +56,12 @@ _BY_HAND: Mapping[tuple[type[Table], str], Shape] = MappingProxyType(
         (CylinderTable, "on"): _some_of(CARRIERS),
         (ObjectiveTable, "maximise"): {"anyOf": [{"enum": [*GOALS]}, {"$ref": "#/$defs/WeightsTable"}]},
         (RequirementsTable, "keep_out_for"): _some_of(MAY_KEEP_OUT),
+        (RequirementsTable, "link_ratios"): {
+            "type": "object",
+            "propertyNames": {"pattern": f"^{PAIR.pattern}$"},
+            "additionalProperties": {"anyOf": [{"type": "number"}, numbers(2)]},
+            "minProperties": 1,
+        },
         (MotorTable, "profile"): {"type": "string"},
         (DyadTable, "assembly"): _SIGN,
         **{(table, "assembly"): _SIGN for table in KINDS.values()},

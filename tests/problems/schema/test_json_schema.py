@@ -112,6 +112,8 @@ kind = "motion"\\nrequirements.rotatability = "full" | 'full' is not one of
 kind = "motion"\\nrequirements.exact = 1 | 1 is not of type 'boolean'
 kind = "motion"\\nrequirements.keep_out = "zone.png" | is not valid under any of the given schemas
 kind = "motion"\\nrequirements.keep_out_for = ["q"] | 'q' is not one of
+kind = "motion"\\nrequirements.link_ratios = { "r4-r2" = 1 } | 'r4-r2' does not match
+kind = "motion"\\nrequirements.link_ratios = { "r4/r2" = "1" } | is not valid under any of the given schemas
 kind = "motion"\\nobjective.maximise = "speed" | is not valid under any of the given schemas
 kind = "motion"\\nsearch.starts = 2.5 | 2.5 is not of type 'integer'
 kind = "motion"\\nmotion.poses = [[1, 2]] | is not valid under any of the given schemas
