@@ -1,6 +1,5 @@
 """The generated reference: every key, column, option and public name is there, and has a meaning."""
 
-import doctest
 import re
 import sys
 from importlib import import_module
@@ -8,7 +7,6 @@ from inspect import isclass, isroutine
 from pathlib import Path
 from pkgutil import iter_modules
 
-import pytest
 import typer
 
 import grashof
@@ -21,18 +19,18 @@ sys.path.append(str(DOCS / "_ext"))
 import api  # noqa: E402
 import columns  # noqa: E402
 import command_line  # noqa: E402
-import docstrings  # noqa: E402
 import keys  # noqa: E402
-import marking  # noqa: E402
 
-FILES = {"problem": keys.problem_tables, "linkage": keys.linkage_tables, "study": keys.study_tables}
+from grashof.problems.schema.keys import keys_of, linkage_tables, problem_tables  # noqa: E402
+
+FILES = {"problem": problem_tables, "linkage": linkage_tables, "study": keys.study_tables}
 TABLES = [(f"{file}: {path}", table) for file, tables in FILES.items() for path, table in tables().items()]
 
 
 def test_every_key_has_a_value_and_a_sentence() -> None:
     """One of its own, not that of a type of Python."""
     for path, table in TABLES:
-        listed = keys.keys_of(table)
+        listed = keys_of(table)
         assert [key.name for key in listed] == list(table.model_fields), path  # type: ignore[attr-defined]
         assert all(key.value and key.text.endswith(".") for key in listed), path
         assert not any(re.match("Built-in|Represent", key.text) for key in listed), path
@@ -47,7 +45,7 @@ def test_rows_state_value_unit_and_default() -> None:
         ("springs[]", "| `stiffness` | number | N/m | required |"),
         ("strength", "| `yield_stress` | number | Pa | required |"),
     ):
-        assert row in keys.key_table(keys.problem_tables()[table])
+        assert row in keys.key_table(problem_tables()[table])
 
 
 def test_every_column_has_a_row() -> None:
@@ -80,11 +78,6 @@ def test_every_public_name_is_listed_and_has_a_docstring() -> None:
         values = {name: getattr(module, name) for name in names}
         functions = {name: each for name, each in values.items() if isclass(each) or isroutine(each)}
         assert [name for name, each in functions.items() if not each.__doc__] == []
-
-
-@pytest.mark.parametrize("module", [docstrings, marking], ids=lambda each: each.__name__)
-def test_examples_of_the_generators(module) -> None:  # type: ignore[no-untyped-def]
-    assert doctest.testmod(module).failed == 0
 
 
 def test_every_example_is_short_and_has_a_title() -> None:

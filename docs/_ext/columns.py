@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from marking import code, row, sentence
+from marking import row
 
+from grashof.problems.schema.docstrings import code, sentence
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.requirements.quantities import Needs, Quantity, Scope
 from grashof.synth.designs.table import ABOUT, COLUMNS, LISTED, NAMES, OWN

@@ -6,9 +6,10 @@ import re
 from typing import Any
 
 import typer
-from marking import code, row
+from marking import row
 
 from grashof.cli import app
+from grashof.problems.schema.docstrings import code
 
 _LITERAL = re.compile(r"(?<![\w`])(--[a-z][a-z-]*|DIR/[\w.\\#,]+)")
 

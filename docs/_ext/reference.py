@@ -13,14 +13,15 @@ from pathlib import Path
 from api import PACKAGES, homes, index_page, package_page
 from columns import column_table
 from command_line import commands_page
-from keys import key_table, linkage_tables, problem_tables, study_tables
-from marking import code
+from keys import key_table, study_tables
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.pycode import ModuleAnalyzer
 
 from grashof.problems.files.problem_schema import BoxTable
 from grashof.problems.files.tables import Table
+from grashof.problems.schema.docstrings import code
+from grashof.problems.schema.keys import linkage_tables, problem_tables
 
 FOLDER = Path("reference", "generated")  # below docs; not in the repository
 

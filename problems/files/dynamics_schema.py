@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.spreadsheet import Names, number_table
-from grashof.problems.files.tables import SpecTable, Table, keys_of, listed, spec_table
+from grashof.problems.files.tables import TWO, SpecTable, Table, keys_of, listed, spec_table
 from grashof.problems.values.checks import located_in
 from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
@@ -19,7 +19,7 @@ from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION, Pumpi
 from grashof.problems.values.dynamics.strength import SectionSpec, StrengthSpec
 from grashof.problems.values.errors import ProblemError
 
-_POINT = Annotated[list[float], listed("[u, v]")]
+_POINT = Annotated[list[float], listed("[u, v]"), TWO]
 _Kinds = Sequence[Sequence[Names]]
 # Columns of files, with or without their units.
 _ENDINGS = {"time": "_s", **dict.fromkeys(load_specs.TURNING, "_deg")}
@@ -72,7 +72,7 @@ class _FromFile(_Nested):
     load_specs.LoadSpec,
     {
         "at": _POINT,
-        "force": Annotated[list[float], listed("[fx, fy] in N")],
+        "force": Annotated[list[float], listed("[fx, fy] in N"), TWO],
         "values": Annotated[list[list[float]], listed("rows [place, fx, fy] or [place, moment]")],
         "table": (str | None, None),
     },
@@ -148,7 +148,7 @@ _LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
 @keys_of(
     DynamicsSpec,
     {
-        "gravity": Annotated[list[float], listed("[x, y] in m/s2")],
+        "gravity": Annotated[list[float], listed("[x, y] in m/s2"), TWO],
         "masses": Annotated[list[float], listed("[m2, m3, m4]")],
         "inertias": Annotated[list[float], listed("[I2, I3, I4]")],
         "centres": Annotated[list[_POINT], listed("[[u2, v2], [u3, v3], [u4, v4]]")],

@@ -12,10 +12,21 @@ import numpy as np
 from pydantic import AfterValidator, Field, ValidationInfo, create_model, field_validator
 
 from grashof.problems.files.dynamics_schema import MachineTables, PumpingUnitTable
-from grashof.problems.files.tables import Table, Text, listed, of_length, one_of, stated
+from grashof.problems.files.tables import (
+    TWO,
+    SpecTable,
+    Table,
+    Text,
+    keys_of,
+    listed,
+    of_length,
+    one_of,
+    stated,
+)
 from grashof.problems.values import checks
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.mechanism import (
     MECHANISMS,
@@ -53,8 +64,8 @@ def linkage_from(document: dict[str, Any], name: str, folder: Path | None = None
 
 def as_document(given: Mapping[str, Any]) -> dict[str, Any]:
     """`Linkage.stated` without angles, by the keys of a linkage file."""
-    inner = {key: given[row.name] for key, row in _OF_DYAD.items() if row.name in given}
-    names = ("hosts", *(row.name for row in _OF_DYAD.values()))
+    inner = {key: given[row.name] for key, row in OF_DYAD.items() if row.name in given}
+    names = ("hosts", *(row.name for row in OF_DYAD.values()))
     rest = {name: value for name, value in given.items() if name not in names}
     if "hosts" in given:
         kind = DyadKind.RRP if "offset_2" in given else DyadKind.RRR
@@ -81,14 +92,15 @@ def _by_key(row: Parameter) -> tuple[str, Parameter]:
 
 
 # Parameters of the second dyad of six-bars, by the keys of its table; the first loop is a four-bar.
-_OF_DYAD = dict(
+OF_DYAD = dict(
     _by_key(each) for row in _SIX_BARS for each in row.parameters if each not in row.one_loop.parameters
 )
 _PARAMETERS = {row.key: row for row in PARAMETERS} | {
-    key: replace(row, name=row.name.removesuffix("_2")) for key, row in _OF_DYAD.items()
+    key: replace(row, name=row.name.removesuffix("_2")) for key, row in OF_DYAD.items()
 }
-Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]")]
-_Arm = Annotated[list[float], listed("[u, v]"), of_length(2, "[u, v]")]
+_IN_RADIANS = {row.key.removesuffix("_deg") for row in _PARAMETERS.values() if row.kind == "angle"}
+Point = Annotated[list[float], listed("[x, y]"), of_length(2, "[x, y]"), TWO]
+_Arm = Annotated[list[float], listed("[u, v]"), of_length(2, "[u, v]"), TWO]
 _Hosts = Annotated[list[int], listed("two numbers of links"), of_length(2, "two numbers of links")]
 _TYPES: dict[str, Any] = {"place": Point, "arm": Point, "sign": int}
 _USUAL: dict[str, Any] = {
@@ -135,6 +147,8 @@ class _Checked(Table):
             checks.positive_bounded(given, where)
         elif where == "ground_angle_deg" or (row is not None and row.kind == "angle"):
             checks.number_within(given, -most, most, where)
+        elif where in _IN_RADIANS:
+            checks.number_within(given, -np.radians(most), np.radians(most), where)
         elif row is not None:
             for number in np.ravel(row.array(given)).tolist():
                 checks.bounded(number, where)
@@ -154,6 +168,8 @@ class _DyadTable(_Checked):
         With a slide: of its line from O2, positive to the left of its direction; 0 without it.
     slide_angle_deg : float, deg
         With a slide: its direction, counter-clockwise from +x; 0 without it.
+    slide_angle : float, rad
+        Instead of `slide_angle_deg`, in radians.
     assembly : int
         +1 when E lies left of the directed line C->D, or ahead of C along the slide; else -1.
     """
@@ -164,13 +180,13 @@ class _DyadTable(_Checked):
     def value(self) -> dict[str, Any]:
         """The arguments of `SixBar` that it states."""
         found, wrong = {}, []
-        for key, row in _OF_DYAD.items():
+        for key, row in OF_DYAD.items():
             having = _kinds_having(row)
-            given = getattr(self, key)
+            given = _argument(self, key, row)
             if self.kind in having:
                 given = _USUAL.get(key) if given is None else given
                 wrong += [f"{key} is missing"] if given is None else []
-                found[row.name] = _in_radians(row, given)
+                found[row.name] = given
             elif given is not None:
                 wrong.append(f"{key} does not go with kind {self.kind}; only {' and '.join(having)} has it")
         checks.refuse(wrong)
@@ -200,8 +216,22 @@ def _kinds_having(parameter: Parameter) -> list[str]:
     return list(dict.fromkeys(map(str, kinds)))
 
 
-def _in_radians(row: Parameter, given: Any) -> Any:
-    return np.radians(given) if row.kind == "angle" else given
+def _argument(table: Table, key: str, row: Parameter) -> Any:
+    """The value of a parameter in a table, an angle in rad; ProblemError where it is given twice."""
+    given = getattr(table, key)
+    if row.kind != "angle":
+        return given
+    radians = in_radians(key)
+    if getattr(table, radians) is None:
+        return None if given is None else np.radians(given)
+    if key in table.model_fields_set:
+        raise ProblemError(f"{radians} is given besides {key}; give one of them")
+    return getattr(table, radians)
+
+
+def in_radians(key: str) -> str:
+    """The key of an angle in rad, by that in deg."""
+    return key.removesuffix("_deg")
 
 
 class LinkageTable(_Checked, MachineTables, _Heading):
@@ -229,7 +259,7 @@ class LinkageTable(_Checked, MachineTables, _Heading):
             kind = dyad.row(self.mechanism)
             second = dyad.value() | {"hosts": kind.dyads[1].hosts, "point_link": self._given("point_link")}
         first = [row for row in kind.parameters if row.name not in second]
-        given = {row.name: _in_radians(row, getattr(self, row.key)) for row in first} | second
+        given = {row.name: _argument(self, row.key, row) for row in first} | second
         linkage = linkage_of(self.mechanism, given | ({"o4": self._o4()} if "o4" in given else {}))
         if "r1" in kind.lengths and not linkage.lengths[0] > 0:
             raise ProblemError("o4 is where o2 is; the ground pivots must be distinct")
@@ -254,7 +284,7 @@ class LinkageTable(_Checked, MachineTables, _Heading):
 
     def spec(self, name: str) -> LinkageSpec:
         """The file as a value."""
-        unit = self._given("pumping_unit")
+        unit, driven = self._given("pumping_unit"), self._given("cylinder")
         return LinkageSpec(
             linkage=self.value(),
             name=name,
@@ -264,7 +294,13 @@ class LinkageTable(_Checked, MachineTables, _Heading):
             output_arm=self._given("output_arm"),
             dynamics=self.dynamics_spec(),
             pumping_unit=None if unit is None else unit.value(),
+            cylinder=None if driven is None else driven.value(),
         )
+
+
+@keys_of(Cylinder, {"base": Point, "point": Point})
+class OwnCylinderTable(SpecTable):
+    pass
 
 
 def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
@@ -274,6 +310,8 @@ def _keys(row: Parameter) -> Iterator[tuple[str, Any]]:
         yield "ground_angle_deg", (float | None, None)
     else:
         yield row.key, (_TYPES.get(row.kind, float), Field(default=_USUAL.get(row.key, ...)))
+        if row.kind == "angle":
+            yield in_radians(row.key), (float | None, None)
 
 
 def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
@@ -282,6 +320,7 @@ def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
     also: dict[str, Any] = {"output_arm": (float | None, None)} if "o4" in keys and not more else {}
     if "r4" in keys and not more:  # the walking beam
         also["pumping_unit"] = (PumpingUnitTable | None, None)
+    also |= {} if more else {"cylinder": (OwnCylinderTable | None, None)}
     name = word.title().replace("-", "")
     begin = create_model(f"_{name}", __base__=_Heading, **keys)
     bases: tuple[Any, ...] = (LinkageTable, MachineTables, begin)
@@ -293,10 +332,11 @@ def _file(word: str, kind: Mechanism, **more: Any) -> type[LinkageTable]:
 def _dyad_file() -> type[_DyadTable]:
     """The table of the second dyad: keys of all kinds, and of some."""
     keys: dict[str, Any] = {}
-    for key, row in _OF_DYAD.items():
+    for key, row in OF_DYAD.items():
         of_all = set(_kinds_having(row)) == {row.dyads[1].kind for row in _SIX_BARS}
         given = _Arm if row.paired else _TYPES.get(row.kind, float)
         keys[key] = (given, _USUAL.get(key, ...)) if of_all else (given | None, None)
+        keys |= {in_radians(key): (float | None, None)} if row.kind == "angle" else {}
     doc = _DyadTable.__doc__
     table: type[_DyadTable] = create_model("DyadTable", __base__=_DyadTable, __doc__=doc, **keys)
     return table

@@ -78,7 +78,7 @@ def _at(point: list[float]) -> Box:
 _PLACE_SHAPES = "[x, y] or { x = [lo, hi], y = [lo, hi] }"
 Place = Annotated[
     Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(tables.TABLE)]
-    | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST)],
+    | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST), tables.TWO],
     tables.either(_PLACE_SHAPES),
 ]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -30,18 +30,37 @@ def problem_toml(problem: Problem) -> str:
     kinds = problem.mechanism
     kind = {"mechanism": kinds[0] if len(kinds) == 1 else kinds} if kinds_text(kinds) else {}
     head = {"kind": problem.task.kind, **kind, **{key: getattr(problem, key) for key in _WORDS}}
-    lines = [f"{key} = {_value(value)}" for key, value in head.items()]
-    for name, given in _tables(problem):
+    return toml_text(head, _tables(problem))
+
+
+Tables = Iterable[tuple[str, Mapping[str, Any] | list[Mapping[str, Any]]]]
+"Tables by name, or lists of tables."
+
+
+def toml_text(head: Mapping[str, Any], tables: Tables = ()) -> str:
+    """A TOML file of keys and the tables that follow them.
+
+    Examples
+    --------
+    >>> print(toml_text({"r2": 1.5}, [("dynamics", {"speed_rpm": -20.0})]))
+    r2 = 1.5
+    <BLANKLINE>
+    [dynamics]
+    speed_rpm = -20.0
+    <BLANKLINE>
+    """
+    lines = [f"{key} = {toml_value(value)}" for key, value in head.items()]
+    for name, given in tables:
         heading = f"[[{name}]]" if isinstance(given, list) else f"[{name}]"
         for table in given if isinstance(given, list) else [given]:
-            lines += ["", heading, *(f"{key} = {_value(value)}" for key, value in table.items())]
+            lines += ["", heading, *(f"{key} = {toml_value(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
 
 
 _WORDS = ("title", "source", "length_unit")
 
 
-def _tables(problem: Problem) -> Iterator[tuple[str, Mapping[str, Any] | list[Mapping[str, Any]]]]:
+def _tables(problem: Problem) -> Tables:
     stated = row_of(_TASKS, problem.task)(problem.task)
     yield problem.task.kind, stated if isinstance(stated, list) else _given(stated)
     if problem.outlines:
@@ -71,7 +90,7 @@ def _task(task: Task) -> dict[str, Any]:
         del given["positions"]
     for name in task.in_degrees:
         if given.get(name) is not None:
-            given[f"{name}_deg"] = _degrees(given.pop(name))
+            given[f"{name}_deg"] = degrees_of(given.pop(name))
     return given
 
 
@@ -80,14 +99,14 @@ def _function(task: FunctionTask) -> dict[str, Any]:
     words = {"sense": task.sense, "norm": task.norm}
     law = task.law
     if law is None:
-        output = {"output": task.outputs} if task.travels else {"output_deg": _degrees(task.outputs)}
-        return {"input_deg": _degrees(task.inputs), **output, **words}
-    output = {"output_range_deg": _degrees(np.array(law.output_range))}
+        output = {"output": task.outputs} if task.travels else {"output_deg": degrees_of(task.outputs)}
+        return {"input_deg": degrees_of(task.inputs), **output, **words}
+    output = {"output_range_deg": degrees_of(np.array(law.output_range))}
     return {
         "law": law.name,
         "x": law.x,
         "exponent": law.exponent,
-        "input_range_deg": _degrees(np.array(law.input_range)),
+        "input_range_deg": degrees_of(np.array(law.input_range)),
         **({"output_range": law.output_range} if law.travels else output),
         "pairs": None if task.fits_range else len(task),
         "sampled": law.samples,
@@ -100,7 +119,7 @@ def _dwell(task: DwellTask) -> dict[str, Any]:
     degrees = ("dwell", "swing", "band") if task.stroke is None else ("dwell",)
     given = {name: getattr(task, name) for name in ("dwell", "swing", "stroke", "band")}
     return {
-        f"{name}_deg" if name in degrees else name: _degrees(value) if name in degrees else value
+        f"{name}_deg" if name in degrees else name: degrees_of(value) if name in degrees else value
         for name, value in given.items()
         if value is not None
     }
@@ -108,7 +127,7 @@ def _dwell(task: DwellTask) -> dict[str, Any]:
 
 def _strokes(task: TandemTask) -> list[Mapping[str, Any]]:
     """A table for each output."""
-    swings = (_degrees(np.array(swing)) for swing in task.swings)
+    swings = (degrees_of(np.array(swing)) for swing in task.swings)
     return [
         _given({"link": each.link, "swing_deg": swing, "time_ratio": each.time_ratio})
         for each, swing in zip(task.strokes, swings, strict=True)
@@ -125,12 +144,12 @@ _TASKS: Mapping[type, Callable[[Any], dict[str, Any] | list[Mapping[str, Any]]]]
 
 
 def _poses(task: Task) -> list[Any]:
-    rows = np.column_stack([task.positions, _degrees(task.angles)]).tolist()
+    rows = np.column_stack([task.positions, degrees_of(task.angles)]).tolist()
     given = ({key: x for key, x in zip(("x", "y", "angle"), row, strict=True) if x == x} for row in rows)
     return [row if task.is_whole else pose for row, pose in zip(rows, given, strict=True)]
 
 
-def _degrees(angles: FloatArray) -> FloatArray:
+def degrees_of(angles: FloatArray) -> FloatArray:
     """Degrees that give these radians to the last bit, where possible."""
     nearest = np.degrees(angles)
     beside = [np.nextafter(nearest, -np.inf), np.nextafter(nearest, np.inf), np.round(nearest, 9)]
@@ -140,7 +159,8 @@ def _degrees(angles: FloatArray) -> FloatArray:
     return found
 
 
-def _value(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """A value as TOML has it, numbers in full precision."""
     if isinstance(value, Box):
         value = asdict(value)
     if isinstance(value, TargetLimits):
@@ -148,9 +168,9 @@ def _value(value: Any) -> str:
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{shown_key(key)} = {_value(each)}' for key, each in value.items())} }}"
+        return f"{{ {', '.join(f'{shown_key(key)} = {toml_value(each)}' for key, each in value.items())} }}"
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, (str, bool)):
         return json.dumps(value, ensure_ascii=False)
     return repr(int(value)) if isinstance(value, (int, np.integer)) else repr(float(value))

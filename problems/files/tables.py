@@ -18,6 +18,7 @@ from pydantic import (
     Discriminator,
     ValidationError,
     ValidationInfo,
+    WithJsonSchema,
     create_model,
     field_validator,
     model_validator,
@@ -47,6 +48,8 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
     # Whether a misplaced key may be reported as belonging to this table.
     suggested: ClassVar[bool] = True
+    # Types whose docstrings describe keys, besides that of the table and of the value that it makes.
+    described_by: ClassVar[tuple[type, ...]] = ()
 
     def value(self) -> object:
         """The value type that the table states."""
@@ -132,6 +135,15 @@ def _listed(value: Any, *, wanted: str, most: int) -> Any:
 def of_length(count: int, wanted: str) -> AfterValidator:
     """Validator of a list of `count` entries."""
     return AfterValidator(unless(lambda values: len(values) == count, wanted))
+
+
+def numbers(count: int) -> dict[str, Any]:
+    """The JSON Schema of so many numbers."""
+    return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
+
+
+# For lists whose length the value types check: their JSON Schema has it, too.
+TWO = WithJsonSchema(numbers(2))
 
 
 def one_of(*words: str) -> AfterValidator:
@@ -270,7 +282,9 @@ def spec_table(
             optional = default is None and given is not Any
             given = (given | None if optional else given, ... if default is Parameter.empty else default)
         keys[name] = given
-    table = create_model(base.__name__, __base__=base, __doc__=doc, **keys)
+    own = base.__name__.startswith("_")  # a base of several tables
+    name = f"{spec.__name__.removesuffix('Spec')}Table" if own else base.__name__
+    table = create_model(name, __base__=base, __doc__=doc, **keys)
     table.spec = spec
     return table
 

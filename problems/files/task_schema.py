@@ -8,7 +8,18 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Tag, model_validator
 
-from grashof.problems.files.tables import EACH, LIST, NUMBER, TABLE, SpecTable, Table, either, keys_of, listed
+from grashof.problems.files.tables import (
+    EACH,
+    LIST,
+    NUMBER,
+    TABLE,
+    TWO,
+    SpecTable,
+    Table,
+    either,
+    keys_of,
+    listed,
+)
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, outline
 from grashof.problems.values.errors import ProblemError
@@ -21,13 +32,13 @@ from grashof.problems.values.tasks.stroke_task import StrokeTask
 from grashof.problems.values.tasks.tandem_task import LinkSwing, TandemTask
 
 Corners = Annotated[
-    list[Annotated[list[float], listed("a corner [x, y]")]], listed("a list of corners [x, y]")
+    list[Annotated[list[float], listed("a corner [x, y]"), TWO]], listed("a list of corners [x, y]")
 ]
 Drawn = Annotated[
-    list[Annotated[list[float], listed("a corner [x, y]")]],
+    list[Annotated[list[float], listed("a corner [x, y]"), TWO]],
     listed("a list of corners [x, y], or a .dxf or .svg file"),
 ]
-Pair = Annotated[list[float], listed("[lo, hi]")]
+Pair = Annotated[list[float], listed("[lo, hi]"), TWO]
 
 
 Zone = Annotated[
@@ -59,7 +70,7 @@ Poses = Annotated[
     list[Any], listed("a list of poses [x, y, angle in degrees], or a .csv or .xlsx file", MOST_TARGETS)
 ]
 Points = Annotated[
-    list[Annotated[list[float], listed("a point [x, y]")]],
+    list[Annotated[list[float], listed("a point [x, y]"), TWO]],
     listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
 ]
 _OF_TARGETS = {

@@ -18,11 +18,11 @@ import typer
 from typer.core import TyperGroup
 
 from grashof import commands, searches
-from grashof.options import parameters
-from grashof.output.process import ExitCode, say
+from grashof.options import JSON, parameters
+from grashof.output.document import Document, print_document
+from grashof.output.process import TRACEBACK, ExitCode, failure, say
 from grashof.problems import ProblemError, SolverError
 
-TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: print tracebacks of unexpected errors
 # Typer makes the base of its usage errors public only through this one.
 _UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 
@@ -38,18 +38,19 @@ class _Commands(TyperGroup):
             code = super().main(given, *rest, **{**options, "standalone_mode": False})
         except _UsageError as error:
             message: str = getattr(error, "format_message", error.__str__)()
-            say(f"grashof: {' '.join(message.split()).rstrip('.')}; see grashof --help", err=True)
+            words = f"{' '.join(message.split()).rstrip('.')}; see grashof --help"
+            say(f"grashof: {words}", err=True)
             code = ExitCode.BAD_INPUT
+            if JSON in given:
+                print_document(Document(code, words))
         except OSError as error:  # of the help or the version: commands report their own
             say(f"grashof: {f'standard output: {error.strerror}' if error.strerror else error}", err=True)
             code = ExitCode.SURROUNDINGS
         except Exception as error:  # noqa: BLE001  (the outermost boundary: nothing else reports it)
             if os.environ.get(TRACEBACK):
                 say(traceback.format_exc(), err=True)
-            words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
-            hint = f"{TRACEBACK}=1 shows where, please report it with that"
-            say(f"grashof: unexpected error: {words}; {hint}", err=True)
-            code = ExitCode.SURROUNDINGS
+            code, words = failure(error)
+            say(f"grashof: {words}", err=True)
         sys.exit(code or ExitCode.OK)
 
 
@@ -103,8 +104,10 @@ for _run in (
     commands.check,
     commands.prove,
     commands.judge,
+    commands.show,
     commands.problems,
     commands.linkages,
+    commands.schema,
     commands.analyse,
     commands.live,
     commands.animate,
@@ -127,13 +130,8 @@ def _reported_errors() -> Iterator[None]:
     """Bad input and environment errors end the program with one line, not with a traceback."""
     try:
         yield
-    except ProblemError as error:
-        for line in str(error).splitlines():
+    except (ProblemError, SolverError, OSError, KeyboardInterrupt) as error:
+        code, message = failure(error)
+        for line in message.splitlines():
             say(f"grashof: {line}", err=True)
-        raise typer.Exit(ExitCode.BAD_INPUT) from None
-    except (SolverError, OSError) as error:
-        say(f"grashof: {error}", err=True)
-        raise typer.Exit(ExitCode.SURROUNDINGS) from None
-    except KeyboardInterrupt:
-        say("grashof: interrupted", err=True)
-        raise typer.Exit(ExitCode.INTERRUPTED) from None
+        raise typer.Exit(code) from None

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import webbrowser
 from collections.abc import Callable, Iterable
 from contextlib import closing, suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
 from socket import AF_INET, SO_REUSEADDR, SOCK_STREAM, SOL_SOCKET, socket
@@ -35,6 +36,7 @@ from grashof.problems import (
     load_linkage_spec,
     problem_text,
 )
+from grashof.problems.schema import FileKind
 
 
 def check(problem: ProblemName) -> None:
@@ -91,6 +93,43 @@ def judge(linkage: LinkageName, problem: ProblemName) -> ExitCode:
     return ExitCode.OK if judged.verdict.ok else ExitCode.NO_DESIGN
 
 
+def show(
+    linkage: Annotated[
+        str,
+        typer.Argument(metavar="LINKAGE", help="Folder or list of a search, or as for analyse."),
+    ],
+    number: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[NUMBER]", help="Rank or id of the design in the list.", show_default="1, the best"
+        ),
+    ] = None,
+) -> None:
+    """Print a design as a linkage file of a few lines, which judge and analyse read to the last digit.
+
+    Exit code 0: done; 2: bad input; 3: environment error.
+    """
+    from grashof.problems.files.linkage_writing import linkage_toml
+
+    spec = load_linkage_spec(_in_list(linkage, number))
+    if spec.problem is not None:
+        spec = replace(spec, source="")  # where the list is on this machine
+    say(linkage_toml(spec).removesuffix("\n"))
+
+
+def _in_list(given: str, number: str | None) -> str:
+    """The name of a linkage: of a folder or list that of a design in it."""
+    folder = Path(given)
+    listed = folder / "candidates.json" if folder.is_dir() and given not in linkage_catalogue() else folder
+    if listed.suffix == ".json":
+        return f"{listed}#{number or 1}"
+    if number is not None:
+        raise ProblemError(
+            f"NUMBER is {number}; {given} is one linkage, it must be a folder or list of a search"
+        )
+    return given
+
+
 def problems(
     name: Annotated[
         str | None, typer.Argument(help="Print this problem as TOML, to copy and change.", show_default=False)
@@ -107,6 +146,15 @@ def linkages(
 ) -> None:
     """List the linkages of the catalogue, or print one."""
     _say_catalogue(name, linkage_text, linkage_catalogue(), lambda each: load_linkage_spec(each).title)
+
+
+def schema(
+    file: Annotated[FileKind, typer.Argument(help="The files that it is for.")] = FileKind.PROBLEM,
+) -> None:
+    """Print a JSON Schema of problem or linkage files, by which editors complete and check their keys."""
+    from grashof.problems.schema.json_schema import json_schema
+
+    say(json.dumps(json_schema(file), indent=1))
 
 
 def _say_catalogue(

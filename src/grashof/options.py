@@ -15,6 +15,7 @@ from grashof.problems.values.specs.problem import EFFORTS
 from grashof.study.asked import FIT_POINTS, ON_REQUEST, STEP, Asked
 
 TOP = 50  # families in a list by default
+JSON = "--json"
 
 
 def _option(text: str, *names: str, **details: Any) -> Any:
@@ -41,6 +42,7 @@ _Top = Annotated[
 _Gap = Annotated[float, _option("Deg up to which proofs bring their bounds together.", min=1e-4, max=90)]
 _Scheduler = Annotated[str | None, _unset("Dask scheduler to work on, such as tcp://host:8786.")]
 _Drawings = Annotated[int, _option("Designs to draw.", min=0)]
+_Json = Annotated[bool, _option("Print the outcome and the list as one JSON document.", JSON)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +70,7 @@ class SolveOptions:
         str | None, _unset("Part I of N of the search; grashof merge follows.", metavar="I/N")
     ] = None
     log: Annotated[Path | None, _unset("File to append a log to: rounds, starts, lost processes.")] = None
+    json: _Json = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,6 +81,7 @@ class MergeOptions:
     workers: _Workers = 1
     top: _Top = None
     drawings: _Drawings = 3
+    json: _Json = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

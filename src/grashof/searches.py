@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from grashof.options import TOP, MergeOptions, ProblemName, SolveOptions, SweepOptions
+from grashof.output.document import Document, documented
 from grashof.output.folder import (
     OLD_SEARCH,
     PAGE,
@@ -43,16 +44,18 @@ def solve(problem: ProblemName, options: SolveOptions) -> ExitCode:
     """
     from grashof.output.log_file import logged
 
-    loaded, text = load_with_text(problem)
-    folder = options.out or Path(f"{loaded.name}-designs")
-    if options.shard is not None:
-        return _solve_shard(loaded, text, options.shard, options, folder)
-    check_writable(folder, options.drawings)
-    with in_use(folder), logged(options.log, folder, folder / SEARCH):
-        return _solve(loaded, text, options, folder)
+    with documented(options.json) as document:
+        loaded, text = load_with_text(problem)
+        folder = options.out or Path(f"{loaded.name}-designs")
+        if options.shard is not None:
+            return _solve_shard(loaded, text, options.shard, options, folder)
+        check_writable(folder, options.drawings)
+        with in_use(folder), logged(options.log, folder, folder / SEARCH):
+            document.code = _solve(loaded, text, options, folder, document)
+        return document.code
 
 
-def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> ExitCode:
+def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path, document: Document) -> ExitCode:
     from grashof.output.drawing import drawer
     from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.history import StopReason
@@ -75,8 +78,8 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path) -> 
         interruptible() as interrupted,
         _pointing_to(record),
     ):
-        deliver = partial(_deliver, text=text, settings=settings, folder=folder, drawings=options.drawings,
-                          interrupted=interrupted, drawing=drawing)  # fmt: skip
+        deliver = partial(_deliver, text=text, settings=settings, folder=folder, options=options,
+                          interrupted=interrupted, document=document, drawing=drawing)  # fmt: skip
         so_far = ReportedDesigns(problem)
         try:
             found = _found(problem, options, record, settings, interrupted, so_far)
@@ -147,8 +150,9 @@ def _deliver(
     text: str,
     settings: dict[str, Any],
     folder: Path,
-    drawings: int,
+    options: SolveOptions | MergeOptions,
     interrupted: Interruption,
+    document: Document,
     drawing: Drawer | None = None,
     listed: Callable[[], None] | None = None,
 ) -> ExitCode:
@@ -162,18 +166,21 @@ def _deliver(
     if found.ended:
         say(found.ended, err=True)
     result = found.top(settings["top"])
+    if options.json:
+        document.note_list(result)
     if not (result.candidates or result.complete):  # an interrupted search replaces nothing
         say(result.note, err=True)
         return interrupted.code if interrupted() else ExitCode.NO_DESIGN
     try:
-        files = write_run(folder, result, settings, drawings, interrupted, text, drawing, listed)
+        files = write_run(folder, result, settings, options.drawings, interrupted, text, drawing, listed)
+        document.note_files(folder, files)
         if not result.candidates and (proven := proof_line(result)):
             say(proven, err=True)
         say_written(result.note, files, folder)
-        if missing := missing_drawings(result, drawings, files):
+        if missing := missing_drawings(result, options.drawings, files):
             say(f"drawings are left out: {interrupted.by} came before {missing} of them were made", err=True)
     finally:  # whatever the disk does
-        if result.candidates:
+        if result.candidates and not options.json:
             print_table(result, len(found))
     say_page(folder / PAGE)
     if interrupted():
@@ -188,8 +195,9 @@ def _solve_shard(problem: Problem, text: str, stated: str, options: SolveOptions
     from grashof.output.terminal import search_progress
     from grashof.synth.shards import SHARDS, Shard, solve_shard
 
-    if options.top is not None:
-        raise ProblemError("--top does not go with --shard; it is for grashof merge")
+    for name, given in (("top", options.top is not None), ("json", options.json)):
+        if given:
+            raise ProblemError(f"--{name} does not go with --shard; it is for grashof merge")
     shard = Shard.stated(stated)
     own = folder / SHARDS / shard.folder
     with (
@@ -227,6 +235,12 @@ def merge(
     Exit code 0: at least one verified design; 1: none; 2: bad input, or shards are missing;
     3: environment error; 130: interrupted (Ctrl-C); 143: terminated (SIGTERM, SIGHUP).
     """
+    with documented(options.json) as document:
+        document.code = _merge(folder, options, document)
+        return document.code
+
+
+def _merge(folder: Path, options: MergeOptions, document: Document) -> ExitCode:
     from grashof.output.terminal import search_progress
     from grashof.synth.merging import Shards, merge_shards
 
@@ -241,7 +255,7 @@ def merge(
         most = options.top or max(TOP, shards.search.enough)
         settings = {**asdict(shards.search), "workers": options.workers, "top": most, "shards": shards.of}
         settings["without"] = shards.lacking
-        return _deliver(found, shards.text, settings, folder, options.drawings, interrupted)
+        return _deliver(found, shards.text, settings, folder, options, interrupted, document)
 
 
 def sweep(

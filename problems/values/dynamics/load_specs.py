@@ -67,11 +67,11 @@ class LoadSpec(TableValue):
     values : sequence of rows, optional
         Instead of both: (place, fx, fy) or (place, moment), places rising, in deg, length or s. Between
         rows the load follows a curve through them that rises and falls as they do.
-    over : str
-        The places: "theta2", "theta4", of a six-bar "theta6" (deg, a full turn), "travel" (length:
-        of a slide, see `FrictionSpec`) or "time" (s from the start).
-    frame : str
-        Axes of the force: "global", or "link", with which it turns.
+    over : {"theta2", "theta4", "theta6", "travel", "time"}
+        The places: `theta2`, `theta4`, of a six-bar `theta6` (deg, a full turn), `travel` (length: of a
+        slide, see `FrictionSpec`) or `time` (s from the start).
+    frame : {"global", "link"}
+        Axes of the force: the global ones, or those of the link, with which it turns.
     """
 
     link: int

@@ -23,10 +23,10 @@ class PumpingUnitSpec(TableValue):
 
     Parameters
     ----------
-    well : str
-        Side of O4 on which horsehead and well are drawn: "right" or "left".
-    crank : str
-        How the crank turns, seen with the well to the right: "clockwise" or "counter-clockwise".
+    well : {"right", "left"}
+        Side of O4 on which horsehead and well are drawn.
+    crank : {"clockwise", "counter-clockwise"}
+        How the crank turns, seen with the well to the right.
     structural_unbalance : float, N
         Force at the polished rod, positive downwards, that holds the beam level without pitmans.
     counterbalance : float, N m
@@ -40,8 +40,8 @@ class PumpingUnitSpec(TableValue):
     values : sequence of rows, optional
         Instead: (crank angle in deg, N) over a turn; or (position, N on the up stroke, N on the down
         stroke) from 0 to 1. Between rows it follows a curve through them.
-    over : str
-        Variable of the rows of `values`: "crank" or "position".
+    over : {"crank", "position"}
+        Variable of the rows of `values`.
     """
 
     well: str = "right"

@@ -14,7 +14,7 @@ from grashof.problems.values import checks
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
-_PAIR = re.compile(r"(r[1-6])/(r[1-6])")
+PAIR = re.compile(r"(r[1-6])/(r[1-6])")
 _EXAMPLE = 'a table such as { "r3/r2" = [2, 2.5] }'
 LEAST, GREATEST = 1e-6, 1e6
 LEAST_LENGTH, ROUNDING = 1e-300, 1e-9
@@ -57,7 +57,7 @@ class LinkRatios(Mapping[str, Limits]):
 
 def _row(row: tuple[Any, Any], where: str) -> tuple[str, Limits]:
     name, value = row
-    found = _PAIR.fullmatch(name) if isinstance(name, str) else None
+    found = PAIR.fullmatch(name) if isinstance(name, str) else None
     place = where.rpartition("[")[0]
     if found is None or found[1] == found[2]:
         raise ProblemError(f'{place} has {shown(name)}; it must be two of r1 to r6, such as "r3/r2"')

@@ -222,9 +222,8 @@ class FunctionTask(Task):
             Rotation of link 4 from the first pair, one for each input; positive as the driver turns.
         output : array_like, length, optional
             Instead, travel of a slide from the first pair.
-        law : str, optional
-            Instead of pairs, a function y(x): log10, ln, exp, sin, cos, tan (of degrees), sqrt, reciprocal,
-            power or sampled.
+        law : {"log10", "ln", "exp", "sin", "cos", "tan", "sqrt", "reciprocal", "power", "sampled"}, optional
+            Instead of pairs, a function y(x); sin, cos and tan are of degrees.
         x : pair of float, optional
             Range of the law, from and to.
         exponent : float, optional

@@ -14,8 +14,10 @@ from types import FrameType
 
 import typer
 
+from grashof.problems import ProblemError, SolverError
 from grashof.problems.values.checks import counted, readable
 
+TRACEBACK = "GRASHOF_TRACEBACK"  # environment variable: print tracebacks of unexpected errors
 _LAID_OUT = re.compile(r"[^\n\t]+")  # all but line ends and tabs
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -29,6 +31,25 @@ class ExitCode(IntEnum):
     SURROUNDINGS = 3
     INTERRUPTED = 128 + signal.SIGINT
     TERMINATED = 128 + signal.SIGTERM
+
+
+def failure(error: BaseException) -> tuple[ExitCode, str]:
+    """Exit code and message, a line for each error of a file, of the error that ends a command.
+
+    Examples
+    --------
+    >>> failure(ProblemError("kind is missing"))
+    (<ExitCode.BAD_INPUT: 2>, 'kind is missing')
+    """
+    if isinstance(error, KeyboardInterrupt):
+        return ExitCode.INTERRUPTED, "interrupted"
+    if isinstance(error, ProblemError):
+        return ExitCode.BAD_INPUT, str(error)
+    if isinstance(error, (SolverError, OSError)):
+        return ExitCode.SURROUNDINGS, str(error)
+    words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
+    hint = f"{TRACEBACK}=1 shows where, please report it with that"
+    return ExitCode.SURROUNDINGS, f"unexpected error: {words}; {hint}"
 
 
 class Interruption:

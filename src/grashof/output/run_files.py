@@ -78,7 +78,7 @@ def _write_lists(folder: Path, result: Result) -> list[Row]:
     rows = rows_of(result.problem, result.candidates)
     if result.candidates:
         write_rows(folder / "candidates.csv", rows)
-        write_json(folder / "candidates.json", _designs(result, rows))
+        write_json(folder / "candidates.json", list_content(result, rows))
     if result.nearest:
         rows = rows_of_nearest(result.problem, result.nearest)
         write_rows(folder / "nearest.csv", rows)
@@ -108,18 +108,12 @@ def _write_record(
 ) -> list[str]:
     """Write the record of the files in a folder and of others, and return their names, sorted."""
     files = listed_files(folder, RECORD, others)
-    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
     content = {
         "problem": result.problem.name,
         **_about(settings),
         "run": _history(result, missing_drawings(result, drawings, files), stop),
-        "complete": result.complete,
-        "ended": result.ended,
-        **{name: None if np.isnan(error) else error for name, error in errors.items()},
+        **outcome(result),
         "designs": len(result),
-        "note": result.note,
-        "proof": None if result.proof is None else result.proof.stated,
-        "intervals": enclosure_record(result),
         "counts": result.counts,
         "guards_hit": {name: result.tally.statuses[name] for name in _GUARDS},
         "seconds": {stage: round(time, 4) for stage, time in result.seconds.items()},
@@ -129,13 +123,28 @@ def _write_record(
     return files
 
 
+def outcome(result: Result) -> dict[str, Any]:
+    """What a search arrived at, besides its designs; None for errors that it does not have."""
+    errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
+    return {
+        "complete": result.complete,
+        "ended": result.ended,
+        **{name: None if np.isnan(error) else error for name, error in errors.items()},
+        "note": result.note,
+        "proof": None if result.proof is None else result.proof.stated,
+        "intervals": enclosure_record(result),
+    }
+
+
 def listed_files(folder: Path, record: str, others: Iterable[str] = ()) -> list[str]:
     """The files of a run, sorted: those in a folder, others, and its record."""
     return sorted({*(path.name for path in folder.iterdir()), *others, record})
 
 
-def _designs(result: Result, rows: Sequence[Row]) -> dict[str, Any]:
+def list_content(result: Result, rows: Sequence[Row] | None = None) -> dict[str, Any]:
+    """The content of ``candidates.json``; `rows` are those of the list, where they are known already."""
     problem = result.problem
+    rows = rows_of(problem, result.candidates) if rows is None else rows
     keys, last = _written(rows), ("pareto", OWN.column)
     return {
         "grashof": version("grashof"),

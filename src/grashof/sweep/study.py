@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field, field_validator
 
@@ -137,6 +137,8 @@ class SearchOptions(Table):
     time_limit : float, s
         Of each combination; the table of the sweep then depends on the machine.
     """
+
+    described_by: ClassVar[tuple[type, ...]] = (Search,)
 
     starts: int | None = None
     enough: int | None = None

@@ -24,7 +24,7 @@ from grashof.problems import (
     load_linkage_spec,
 )
 from grashof.problems.files.linkage_schema import as_document, linkage_from
-from grashof.problems.files.problem_writing import _value as toml
+from grashof.problems.files.problem_writing import toml_value as toml
 from grashof.problems.values.linkages.mechanism import MECHANISMS, Mechanism
 
 PLAIN = "o4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\n"

@@ -1,4 +1,4 @@
-"""The parameters that a numpydoc docstring describes."""
+"""What a numpydoc docstring says of parameters, and its texts in Markdown."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass
 from itertools import pairwise
 
+_NAME = re.compile(r"``(.+?)``|(?<![`\w])`([^`]+)`(?!`)")
+_SYMBOL = re.compile(r"\w\d|omega|theta|mu\b")  # stays as it is at the beginning of a sentence
 _ENTRY = re.compile(r"^(?P<names>\*{0,2}\w+(?:, (?:\w+|\.\.\.))*) : (?P<type>.+)$")
 
 
@@ -61,3 +63,24 @@ def _section(lines: list[str], title: str) -> list[str]:
         if lines[start] == title:
             return lines[start + 2 : end]
     return []
+
+
+def code(text: str) -> str:
+    """Text set as code."""
+    return f"`{text}`" if text else ""
+
+
+def sentence(text: str) -> str:
+    """A text of a docstring as a sentence in Markdown: the first letter large, a full stop at its end.
+
+    Examples
+    --------
+    >>> sentence("least of ``|x|``, see `Problem`")
+    'Least of `|x|`, see `Problem`.'
+    >>> sentence("r1, ground link")
+    'r1, ground link.'
+    """
+    plain = _NAME.sub(lambda found: code(found[1] or found[2]), text.strip())
+    if not _SYMBOL.match(plain):
+        plain = plain[:1].upper() + plain[1:]
+    return plain if not plain or plain.endswith(".") else f"{plain}."
