@@ -24,6 +24,7 @@ _KEPT = 0.8  # share of that for omitted points; the rest is for the curve betwe
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6, "Q": 0.25}
 _FLOAT = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _WIDTH = re.compile(rf"\s*({_FLOAT})\s*(mm|cm|in|pt|pc|Q)\s*")
+_SIZE = re.compile(rf"\s*({_FLOAT})\s*([A-Za-z]*)\s*")
 # Nothing else decides where the lines of a drawing are; long ones of the first kind would be slow to read.
 _SHORT = {
     "id", "class", "display", "transform", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry",
@@ -109,9 +110,24 @@ def _plain(content: bytes) -> bytes:
     if found is None or _name(found) != "svg":
         raise ProblemError("is not an SVG file: it does not begin with <svg>")
     plain = _copied(found)
+    _complete_size(plain)
     named = {each.get("id", ""): each for each in reversed(list(plain.iter()))}
     _spend(plain, named, Budget(2 * MOST_POINTS, "places", "groups"), 0)
     return ElementTree.tostring(plain)
+
+
+def _complete_size(drawing: ElementTree.Element) -> None:
+    """State the height that follows from the width, or the width, where it is left out.
+
+    svgelements takes 1000 instead.
+    """
+    box = [float(number) for number in re.findall(_FLOAT, drawing.get("viewBox", ""))]
+    if len(box) != 4 or not box[2] > 0 or not box[3] > 0:
+        return
+    for stated, absent, ratio in (("width", "height", box[3] / box[2]), ("height", "width", box[2] / box[3])):
+        size = _SIZE.fullmatch(drawing.get(stated, ""))
+        if size and drawing.get(absent) is None:
+            drawing.set(absent, f"{float(size[1]) * ratio!r}{size[2]}")
 
 
 def _name(element: ElementTree.Element) -> str:
