@@ -150,7 +150,7 @@ def _path_points(name: str, folder: Path, unit: str, stated: Mapping[str, Any]) 
     count = whole_number(stated.get("count", POINTS), 2, "count", MOST_TARGETS)
     keys = curve_points_of(name, folder, unit, count)
     closed = stated.get("closed", keys["closed"])
-    if closed in (True, False) and closed != keys["closed"]:
+    if isinstance(closed, bool) and closed != keys["closed"]:
         found = "closed" if keys["closed"] else "open: it does not end where it begins"
         raise ProblemError(f"the curve of {name} is {found}; remove closed = {str(closed).lower()}")
     return {**keys, "closed": closed, "count": None}
