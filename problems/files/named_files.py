@@ -176,10 +176,7 @@ FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
     ("motion", "poses"): (TABLES, lambda name, folder, *_: poses_of(name, folder)),
     ("path", "points"): (TABLES + DRAWINGS, _path_points),
     ("motion", "body"): (DRAWINGS, _body),
-    ("requirements", "keep_out"): (
-        DRAWINGS,
-        _areas,
-    ),
+    ("requirements", "keep_out"): (DRAWINGS, _areas),
     ("scene", "outlines"): (DRAWINGS, _outlines),
 }
 
