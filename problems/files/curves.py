@@ -67,16 +67,19 @@ def is_closed(curve: FloatArray) -> bool:
 def chained(curves: Sequence[FloatArray]) -> list[FloatArray]:
     """Curves joined where ends meet, each from the first of its curves on, in the sense of that one.
 
-    `ProblemError` where more than two ends meet.
+    Curves that are no longer than a meeting place is wide are left out. `ProblemError` where more than two
+    ends meet.
     """
-    partner = _partners(curves, 2 * ENDS_MEET * size_of(curves))
+    place = 2 * ENDS_MEET * size_of(curves)
+    curves = [curve for curve in curves if size_of([curve]) > place] or curves[:1]
+    partner = _partners(curves, place)
     free, found = dict.fromkeys(range(len(curves))), []
     while free:
         first = 2 * next(iter(free))
         onward = _entered(first + 1, partner)
         last = onward[-1] if onward else first
-        round_ = partner[last ^ 1] == first
-        before = [] if round_ else [end ^ 1 for end in reversed(_entered(first, partner))]
+        closed = partner[last ^ 1] == first
+        before = [] if closed else [end ^ 1 for end in reversed(_entered(first, partner))]
         chain = [*before, first, *onward]
         found.append(
             np.concatenate([turned_back(curves[end // 2]) if end % 2 else curves[end // 2] for end in chain])

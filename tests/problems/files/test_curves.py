@@ -215,6 +215,7 @@ def test_lines_and_arcs_of_a_layer_are_one_curve(tmp_path: Path) -> None:
 def test_an_open_chain_keeps_the_sense_of_its_first_line(tmp_path: Path) -> None:
     def draw(space: Any) -> None:
         space.add_line((4, 0), (2, 0))
+        space.add_line((4, 0), (4, 1e-7))  # such as many programs leave
         space.add_line((4, 2), (4, 0))
         space.add_lwpolyline([(0, 0), (2, 0)])
 
