@@ -26,7 +26,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-from mutants import KINDS, Kind, Mutant, Mutator, Seed, linkage_seeds, list_seeds, problem_seeds
+from mutants import KINDS, Kind, Mutant, Mutator, Seed, linkage_seeds, list_seeds, problem_seeds, write_files
 
 from grashof import load, synthesize
 from grashof.analysis import verify
@@ -217,6 +217,7 @@ def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> C
     rng = random.Random(seed)  # noqa: S311
     mutator, figures = Mutator(files, rng), Counter[str]()
     with tempfile.TemporaryDirectory() as folder:
+        write_files(Path(folder))
         for number in range(count):
             mutant = mutator.mutant()
             path = Path(folder) / f"mutant{mutant.suffix}"
@@ -233,6 +234,7 @@ def fuzz(count: int, seed: int, share: float, out: Path, files: list[Seed]) -> C
 
 def _kept(out: Path, name: str, mutant: Mutant, found: Finding) -> str:
     out.mkdir(parents=True, exist_ok=True)
+    write_files(out)
     path = out / f"{name}{mutant.suffix}"
     path.write_bytes(mutant.content)
     path.with_suffix(".txt").write_text(f"{found.kind}, {mutant.made_by}\n{found.what}\n", encoding="utf-8")

@@ -50,10 +50,19 @@ class Mutant:
         return ".json" if self.kind == "list" else ".toml"
 
 
+def _all_stated() -> dict[str, Any]:
+    return tomllib.loads((Path(__file__).parent / "seeds.toml").read_text(encoding="utf-8"))
+
+
+def write_files(folder: Path) -> None:
+    """Write the files that seeds name."""
+    for name, text in _all_stated()["files"].items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
 def _stated(kind: Kind) -> list[Seed]:
     """The seeds of seeds.toml."""
-    document = tomllib.loads((Path(__file__).parent / "seeds.toml").read_text(encoding="utf-8"))
-    found = []
+    document, found = _all_stated(), []
     for row in document[kind]:
         text = row["text"]
         while "$" in text:  # parts have parts

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from io import BytesIO
 from typing import Any
 
 import numpy as np
 
+from grashof.problems.files.curves import NODES, QUARTERS, chained, parts_of, straight_part, turned_back
 from grashof.problems.files.on_disk import installed, read_by_others
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST
@@ -61,11 +63,55 @@ def dxf_polylines(text: str) -> list[FloatArray]:
 
 def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], float | None]:
     """The same of a layer, or of all, and the drawing's unit in metres, None where it states none."""
+    entities, unit = _entities(content, layer)
+    from ezdxf.bbox import extents
+    from ezdxf.path import make_path
+
+    with read_by_others("a DXF file"):
+        box = extents(entities, fast=True)
+        size = max(box.size.x, box.size.y) if box.has_data else 0.0
+        found, budget = list[FloatArray](), Budget(MOST_POINTS, "points", "")
+        for entity in entities:
+            points = []
+            for each in make_path(entity).flattening(FLAT * size or 1.0):
+                budget.spend()
+                points.append((each.x, each.y))
+            if len(points) > 1:
+                found.append(np.array(points, dtype=float))
+    if not found:
+        raise ProblemError(f"the drawing has no lines {_where(layer)}")
+    if not all(np.isfinite(each).all() for each in found):
+        raise ProblemError("the drawing has coordinates that are not finite")
+    return found, unit
+
+
+def dxf_curve(content: bytes, layer: str = "") -> tuple[FloatArray, float | None]:
+    """The only curve of a DXF drawing, or of a layer, as parts (`curves`); else as `dxf_drawing`.
+
+    Lines and curves that meet end to end are one. `ProblemError` where there are several.
+    """
+    entities, unit = _entities(content, layer)
+    with read_by_others("a DXF file"), np.errstate(all="ignore"):
+        budget = Budget(MOST_POINTS, "pieces", "")
+        drawn = [curve for entity in entities if len(curve := _curve(entity, budget))]
+        if not drawn:
+            raise ProblemError(f"the drawing has no lines {_where(layer)}")
+        curves = chained(drawn)
+    if len(curves) > 1:
+        other = "it must be one" if layer else "put one on a layer of its own and name it, as #layer"
+        raise ProblemError(f"the drawing has {len(curves)} separate curves {_where(layer)}; {other}")
+    return curves[0], unit
+
+
+def _where(layer: str) -> str:
+    return f"on the layer {shown(layer)}" if layer else "in its model space"
+
+
+def _entities(content: bytes, layer: str) -> tuple[list[Any], float | None]:
+    """What is drawn on a layer, or on all, with sound numbers, and the unit in metres."""
     installed("ezdxf", "DXF needs")
     from ezdxf import recover
-    from ezdxf.bbox import extents
     from ezdxf.lldxf.const import DXFError
-    from ezdxf.path import make_path
 
     if len(_ENTITY.findall(content)) > _MOST_ENTITIES:
         raise ProblemError(f"the drawing has more than {_MOST_ENTITIES} entities; it must have at most that")
@@ -77,25 +123,85 @@ def dxf_drawing(content: bytes, layer: str = "") -> tuple[list[FloatArray], floa
         ]
         if not all(_is_sound(each) for each in entities):
             raise ProblemError("the drawing has numbers that are not finite or beyond 1e20")
-        box = extents(entities, fast=True)
-        size = max(box.size.x, box.size.y) if box.has_data else 0.0
-        found, budget = list[FloatArray](), Budget(MOST_POINTS, "points", "")
-        for entity in entities:
-            points = []
-            for each in make_path(entity).flattening(FLAT * size or 1.0):
-                budget.spend()
-                points.append((each.x, each.y))
-            if len(points) > 1:
-                found.append(np.array(points, dtype=float))
         unit = document.header.get("$INSUNITS", 0)
-    if not found:
-        where = f"on the layer {shown(layer)}" if layer else "in its model space"
-        raise ProblemError(f"the drawing has no lines {where}")
-    if not all(np.isfinite(each).all() for each in found):
-        raise ProblemError("the drawing has coordinates that are not finite")
     if unit and unit not in _METRES:
         raise ProblemError(f"the drawing is in unit {unit} of DXF; it must be one of {_NAMES}, or none")
-    return found, _METRES.get(unit)
+    return entities, _METRES.get(unit)
+
+
+def _curve(entity: Any, budget: Budget) -> FloatArray:
+    """The parts of an entity, in order; none of one without lines, such as a mesh."""
+    kind = entity.dxftype()
+    if kind in ("LWPOLYLINE", "POLYLINE"):
+        pieces = [_curve(each, budget) for each in entity.virtual_entities() if each.dxftype() in _DRAWN]
+        return _in_order([each for each in pieces if len(each)])
+    if kind == "LINE":
+        budget.spend()
+        return straight_part((entity.dxf.start.x, entity.dxf.start.y), (entity.dxf.end.x, entity.dxf.end.y))
+    places, knots = _SMOOTH[kind](entity)
+    budget.spend(len(knots) - 1)
+
+    def flat(at: FloatArray) -> FloatArray:
+        return np.array([(each.x, each.y) for each in places(at.tolist())]).reshape(-1, 2)
+
+    return parts_of(flat, knots)
+
+
+def _in_order(pieces: list[FloatArray]) -> FloatArray:
+    """Pieces that follow one another, each turned so that it begins where the one before it ends.
+
+    Arcs of polylines are given counter-clockwise.
+    """
+    if not pieces:
+        return np.empty((0, NODES, 2))
+    first, *others = pieces
+    if others and _gap(first[0, 0], others[0]) < _gap(first[-1, -1], others[0]):
+        first = turned_back(first)
+    found = [first]
+    for piece in others:
+        end = found[-1][-1, -1]
+        backwards = np.hypot(*(piece[-1, -1] - end)) < np.hypot(*(piece[0, 0] - end))
+        found.append(turned_back(piece) if backwards else piece)
+    return np.concatenate(found)
+
+
+def _gap(place: FloatArray, piece: FloatArray) -> float:
+    """The distance of a place from the nearer end of a piece."""
+    return float(min(np.hypot(*(end - place)) for end in (piece[0, 0], piece[-1, -1])))
+
+
+_Smooth = tuple[Callable[[Sequence[float]], Iterable[Any]], FloatArray]  # places by parameters, and knots
+
+
+def _circle(entity: Any) -> _Smooth:
+    return entity.vertices, np.linspace(0, 360, QUARTERS + 1)
+
+
+def _arc(entity: Any) -> _Smooth:
+    start, end = entity.dxf.start_angle, entity.dxf.end_angle
+    return entity.vertices, start + np.linspace(0, (end - start) % 360 or 360.0, QUARTERS + 1)
+
+
+def _ellipse(entity: Any) -> _Smooth:
+    start, end = entity.dxf.start_param, entity.dxf.end_param
+    turn = (end - start) % math.tau or math.tau
+    return entity.vertices, start + np.linspace(0, turn, QUARTERS + 1)
+
+
+def _spline(entity: Any) -> _Smooth:
+    tool = entity.construction_tool()
+    knots = np.unique(np.asarray(tool.knots(), dtype=float)[tool.order - 1 : tool.count + 1])
+    share = np.arange(QUARTERS if tool.is_rational else 1) / (QUARTERS if tool.is_rational else 1)
+    inner = knots[:-1, None] + share * np.diff(knots)[:, None]
+    return tool.points, np.append(inner.ravel(), knots[-1])
+
+
+_SMOOTH: dict[str, Callable[[Any], _Smooth]] = {
+    "CIRCLE": _circle,
+    "ARC": _arc,
+    "ELLIPSE": _ellipse,
+    "SPLINE": _spline,
+}
 
 
 def _drawn(entities: Iterable[Any], budget: Budget, depth: int = 0) -> Iterator[Any]:

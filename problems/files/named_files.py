@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from grashof.problems.files.dxf_lines import dxf_drawing
+from grashof.problems.files.curves import ENDS_MEET, POINTS, even_places_along, is_closed
+from grashof.problems.files.dxf_lines import dxf_curve, dxf_drawing
 from grashof.problems.files.on_disk import file_bytes
 from grashof.problems.files.spreadsheet import Names, number_table
-from grashof.problems.files.svg_lines import svg_drawing
+from grashof.problems.files.svg_lines import svg_curve, svg_drawing
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.checks import each_checked, located_in, noted, refuse
+from grashof.problems.values.checks import each_checked, located_in, noted, refuse, whole_number
 from grashof.problems.values.dynamics.dynamics_spec import METRES
-from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.errors import ProblemError, listing, shown
+from grashof.problems.values.specs.problem import MOST_TARGETS
 
 TABLES, DRAWINGS = (".csv", ".xlsx"), (".dxf", ".svg")
-_ENDS_MEET = 1e-6  # share of a drawing's size within which two ends are one place
 
 
 def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]]]:
@@ -30,7 +31,7 @@ def areas_of(name: str, folder: Path, length_unit: str) -> list[list[list[float]
     import shapely
 
     lines, size = _lines(name, folder, length_unit)
-    grid = _ENDS_MEET * size
+    grid = ENDS_MEET * size
     closed = [line for line in lines if _meets(line, grid)]
     rest = [line for line in lines if not _meets(line, grid)]
     apart: Any = [shapely.set_precision(shapely.linestrings(line), grid) for line in rest]
@@ -60,21 +61,44 @@ def outlines_of(name: str, folder: Path, length_unit: str) -> list[list[list[flo
 
 def _lines(name: str, folder: Path, length_unit: str) -> tuple[list[FloatArray], float]:
     """Polylines in the problem's unit, and the size of all."""
-    file, _, part = name.partition("#")
-    path = folder / file
-    read: Callable[[bytes, str], tuple[list[FloatArray], float | None]]
-    read = dxf_drawing if path.suffix.lower() == ".dxf" else svg_drawing
-    try:
-        lines, metre = read(file_bytes(path, "a drawing"), part)
-    except ProblemError as error:
-        raise ProblemError(str(error) if str(error).startswith(str(path)) else f"{name}: {error}") from None
-    factor = metre / METRES[length_unit] if metre is not None and length_unit in METRES else 1.0
+    lines, factor = _drawn(name, folder, length_unit, {".dxf": dxf_drawing, ".svg": svg_drawing})
     lines = [factor * line for line in lines]
     every = np.concatenate(lines)
     return lines, float(np.ptp(every, axis=0).max())
 
 
-Read = Callable[[str, Path, str], dict[str, Any]]  # from a name, its folder and the length unit to keys
+_Content = TypeVar("_Content")
+
+
+def _drawn(
+    name: str,
+    folder: Path,
+    length_unit: str,
+    read: Mapping[str, Callable[[bytes, str], tuple[_Content, float | None]]],
+) -> tuple[_Content, float]:
+    """What is read from a drawing, by the ending of its name, and its unit over that of the problem."""
+    file, _, part = name.partition("#")
+    path = folder / file
+    try:
+        content, metre = read[path.suffix.lower()](file_bytes(path, "a drawing"), part)
+    except ProblemError as error:
+        raise ProblemError(str(error) if str(error).startswith(str(path)) else f"{name}: {error}") from None
+    return content, metre / METRES[length_unit] if metre is not None and length_unit in METRES else 1.0
+
+
+def curve_points_of(name: str, folder: Path, length_unit: str, count: int) -> dict[str, Any]:
+    """``points`` at equal distances along the curve of a drawing, and ``closed`` where it is.
+
+    In `name` ``leg.svg#foot`` is the path with this id, ``leg.dxf#foot`` what is drawn on a layer; without
+    either the drawing has to be one curve. Units as for `areas_of`.
+    """
+    curve, factor = _drawn(name, folder, length_unit, {".dxf": dxf_curve, ".svg": svg_curve})
+    with located_in(name):
+        return {"points": even_places_along(factor * curve, count).tolist(), "closed": is_closed(curve)}
+
+
+# From a name, its folder, the length unit and the table that names it to keys, None for those used up.
+Read = Callable[[str, Path, str, Mapping[str, Any]], dict[str, Any]]
 _X, _Y, _ANGLE = ("x",), ("y",), ("angle", "angle_deg")
 _TIMING = "timing_deg"
 
@@ -120,21 +144,45 @@ def _table(name: str, folder: Path, *wanted: Names) -> tuple[list[list[float]], 
     return rows, {_TIMING: timing}
 
 
-def _body(name: str, folder: Path, unit: str) -> dict[str, Any]:
+def _path_points(name: str, folder: Path, unit: str, stated: Mapping[str, Any]) -> dict[str, Any]:
+    if _ending(name) in TABLES:
+        return points_of(name, folder)
+    count = whole_number(stated.get("count", POINTS), 2, "count", MOST_TARGETS)
+    keys = curve_points_of(name, folder, unit, count)
+    closed = stated.get("closed", keys["closed"])
+    if isinstance(closed, bool) and closed != keys["closed"]:
+        found = "closed" if keys["closed"] else "open: it does not end where it begins"
+        raise ProblemError(f"the curve of {name} is {found}; remove closed = {str(closed).lower()}")
+    return {**keys, "closed": closed, "count": None}
+
+
+def _body(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
     areas = areas_of(name, folder, unit)
     if len(areas) > 1:
         raise ProblemError(f"{name}: has {len(areas)} closed lines; a body must be one")
     return {"body": areas[0]}
 
 
+def _areas(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
+    return {"keep_out": areas_of(name, folder, unit)}
+
+
+def _outlines(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
+    return {"outlines": outlines_of(name, folder, unit)}
+
+
 # By table and key; a file may give further keys of the same table.
 FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
-    ("motion", "poses"): (TABLES, lambda name, folder, _: poses_of(name, folder)),
-    ("path", "points"): (TABLES, lambda name, folder, _: points_of(name, folder)),
+    ("motion", "poses"): (TABLES, lambda name, folder, *_: poses_of(name, folder)),
+    ("path", "points"): (TABLES + DRAWINGS, _path_points),
     ("motion", "body"): (DRAWINGS, _body),
-    ("requirements", "keep_out"): (DRAWINGS, lambda name, at, unit: {"keep_out": areas_of(name, at, unit)}),
-    ("scene", "outlines"): (DRAWINGS, lambda name, at, unit: {"outlines": outlines_of(name, at, unit)}),
+    ("requirements", "keep_out"): (DRAWINGS, _areas),
+    ("scene", "outlines"): (DRAWINGS, _outlines),
 }
+
+
+def _ending(name: str) -> str:
+    return Path(name.partition("#")[0]).suffix.lower()
 
 
 def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
@@ -151,15 +199,17 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
         if not isinstance(name, str) or not isinstance(stated, dict):
             continue
         with noted(wrong):
-            if Path(name.partition("#")[0]).suffix.lower() not in endings:
-                allowed = f"it must be a list, or a file {' or '.join(endings)}"
-                raise ProblemError(f"{where} is {shown(name)}; {allowed}")
+            if _ending(name) not in endings:
+                raise ProblemError(
+                    f"{where} is {shown(name)}; it must be a list, or a file {listing(endings)}"
+                )
             if folder is None:
                 raise ProblemError(f"{where} is the file {name}; here it must be a list instead")
             with located_in(where):
-                keys = read(name, folder, unit if isinstance(unit, str) else "")
-                for other in (other for other in keys if other in stated and other != key):
-                    raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
-            found[table] = stated | keys
+                keys = read(name, folder, unit if isinstance(unit, str) else "", stated)
+                for other in keys.keys() & stated.keys() - {key}:
+                    if keys[other] not in (None, stated[other]):
+                        raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
+            found[table] = {name: value for name, value in (stated | keys).items() if value is not None}
     refuse(wrong)
     return found

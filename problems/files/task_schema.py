@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Tag, model_validator
 
+from grashof.problems.files.curves import POINTS
 from grashof.problems.files.tables import (
     EACH,
     LIST,
@@ -71,7 +72,7 @@ Poses = Annotated[
 ]
 Points = Annotated[
     list[Annotated[list[float], listed("a point [x, y]"), TWO]],
-    listed("a list of points [x, y], or a .csv or .xlsx file", MOST_TARGETS),
+    listed("a list of points [x, y], or a .csv, .xlsx, .dxf or .svg file", MOST_TARGETS),
 ]
 _OF_TARGETS = {
     **{"poses": Poses, "points": Points, "weights": Numbers, "body": Drawn, "timing_deg": Angles},
@@ -86,9 +87,27 @@ class MotionTable(TargetsTable):
 
 
 @keys_of(PathTask, _OF_TARGETS)
-class PathTable(TargetsTable):
+class _PathKeys(TargetsTable):
     plain, fewest = [0.0], 3
     beside = MappingProxyType({"length_ratio_max": {"closed": True}})
+
+
+class PathTable(_PathKeys):
+    """Points that the coupler point P passes through, listed or along a drawn curve.
+
+    Parameters
+    ----------
+    count : int
+        How many points are taken from the curve of a drawing, at equal distances along it.
+    """
+
+    count: int = POINTS
+
+    @classmethod
+    def needed(cls, key: str, given: Any) -> Mapping[str, Any] | None:
+        if key == "count":  # of a curve it is used up before
+            raise ProblemError("count goes with the curve of a .dxf or .svg file as points; remove it")
+        return super().needed(key, given)
 
 
 @keys_of(StrokeTask, {"time_ratio": (float, ...)})

@@ -30,6 +30,7 @@ pytestmark = pytest.mark.skipif(
 @pytest.mark.slow
 def test_the_seeds_are_right_and_use_every_key(script: Script, tmp_path: Path) -> None:
     mutants, fuzz = script("mutants"), script("fuzz")
+    mutants.write_files(tmp_path)
     for seeds, file in (
         (mutants.problem_seeds(), ProblemFile),
         *((mutants.linkage_seeds(), file) for file in FILES.values()),

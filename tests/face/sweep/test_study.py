@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from refusals import refusal, rows
 
@@ -116,6 +117,19 @@ def test_a_combination_is_the_problem_of_the_file_with_this_value(write: Write) 
     assert one.text == by_hand
     assert other.text == by_hand.replace("transmission_min_deg = 15.0", "transmission_min_deg = 25.0")
     assert problem_toml(problem_of(other.text, "", other.name)) == other.text
+
+
+def test_the_number_of_points_on_a_drawn_curve_varies(write: Write) -> None:
+    study = write('problem = "base.toml"\n[vary]\n"path.count" = [4, 1, 8]\n')
+    (study.parent / "base.toml").write_text('kind = "path"\n[path]\npoints = "ring.svg"\n')
+    ring = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="5"/></svg>'
+    (study.parent / "ring.svg").write_text(ring)
+    four, one, eight = combinations(load_study(study))
+    assert one.wrong == ("path.points: count is 1; it must be a whole number from 2 to 10000",)
+    for found, count in ((four, 4), (eight, 8)):
+        task = problem_of(found.text, "written", "written").task  # without the drawing
+        assert len(task) == count
+        assert abs(np.hypot(*task.positions.T) - 5).max() < 1e-9
 
 
 def test_one_that_is_no_problem_does_not_end_the_others(write: Write) -> None:

@@ -19,7 +19,7 @@ from grashof import load
 from grashof.problems import ProblemError
 from grashof.problems.files import on_disk
 from grashof.problems.files.dxf_lines import Budget, dxf_drawing
-from grashof.problems.files.named_files import outlines_of
+from grashof.problems.files.named_files import curve_points_of, outlines_of
 from grashof.problems.files.spreadsheet import rows_of
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{}</svg>'
@@ -71,6 +71,23 @@ def test_svg_that_uses_itself_or_expands(tmp_path: Path, work: Callable[[], int]
 def outlines_of_text(folder: Path, text: str) -> list[list[list[float]]]:
     (folder / "right.svg").write_text(text)
     return outlines_of("right.svg", folder, "")
+
+
+def test_curves_that_expand_or_are_wrong(tmp_path: Path, work: Callable[[], int]) -> None:
+    def points(name: str, content: str | bytes) -> str:
+        (tmp_path / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        return refusal(curve_points_of, name, tmp_path, "mm", 40)
+
+    assert "the drawing has more than 40000 places" in points("a.svg", uses(12))
+    assert "the drawing has 111 paths; give one an id" in points("a.svg", uses(3))
+    lines = dxf(lambda document: [document.modelspace().add_circle((0, 0), 1) for _ in range(3)])
+    assert "more than two ends meet at (1, 0)" in points("a.dxf", lines)
+    spline = dxf(lambda document: document.modelspace().add_spline(dxfattribs={"degree": 3}))
+    for empty in (spline, dxf(lambda _: None)):
+        assert points("a.dxf", empty) == "a.dxf: the drawing has no lines in its model space"
+    many = dxf(lambda document: document.modelspace().add_lwpolyline([(k, k % 2) for k in range(20_002)]))
+    assert points("a.dxf", many) == "a.dxf: the drawing has more than 20000 pieces; that is the most"
+    assert work() < 100_000
 
 
 @pytest.mark.parametrize(

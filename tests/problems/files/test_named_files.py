@@ -177,7 +177,7 @@ def test_bad_svg_files_and_open_lines(tmp_path: Path) -> None:
     said = refused(tmp_path, AREAS.format("mm", "b.svg"), b__svg=SVG.format(size=""))
     assert "b.svg: the line that begins at" in said
     said = refused(tmp_path, AREAS.format("mm", "b.svg#none"))
-    assert said == "task.toml: requirements.keep_out: b.svg#none: the drawing has no group 'none'"
+    assert said == "task.toml: requirements.keep_out: b.svg#none: the drawing has no group or path 'none'"
 
 
 def test_a_body_is_one_area(tmp_path: Path) -> None:

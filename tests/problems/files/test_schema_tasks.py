@@ -19,7 +19,7 @@ kind = "path"\n[path] | path.points is missing
 kind = "path"\n[motion]\n<POSES> | motion does not belong to kind = "path"
 kind = "path"\n[paht]\npoints = [[1, 2]] | paht is unknown; did you mean path?
 kind = "path"\n[path]\npoints = 5 |
-    path.points is 5; it must be a list of points [x, y], or a .csv or .xlsx file
+    path.points is 5; it must be a list of points [x, y], or a .csv, .xlsx, .dxf or .svg file
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4, 5], [6, 7]] |
     path.points[1] is [3.0, 4.0, 5.0], 3 numbers; it must be a point [x, y]
 kind = "path"\n[path]\npoints = [[1, 2], [3, 4]] | path.points has 2 points; it must have three or more
