@@ -16,10 +16,11 @@ from grashof.problems.values.tasks.target_checks import (
     LEAST_ZONE,
     driver_timing,
     finite_angles,
+    some_columns,
     turn_sizes,
     zone_sizes,
 )
-from grashof.problems.values.tasks.task import Task, some_columns
+from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
 _POSE = "a pose [x, y, angle in degrees]"
