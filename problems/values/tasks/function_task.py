@@ -347,11 +347,11 @@ class FunctionTask(Task):
         Examples
         --------
         >>> FunctionTask([0, 1, 2], [0, 1, 3], link="coupler").impossible("slider-crank")
-        'mechanism is slider-crank; with function.link = "coupler" it must be four-bar or inverted-slider-crank'
+        'function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank'
         """
         if self.link == "output" or word in _OF_COUPLERS:
             return Task.impossible(self, word)
-        return f'mechanism is {word}; with function.link = "{self.link}" it must be {listing(_OF_COUPLERS)}'
+        return f'function.link is "{self.link}"; mechanism must be {listing(_OF_COUPLERS)}'
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
         """Some of the pairs, from the first of them on."""
