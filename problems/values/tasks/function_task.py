@@ -236,7 +236,8 @@ class FunctionTask(Task):
         input_deg : array_like, deg, optional
             Driver rotation from the first pair: zero, then growing over at most one turn.
         output_deg : array_like, deg, optional
-            Rotation of link 4, or the coupler, from the first pair, one for each input; positive as the driver turns.
+            Rotation of link 4, or the coupler, from the first pair, one for each input; positive as the
+            driver turns.
         output : array_like, length, optional
             Instead, travel of a slide from the first pair.
         law : str, optional

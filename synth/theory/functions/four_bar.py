@@ -151,11 +151,12 @@ class FourBars(Generators):
 class CouplerFourBars(FourBars):
     """Four-bars whose coupler follows a function, in the shape of the four-bars whose link 4 does.
 
-    r2 e2 + r3 e3 = r1 + r4 e4 is r2 e2 - r4 e4 = r1 - r3 e3: the driver with r3 and r4 exchanged, whose coupler
-    is -e4 and whose link 4 is -e3, from O4 to O4 + A - B. It turns as the coupler does, has the same
-    transmission angle, and sin(theta4 - theta3) has the opposite sign: the other assembly. Full rotation,
-    and r1 - r2 on which the kind of crank depends, are also the same. `lengths`, `outputs` and the assembly
-    are those of the exchanged four-bar; sizes and linkages those of the four-bar itself.
+    r2 e2 + r3 e3 = r1 + r4 e4 is r2 e2 - r4 e4 = r1 - r3 e3: a four-bar with r3 and r4 exchanged, of the same
+    driver, whose coupler has the direction -e4 and whose link 4 that of -e3, from O4 to O4 + A - B. So its
+    link 4 turns as the coupler does, on the other assembly, since sin(theta4 - theta3) changes its sign. The
+    transmission angle is the same, and so are full rotation and r1 - r2, which decides on the kind of crank.
+    Shape, `lengths` and `outputs` are those of the exchanged four-bar; `sizes`, `extent` and `linkage` those
+    of the four-bar itself.
     """
 
     __slots__ = ()
