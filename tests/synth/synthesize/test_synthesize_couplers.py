@@ -17,7 +17,7 @@ DEG = float(np.degrees(1.0))
 
 
 def turns(design: Candidate, turned: FloatArray) -> FloatArray:
-    """Rotation of the coupler from the first place on in the sense of the driver, by circles about A and O4."""
+    """Rotation of the coupler from the first place, in the sense of the driver, by circles about A and O4."""
     one, verdict = design.linkage, design.verdict
     theta2 = float(verdict.theta2[0]) + verdict.direction * turned
     numbers = np.array([*one.o2, *one.o4, *one.lengths[1:], 0.0, 0.0])
