@@ -93,11 +93,12 @@ LIMITS: list[dict[str, Any]] = [
     {"rotatability": "crank-rocker", "r3": (1.4, 3.0), "transmission_min_deg": 20, "exact": False},
     {"rotatability": "double-crank", "r4": (2.0, 4.0), "exact": False, "driver_sense": "cw"},
     {"theta2_start_deg": 40.0, "r3": (1.5, 2.0), "exact": False},
+    {"link_ratios": {"r4/r2": 1, "r3/r1": (1.2, 3.0)}, "exact": False},
 ]
 
 
 @pytest.mark.slow
-@pytest.mark.quick("1")
+@pytest.mark.quick("1", "4")
 @pytest.mark.parametrize("row", range(len(LIMITS)))
 def test_limits_are_those_of_the_linkage_and_the_list_is_exchanged(row: int) -> None:
     """The output with the limits of r3 and r4 exchanged has the same designs, r3 and r4 exchanged."""
@@ -107,17 +108,23 @@ def test_limits_are_those_of_the_linkage_and_the_list_is_exchanged(row: int) -> 
     assert len(result)
     for each in result.candidates:
         assert each.verdict.ok
+        lengths = dict(zip(each.linkage.mechanism.lengths, each.linkage.lengths.tolist(), strict=True))
         for name in ("r3", "r4"):
             low, high = getattr(wanted, name) or (0.0, np.inf)
-            assert low - 1e-6 <= float(getattr(each.linkage, name)) <= high + 1e-6
+            assert low - 1e-6 <= lengths[name] <= high + 1e-6
+        for name, (low, high) in (wanted.link_ratios or {}).items():
+            assert low - 1e-6 <= lengths[name[:2]] / lengths[name[3:]] <= high + 1e-6
         if row in (1, 2):
             assert each.verdict.grashof_class == wanted.rotatability
             swing = np.ptp(turns(each, np.linspace(0, 2 * np.pi, 721)))
             assert (swing > 6) == (row == 2)
-    other = replace(wanted, r3=wanted.r4, r4=wanted.r3)
+    names = str.maketrans("34", "43")
+    ratios = {name.translate(names): limits for name, limits in (wanted.link_ratios or {}).items()}
+    other = replace(wanted, r3=wanted.r4, r4=wanted.r3, link_ratios=ratios or None)
     output = synthesize(Problem(task=replace(task, link="output"), requirements=other), enough=6)
-    lengths = [each.linkage.lengths[[0, 1, 3, 2]] for each in output.candidates]
-    np.testing.assert_allclose(result.best.linkage.lengths, lengths[0], rtol=1e-4)
+    np.testing.assert_allclose(
+        result.best.linkage.lengths, output.best.linkage.lengths[[0, 1, 3, 2]], rtol=1e-4
+    )
 
 
 def test_a_place_of_b_is_judged_on_the_linkage() -> None:
