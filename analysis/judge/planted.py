@@ -142,12 +142,14 @@ def _planted(
 
 
 def planted_function(
-    rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.mechanism.word
-) -> tuple[FunctionTask, Any, float]:
+    rng: np.random.Generator, pairs: int, *, full: bool = False, mechanism: str = FourBar.mechanism.word,
+    link: str = "output",
+) -> tuple[FunctionTask, Any, float]:  # fmt: skip
     """Pairs that a linkage generates, the linkage, and its driver angle (rad) at the first pair.
 
     The driver turns counter-clockwise, fully if `full`, as all six-bars. O2 = (0, 0), and O4 = (1, 0) or the
     slide runs along x; lengths are 0.2 to 5, the range 30 to 300 deg, the least transmission angle 10 deg.
+    The link is the output or the coupler, as of `FunctionTask`.
     """
     while True:
         made = (_LOOSE | SIX_BARS)[mechanism](rng)
@@ -163,11 +165,12 @@ def planted_function(
         if np.isnan(state.last).any() or np.diff(inputs).min() < span / pairs / 10:
             continue
         travels = mechanism == SliderCrank.mechanism.word
-        moved = state.travel if travels else np.unwrap(state.last)
+        moved = state.travel if travels else np.unwrap(state.theta3 if link == "coupler" else state.last)
         outputs = moved[np.searchsorted(dense, inputs)]
         if not travels and np.ptp(outputs) > TURN:
             continue
-        return FunctionTask(inputs, outputs - outputs[0], travels=travels), linkage, float(start)
+        task = FunctionTask(inputs, outputs - outputs[0], travels=travels, link=link)
+        return task, linkage, float(start)
 
 
 def _lengths(rng: np.random.Generator, count: int) -> FloatArray:

@@ -81,7 +81,7 @@ class Verdict:
     outputs : TwoOutputs, optional
         Of two outputs: their swings, time ratios and synchrony.
     output_zero : float, rad
-        Direction theta4 at the wanted output zero.
+        Direction of the link, such as theta4, at the wanted output zero.
     output_sense : int
         -1 where the output is the opposite of the wanted one.
     """

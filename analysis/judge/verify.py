@@ -147,7 +147,7 @@ def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defec
         # Of the output of a function: rad, or as a share of its entire travel.
         ("output error at the pairs", targets.output_error, allowed, task.size, 1.0)
         if task.travels
-        else ("output error in deg at the pairs", targets.output_error, wanted.tolerance, 1.0, deg),
+        else (f"{task.link} error in deg at the pairs", targets.output_error, wanted.tolerance, 1.0, deg),
     )
     return [
         Defect(

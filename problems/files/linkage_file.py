@@ -24,7 +24,7 @@ from grashof.problems.values.linkages.mechanisms import FOUR_BAR, mechanism
 from grashof.problems.values.specs.linkage_spec import LinkageSpec, ListedDesign
 from grashof.problems.values.specs.problem import Problem
 
-_LINKAGES = Catalogue("linkage", "linkages")
+_LINKAGES = Catalogue("linkage", ("linkages",))
 _LAST_RANK = 10**9
 _VERSION = r"[0-9A-Za-z.+!_-]{1,40}"
 

@@ -33,7 +33,7 @@ class Catalogue:
     """Files shipped with the package, each under the name of its stem."""
 
     what: str  # one of them, in messages
-    folder: str = ""  # below the data of the problems; empty for these themselves
+    folders: tuple[str, ...] = ("",)  # below the data of the problems; empty for these themselves
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -65,8 +65,9 @@ class Catalogue:
 
     @property
     def _files(self) -> dict[str, Traversable]:
-        folder = resources.files("grashof.problems") / "data" / self.folder
-        return {Path(file.name).stem: file for file in folder.iterdir() if file.name.endswith(".toml")}
+        data = resources.files("grashof.problems") / "data"
+        files = (file for folder in self.folders for file in (data / folder).iterdir())
+        return {Path(file.name).stem: file for file in files if file.name.endswith(".toml")}
 
 
 def looks_like_path(text: str) -> bool:

@@ -9,7 +9,7 @@ from grashof.problems.files.on_disk import Catalogue, document_of
 from grashof.problems.values.checks import located_in
 from grashof.problems.values.specs.problem import Problem
 
-_PROBLEMS = Catalogue("problem")
+_PROBLEMS = Catalogue("problem", ("", "practice"))
 
 
 def load(problem: str | os.PathLike[str]) -> Problem:

@@ -174,7 +174,7 @@ _PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
     },
 )
 class FunctionTable(SpecTable):
-    beside = MappingProxyType({"sense": _PAIRS, "norm": _PAIRS})
+    beside = MappingProxyType(dict.fromkeys(("sense", "norm", "link"), _PAIRS))
 
 
 # The kinds of tasks in the order of files, each with a table of its name.

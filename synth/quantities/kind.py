@@ -43,7 +43,7 @@ class Kind(ABC):
     proportions: ClassVar[int]  # numbers that are neither place nor size
     formulas: ClassVar[Formulas]
     instant: ClassVar[type[Instant]]
-    generators: ClassVar[type[Generators]]  # those that generate functions
+    generators: ClassVar[Mapping[str, type[Generators]]]  # of functions, by the link that follows them
 
     def __new__(cls) -> Self:
         """The only instance, so that kinds are compared by identity, in every process."""

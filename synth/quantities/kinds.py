@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from grashof.synth.quantities import formulas
 from grashof.synth.quantities.frame import Frame
 from grashof.synth.quantities.kind import Directions, Kind, Shapes
 from grashof.synth.theory.cognates import cognate_points, driven_at_o4, slider_crank_cognate
-from grashof.synth.theory.functions.four_bar import FourBars
+from grashof.synth.theory.functions.four_bar import CouplerFourBars, FourBars
 from grashof.synth.theory.functions.inverted import InvertedSliderCranks
 from grashof.synth.theory.functions.slider_crank import SliderCranks
 
@@ -55,7 +56,7 @@ class FourBarKind(Kind):
     proportions = 3
     formulas = formulas.FORMULAS
     instant = FourBarInstant
-    generators = FourBars
+    generators = MappingProxyType({"output": FourBars, "coupler": CouplerFourBars})
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         if wanted.rotatability is Rotatability.ANY:
@@ -133,7 +134,7 @@ class SliderCrankKind(Kind):
     proportions = 2
     formulas = formulas.SLIDER_CRANK
     instant = SliderCrankInstant
-    generators = SliderCranks
+    generators = MappingProxyType({"output": SliderCranks})
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T
@@ -184,7 +185,8 @@ class InvertedKind(Kind):
     proportions = 2
     formulas = formulas.INVERTED
     instant = InvertedInstant
-    generators = InvertedSliderCranks
+    # The block turns as the rod does.
+    generators = MappingProxyType({"output": InvertedSliderCranks, "coupler": InvertedSliderCranks})
 
     def lengths(self, proportions: FloatArray, longer_driver: BoolArray, wanted: Requirements) -> Shapes:
         a, b, _ = proportions.T

@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems import ProblemError, Requirements
 from grashof.problems.values.checks import counted
+from grashof.problems.values.tasks.motion_task import ANGLES_ALONE
 from grashof.synth.programme.start import Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
@@ -63,7 +64,7 @@ def refuse_few(scaled: ScaledProblem) -> None:
     if task.is_timed and (placed := int(task.has_position.sum())) < 2:
         raise ProblemError(
             f"{task.kind}.{task.target}s has {counted(placed, 'place')}; it must have x and y in two or "
-            "more: coupler angles alone are not searched for"
+            f"more: {ANGLES_ALONE}"
         )
     many = task.only_points or not scaled.exact
     if count < (3 if many else 2):
@@ -80,7 +81,10 @@ def single_position(scaled: ScaledProblem) -> str:
     if np.abs(placed - placed[0]).max() > 0:
         return ""
     x, y = scaled.frame.outward(placed[0])
-    return f"all positions are at ({x:.6g}, {y:.6g}): a single pivot there does the job"
+    pivot = "a single pivot there does the job"
+    if scaled.problem.task.is_timed:
+        pivot = 'a link on a pivot there carries the body, and kind = "function" finds its drive'
+    return f"all positions are at ({x:.6g}, {y:.6g}): {pivot}"
 
 
 def searched_round(scaled: ScaledProblem, enough: int, rng: np.random.Generator) -> Round:

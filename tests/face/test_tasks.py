@@ -34,7 +34,7 @@ from grashof.study.section import Section
 from grashof.study.study import LinkageStudy
 from grashof.synth import Result
 
-EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide")
+EXAMPLES = ("function-five-pairs", "function-log10", "function-sin", "function-dosing-slide", "coupler-angle")
 STROKE = 'kind = "stroke"\n[stroke]\nswing_deg = {}\ntime_ratio = {}\n'
 
 
@@ -139,6 +139,34 @@ def test_a_function_is_solved_and_analysed(grashof: Grashof) -> None:
     assert worst == pytest.approx(table["structural_error_max_deg"][0])
     done = grashof("analyse", f"{folder / 'candidates.json'}#1")
     assert done.exit_code == 0, done.output
+
+
+@pytest.mark.slow
+def test_a_coupler_angle_is_called_that_everywhere(grashof: Grashof) -> None:
+    output, folder, table = solved(grashof, "coupler-angle")
+    assert "structural error from 0.287 deg" in output
+    assert table["structural_error_rms_deg"][0] < 0.146
+    page = (folder / "report.html").read_text()
+    assert "coupler rotation" in page
+    assert "output rotation" not in page
+    section = function_of(folder)
+    assert [plot.title for plot in section.plots] == ["coupler rotation", "structural error"]
+    (zero,) = (fact.label for fact in section.facts if fact.key == "output_zero_deg")
+    assert zero == "theta3 at the wanted output zero"
+    done = grashof("judge", f"{folder / 'candidates.json'}#1", "coupler-angle")
+    assert done.exit_code == 0, done.output
+    assert "greatest structural error: 0.287088 deg" in done.output
+    done = grashof("judge", "engine", "coupler-angle")
+    assert done.exit_code == 2
+    assert "mechanism must be four-bar or inverted-slider-crank" in done.output.replace("\n", " ")
+
+
+def test_a_coupler_angle_is_checked_and_drawn_by_its_name(grashof: Grashof) -> None:
+    done = grashof("check", "coupler-angle")
+    assert "driver over 180 deg; coupler in the sense of the driver" in done.output.replace("\n", " ")
+    assert plot_task(load("coupler-angle")).get_ylabel() == "coupler rotation (deg)"
+    done = grashof("prove", "coupler-angle")
+    assert "Not proven" in done.output
 
 
 @pytest.mark.study

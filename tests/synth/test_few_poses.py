@@ -83,6 +83,16 @@ def test_coupler_angles_alone_are_refused_and_not_called_a_rotation() -> None:
     document = {"kind": "motion", "motion": task, "requirements": {"exact": False, "rotatability": "any"}}
     problem = problem_from(document, "angles")
     with pytest.raises(
-        ProblemError, match="has 1 place; it must have x and y in two or more: coupler angles"
+        ProblemError, match=r'has 1 place; it must have x and y in two or more: .*, link = "coupler"'
     ):
         refuse_unsearchable(problem)
+
+
+def test_timed_poses_at_one_place_are_not_left_to_a_single_pivot() -> None:
+    poses = [[1, 2, 0], [1, 2, 10], [1, 2, 30], [1, 2, 44]]
+    task = MotionTask.from_degrees(poses, angle_length=1, timing_deg=[0, 20, 40, 60])
+    result = synthesize(Problem(task=task))
+    assert "a single pivot" not in result.note
+    assert result.note.endswith(
+        'a link on a pivot there carries the body, and kind = "function" finds its drive'
+    )

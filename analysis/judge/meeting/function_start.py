@@ -37,7 +37,8 @@ def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool
     """Output of a linkage in its positions: rotation in the sense of the driver, or travel of the slide."""
     if task.travels:
         return state.travel
-    moved: FloatArray = way_of(task, direction) * (np.unwrap(state.last) if unwrapped else state.last)
+    turned = state.angles[task.turning_link(state.linkage.mechanism)]
+    moved: FloatArray = way_of(task, direction) * (np.unwrap(turned) if unwrapped else turned)
     return moved
 
 
@@ -60,6 +61,8 @@ def begins(
     (rad), unless the start is given. ProblemError for a linkage whose output does not move as the task's
     does.
     """
+    if refused := task.impossible(linkage.mechanism.word):
+        raise ProblemError(refused)
     if task.travels == linkage.mechanism.loops[-1].pinned:
         way = "slides" if task.travels else "turns"
         raise ProblemError(
@@ -169,8 +172,9 @@ class _Search:
         for _ in range(6):
             state = solve_position(self.linkage, at + direction * self.task.driver_turns)
             loops, _ = close(self.linkage.mechanism, operands_of(self.linkage), state.theta2)
-            first = move(loops, STEADY, dead_below=0.0)[0][-1].orders[0]
-            rate = first.travel if self.task.travels else first.turn4
+            moving, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
+            turned = turns[self.task.turning_link(self.linkage.mechanism)]
+            rate = moving[-1].orders[0].travel if self.task.travels else turned.tangential[0]
             if not np.isfinite(rate).all():  # a dead position
                 break
             output = moved_output(self.task, state, direction, unwrapped=False)

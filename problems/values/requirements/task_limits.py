@@ -113,8 +113,8 @@ def functions_wrong(task: Task, kinds: Sequence[str]) -> list[str]:
     if not task.has_output.any():
         return []
     suited, what, unit = (TRAVELLING, "travel", "") if task.travels else (TURNING, "rotation", "_deg")
-    suited = tuple(word for word in suited if word in task.kinds)
-    others = [word for word in kinds if word in task.kinds and word not in suited]
+    suited = tuple(word for word in suited if not task.impossible(word))
+    others = [word for word in kinds if not task.impossible(word) and word not in suited]
     if not others:
         return []
     key = f"output{'' if task.law is None else '_range'}{unit}"

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
+from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.tasks.function_law import FunctionLaw, chebyshev_spacing, lobatto_with_weights
 from grashof.problems.values.tasks.target_checks import deg_text
 from grashof.problems.values.tasks.task import Task
@@ -76,6 +77,9 @@ def _refuse_turns(angles: FloatArray, key: str) -> None:
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
+LINKS = ("output", "coupler")
+# Kinds whose link 3 is searched for: those of one loop whose link 4 turns, with which it can be exchanged.
+_OF_COUPLERS = tuple(word for word, row in ONE_LOOP.items() if row.loops[0].pinned)
 LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT, MOST_OF_SIX_BARS = 5, 9
 _SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
@@ -83,7 +87,7 @@ _SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
 class FunctionTask(Task):
-    """Function generation: link 4 turns, or slides, with the driver as wanted.
+    """Function generation: link 4 turns, or slides, with the driver as wanted; or the coupler turns.
 
     Angles are relative: both start angles are free, and where pairs need not be met exactly the output's
     zero is, too, so that the first pair may err as the others.
@@ -94,8 +98,8 @@ class FunctionTask(Task):
         Driver rotation from the first pair, zero there, then growing over at most one turn. Designs may
         turn the driver either way.
     outputs : array_like, shape (N,), rad or length
-        Rotation of link 4 from the first pair, positive where it turns as the driver does; or the travel of
-        a slide from there, positive along its direction.
+        Rotation of the link from the first pair, positive where it turns as the driver does; or the travel
+        of a slide from there, positive along its direction.
     sense : {"given", "either"}
         Either: the opposite output will do, too.
     norm : {"rms", "max"}
@@ -107,12 +111,15 @@ class FunctionTask(Task):
         The law of the pairs; without one the wanted output is the cubic spline through them.
     travels : bool
         The output is the travel of a slide.
+    link : {"output", "coupler"}
+        The link whose rotation the outputs are: the last one, or link 3, the coupler. Of slider-cranks and
+        six-bars the coupler is not searched for.
 
     Raises
     ------
     ProblemError
         Fewer than three pairs, angles that are not finite, inputs that do not grow from zero, more than a
-        turn, or outputs that do not move.
+        turn, outputs that do not move, or travels of a coupler.
 
     Examples
     --------
@@ -142,6 +149,7 @@ class FunctionTask(Task):
     law: FunctionLaw | None
     length: float
     travels: bool
+    link: str
 
     def __init__(
         self,
@@ -153,7 +161,13 @@ class FunctionTask(Task):
         law: FunctionLaw | None = None,
         length: float = 1.0,
         travels: bool = False,
+        link: str = "output",
     ) -> None:
+        checks.one_of(link, "function.link", LINKS)
+        if travels and link != "output":
+            raise ProblemError(
+                f'function.link is "{link}", which turns; with a travel of a slide it must be "output"'
+            )
         turned, output = checked_pairs(inputs, outputs, travels=travels)
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
@@ -166,12 +180,14 @@ class FunctionTask(Task):
             law=law,
             length=checks.positive_number(length, "function.length"),
             travels=bool(travels),
+            link=link,
         )
 
     @classmethod
     def of_law(
-        cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms"
-    ) -> FunctionTask:
+        cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms",
+        link: str = "output",
+    ) -> FunctionTask:  # fmt: skip
         """The task of a law over its full range.
 
         Parameters
@@ -179,7 +195,7 @@ class FunctionTask(Task):
         law : FunctionLaw
         pairs : int, optional
             Number of pairs, at Chebyshev spacing; by default as many as fit the full range.
-        sense, norm : str
+        sense, norm, link : str
         """
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
@@ -190,7 +206,7 @@ class FunctionTask(Task):
         turned = law.input_range * places
         output = law.output(turned)
         turned, output = turned - turned[0], output - output[0]
-        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels)
+        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels, link=link)
 
     @classmethod
     def from_degrees(
@@ -209,6 +225,7 @@ class FunctionTask(Task):
         sampled: npt.ArrayLike | None = None,
         sense: str = "given",
         norm: str = "rms",
+        link: str = "output",
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
@@ -219,7 +236,8 @@ class FunctionTask(Task):
         input_deg : array_like, deg, optional
             Driver rotation from the first pair: zero, then growing over at most one turn.
         output_deg : array_like, deg, optional
-            Rotation of link 4 from the first pair, one for each input; positive as the driver turns.
+            Rotation of link 4, or the coupler, from the first pair, one for each input; positive as the
+            driver turns.
         output : array_like, length, optional
             Instead, travel of a slide from the first pair.
         law : {"log10", "ln", "exp", "sin", "cos", "tan", "sqrt", "reciprocal", "power", "sampled"}, optional
@@ -231,7 +249,7 @@ class FunctionTask(Task):
         input_range_deg : float, deg, optional
             Driver rotation over the range of x.
         output_range_deg : float, deg, optional
-            Rotation of link 4 over the range of y.
+            Rotation of link 4, or the coupler, over the range of y.
         output_range : float, length, optional
             Instead, travel of a slide over the range of y.
         pairs : int, optional
@@ -261,9 +279,10 @@ class FunctionTask(Task):
             _refuse_beside(stated | others, "goes with function.law only")
             _refuse_missing(table, OUTPUT, travels)
             turned = np.radians(finite_numbers(input_deg, INPUT))
-            if travels:
-                return cls(turned, finite_numbers(output, OUTPUT), sense=sense, norm=norm, travels=True)
-            return cls(turned, np.radians(finite_numbers(output_deg, OUTPUT_DEG)), sense=sense, norm=norm)
+            key, given = (OUTPUT, output) if travels else (OUTPUT_DEG, output_deg)
+            outputs = finite_numbers(given, key)
+            outputs = outputs if travels else np.radians(outputs)
+            return cls(turned, outputs, sense=sense, norm=norm, travels=travels, link=link)
         _refuse_beside(table, "does not go with function.law; give pairs or a law")
         _refuse_missing(stated, "output_range", travels)
         key = "output_range" if travels else "output_range_deg"
@@ -274,7 +293,7 @@ class FunctionTask(Task):
         else:
             known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
             made = FunctionLaw(law, stated["x"], *over, exponent=exponent, samples=known, travels=travels)
-        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm)
+        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm, link=link)
 
     def __len__(self) -> int:
         return len(self.inputs)
@@ -321,6 +340,18 @@ class FunctionTask(Task):
         if freedoms > _FOUR_BAR:
             return len(self) <= MOST_OF_SIX_BARS
         return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
+
+    def impossible(self, word: str) -> str:
+        """Why a kind of linkage cannot perform it, in one line; empty if it may.
+
+        Examples
+        --------
+        >>> FunctionTask([0, 1, 2], [0, 1, 3], link="coupler").impossible("slider-crank")
+        'function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank'
+        """
+        if self.link == "output" or word in _OF_COUPLERS:
+            return Task.impossible(self, word)
+        return f'function.link is "{self.link}"; mechanism must be {listing(_OF_COUPLERS)}'
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
         """Some of the pairs, from the first of them on."""

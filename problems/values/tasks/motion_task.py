@@ -16,12 +16,15 @@ from grashof.problems.values.tasks.target_checks import (
     LEAST_ZONE,
     driver_timing,
     finite_angles,
+    some_columns,
     turn_sizes,
     zone_sizes,
 )
-from grashof.problems.values.tasks.task import Task, some_columns
+from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
+# Where timed poses have no places.
+ANGLES_ALONE = 'coupler angles over the driver angle alone are kind = "function", link = "coupler"'
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
 _WEIGHTS = (1e-9, 1e9)
@@ -112,7 +115,7 @@ class MotionTask(Task):
             raise ProblemError(
                 f"motion.poses has {checks.counted(len(places), 'pose')}; it must have two or more"
             )
-        _refuse_halves(places, turned)
+        _refuse_halves(places, turned, timed=timing is not None)
         _refuse_far(places)
         size = checks.task_size(places[~np.isnan(places[:, 0])], "motion.poses")
         _refuse_standing_still(places, turned)
@@ -239,14 +242,15 @@ def _refuse_far(positions: FloatArray) -> None:
         )
 
 
-def _refuse_halves(positions: FloatArray, angles: FloatArray) -> None:
+def _refuse_halves(positions: FloatArray, angles: FloatArray, *, timed: bool) -> None:
     missing = np.isnan(positions)
     for index in np.flatnonzero(missing.any(axis=1) != missing.all(axis=1)):
         raise ProblemError(f"motion.poses[{index}] has one of x and y; it must have both or neither")
     for index in np.flatnonzero(missing.all(axis=1) & np.isnan(angles)):
         raise ProblemError(f"motion.poses[{index}] has neither position nor angle")
     if missing.all():
-        raise ProblemError("motion.poses has no position; one pose or more must have x and y")
+        why = f": {ANGLES_ALONE}" if timed else ""
+        raise ProblemError(f"motion.poses has no position; one pose or more must have x and y{why}")
 
 
 def _refuse_standing_still(positions: FloatArray, angles: FloatArray) -> None:

@@ -18,8 +18,14 @@ from grashof.problems.values.checks import (
     true_or_false,
 )
 from grashof.problems.values.errors import ProblemError
-from grashof.problems.values.tasks.target_checks import LEAST_ZONE, driver_timing, finite_angles, zone_sizes
-from grashof.problems.values.tasks.task import Task, some_columns
+from grashof.problems.values.tasks.target_checks import (
+    LEAST_ZONE,
+    driver_timing,
+    finite_angles,
+    some_columns,
+    zone_sizes,
+)
+from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
 RATIOS = 1.0, 1e6  # of the length of a curve to that of the spline

@@ -1,11 +1,13 @@
-"""Checks of how far each target may be missed, and of the driver rotations at which they are met."""
+"""Columns of targets: how far each may be missed, the driver rotations at which they are met, some rows."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from grashof.problems.values.arrays import TURN, FloatArray, frozen_array
+from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
 from grashof.problems.values.checks import GREATEST, counted, finite_list, number_array
 from grashof.problems.values.errors import ProblemError, shown
 
@@ -74,3 +76,9 @@ def finite_angles(values: npt.ArrayLike, kind: str) -> FloatArray:
 def deg_text(angle: float) -> str:
     """An angle (rad) in degrees, as messages show it."""
     return f"{np.degrees(angle):.6g}"
+
+
+def some_columns(task: object, index: IntArray, *names: str) -> dict[str, Any]:
+    """Columns of some of the targets, by name; None where the task has no such column."""
+    columns = {name: getattr(task, name) for name in names}
+    return {name: None if column is None else column[index] for name, column in columns.items()}

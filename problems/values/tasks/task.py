@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar, Self, TypeVar
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -52,6 +52,8 @@ class Task(ReadOnly, ABC):
     body: FloatArray | None = None
     #: How far each angle may be missed, shape (N,), rad.
     angle_within: FloatArray | None = None
+    #: The link whose rotation is the output of a function: "output", the last one, or "coupler", link 3.
+    link: str = "output"
     #: Whether the output is the travel of a slide.
     travels: bool = False
     #: Whether the opposite output is accepted, too: "given" or "either".
@@ -308,6 +310,10 @@ class Task(ReadOnly, ABC):
         last = mechanism.loops[-1]
         return (last.links[1],) if last.pinned else ()
 
+    def turning_link(self, mechanism: Mechanism) -> int:
+        """The number of the link whose rotation is the output of a function."""
+        return mechanism.loops[0].links[0] if self.link == "coupler" else mechanism.loops[-1].links[1]
+
     @property
     def output_unit(self) -> float:
         """The unit of output errors: 1 rad, or a travel."""
@@ -321,7 +327,7 @@ class Task(ReadOnly, ABC):
     @property
     def output_words(self) -> str:
         """The name of the output in a sentence."""
-        return "travel of the slide" if self.travels else "output rotation"
+        return "travel of the slide" if self.travels else f"{self.link} rotation"
 
     @property
     def error_field(self) -> str:
@@ -387,12 +393,6 @@ class Task(ReadOnly, ABC):
             return found
         before = self._before
         return self.law.output(at + before) - self.law.output(np.array(before))
-
-
-def some_columns(task: Task, index: IntArray, *names: str) -> dict[str, Any]:
-    """Columns of some of the targets, by name; None where the task has no such column."""
-    columns = {name: getattr(task, name) for name in names}
-    return {name: None if column is None else column[index] for name, column in columns.items()}
 
 
 def row_of(table: Mapping[type, _Row], task: Task) -> _Row:

@@ -61,11 +61,12 @@ def function_section(study: LinkageStudy) -> Section | None:
         f"error is generated less wanted output, {way}",
         between if task.law is None else f"wanted is the law {task.law.name}",
     )
-    return Section("function", "Function", tuple(_function_facts(task, verdict, unit)), tables, plots, notes)
+    facts = _function_facts(task, verdict, unit, task.turning_link(study.linkage.mechanism))
+    return Section("function", "Function", tuple(facts), tables, plots, notes)
 
 
-def _function_facts(task: Task, verdict: Verdict, unit: str) -> Iterator[Fact]:
-    zero = "travel of the slide" if task.travels else "theta4"
+def _function_facts(task: Task, verdict: Verdict, unit: str, link: int) -> Iterator[Fact]:
+    zero = "travel of the slide" if task.travels else f"theta{link}"
     names = {
         "structural_error_max": "structural error, greatest",
         "structural_error_rms": "structural error, root mean square",

@@ -267,18 +267,18 @@ def _function(task: Task, unit: str) -> str:
     """A function by its pairs or its law, with its ranges and senses."""
     first, last = np.degrees(task.span)
     swept = f"driver over {last - first:g} deg"
-    law = task.law
+    law, moved = task.law, task.link
     if law is None:
         said = f"function through {counted(len(task), 'pair')}, {swept}"
     else:
         power = "" if law.exponent is None else f" {law.exponent:g}"
         over = f"{task.counted_in.shown * law.output_range:g}{unit if task.travels else ' deg'}"
-        ranges = f"x from {law.x[0]:g} to {law.x[1]:g}, {swept}, output over {over}"
+        ranges = f"x from {law.x[0]:g} to {law.x[1]:g}, {swept}, {moved} over {over}"
         chosen = "" if task.fits_range else f", at {counted(len(task), 'pair')} by Chebyshev spacing"
         said = f"function {law.name}{power}, {ranges}{chosen}"
     given = "along the slide" if task.travels else "in the sense of the driver"
     sense = given if task.sense == "given" else "in either sense"
-    return f"{said}; output {sense}"
+    return f"{said}; {moved} {sense}"
 
 
 # The words for each kind of task, given the unit of lengths.

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from time import perf_counter
+from typing import cast
 
 import numpy as np
 
@@ -147,7 +148,8 @@ class Sense:
     def linkages(self, dyads: Dyads, least: float) -> Iterator[Linkage]:
         """The best of some linkages that transmit more than `least`, rad."""
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            made = FourBars.of_pivots(dyads.moving, dyads.ground).begun(self.begun).finite
+            kind = cast("type[FourBars]", self.aims.kind)
+            made = kind.of_pivots(dyads.moving, dyads.ground).begun(self.begun).finite
             transmitted = np.arccos(
                 np.minimum(
                     made.worst_cosine(TURN if self.aims.limits.over_cycle else self.aims.limits.span), 1.0

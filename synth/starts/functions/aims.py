@@ -53,7 +53,7 @@ class FunctionAims:
         if not task.has_output.any():
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
-        kind, unit = scaled.kind.generators, task.output_unit
+        kind, unit = scaled.kind.generators[task.link], task.output_unit
         names, sizes = kind.sizes(wanted, unit)
         rotatability, offset = wanted.rotatability or Rotatability.ANY, wanted.offset
         lengths = [_over(each, unit) for each in sizes]

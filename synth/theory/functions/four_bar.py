@@ -1,4 +1,4 @@
-"""Four-bars as function generators: link 4 turns with the driver."""
+"""Four-bars as function generators: link 4 turns with the driver, or the coupler does."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from grashof.synth.theory.five_poses import five_pose_dyads_of_sets
 from grashof.synth.theory.functions.output import Generators, crank_ratios, solved, weighed
 
 _TRIVIAL = 1e-6  # of the ground: with a pivot nearer to O2 or O4 it is the ground link itself
+_EXCHANGED = [0, 2, 1, 3]  # of a shape, r3 and r4
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,3 +146,38 @@ class FourBars(Generators):
 
     def at_b(self, output: FloatArray) -> ComplexArray:
         return np.asarray(1 + self.lengths[:, 3:] * np.exp(1j * output))
+
+
+class CouplerFourBars(FourBars):
+    """Four-bars whose coupler follows a function, in the shape of the four-bars whose link 4 does.
+
+    r2 e2 + r3 e3 = r1 + r4 e4 is r2 e2 - r4 e4 = r1 - r3 e3: a four-bar with r3 and r4 exchanged, of the same
+    driver, whose coupler has the direction -e4 and whose link 4 that of -e3, from O4 to O4 + A - B. So its
+    link 4 turns as the coupler does, on the other assembly, since sin(theta4 - theta3) changes its sign. The
+    transmission angle is the same, and so are full rotation and r1 - r2, which decides on the kind of crank.
+    Shape, `lengths` and `outputs` are those of the exchanged four-bar; `sizes`, `extent` and `linkage` those
+    of the four-bar itself.
+    """
+
+    __slots__ = ()
+
+    @property
+    def itself(self) -> FourBars:
+        """The four-bars whose coupler it is, with r3 and r4 in their places."""
+        return FourBars(self.shape[:, _EXCHANGED], -self.assembly)
+
+    @classmethod
+    def of_linkage(cls, linkage: Any, unit: float, driver: int, theta2: float) -> Self:
+        made = FourBars.of_linkage(linkage, unit, driver, theta2)
+        return cls(made.shape[:, _EXCHANGED], -made.assembly)
+
+    @staticmethod
+    def sizes(wanted: Requirements, unit: float) -> tuple[tuple[str, ...], list[Limits]]:
+        names, (r1, r2, r3, r4) = FourBars.sizes(wanted, unit)
+        return (*names[:2], *names[:1:-1]), [r1, r2, r4, r3]
+
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> FourBar:
+        return self.itself.linkage(wanted, unit, driver)
+
+    def extent(self, span: float, ground: float) -> FloatArray:
+        return self.itself.extent(span, ground)

@@ -83,6 +83,52 @@ def test_structural_error_is_that_of_dense_continuation(norm: str, mechanism: st
                 )
 
 
+COUPLERS = pytest.mark.parametrize("mechanism", ["four-bar", "inverted-slider-crank"])
+
+
+@COUPLERS
+@pytest.mark.parametrize("direction", [1, -1])
+def test_planted_coupler_functions_are_accepted(mechanism: str, direction: int) -> None:
+    rng = np.random.default_rng(direction + 1)
+    for pairs in (4, 6, 9):
+        task, linkage, _ = planted_function(rng, pairs, mechanism=mechanism, link="coupler")
+        if direction < 0:
+            side = "assembly" if mechanism == "four-bar" else "offset"
+            linkage = linkage.changed(**{side: -getattr(linkage, side)})
+        verdict = verify(linkage, task, Requirements(exact=True, link_length=(1e-4, 1e4)))
+        assert verdict.ok, verdict.defects
+        assert verdict.output_error.max() < 1e-9
+        opposite = FunctionTask(task.inputs, -task.outputs, link="coupler")
+        assert not verify(linkage, opposite, Requirements(exact=True, link_length=(1e-4, 1e4))).ok
+
+
+@COUPLERS
+@pytest.mark.parametrize("norm", ["rms", "max"])
+def test_structural_error_of_a_coupler_is_that_of_dense_continuation(norm: str, mechanism: str) -> None:
+    rng = np.random.default_rng(12)
+    for _ in range(2):
+        task, linkage, _ = planted_function(rng, 6, mechanism=mechanism, link="coupler")
+        task = FunctionTask(task.inputs, task.outputs * 1.04, norm=norm, link="coupler")
+        verdict = verify(linkage, task, Requirements(exact=False, tolerance=1.0))
+        turned = np.unique(np.concatenate([task.inputs, np.linspace(0, task.inputs[-1], 2001)]))
+        theta2 = float(verdict.theta2[0]) + verdict.direction * turned
+        plan = plan_of(linkage)
+        theta3 = np.unwrap(follow(plan, start(plan, theta2[0]), theta2[0], theta2)[:, 0, 5])
+        off = theta3 * verdict.direction - task.output(turned)
+        zero = off[np.searchsorted(turned, task.inputs)].mean()
+        if norm == "max":
+            zero = (off.max() + off.min()) / 2
+        assert abs(np.abs(off - zero).max() - verdict.structural_error_max) < 1e-6
+        rms = np.sqrt(np.trapezoid((off - zero) ** 2, turned) / turned[-1])
+        assert abs(rms - verdict.structural_error_rms) < 1e-5
+
+
+def test_a_coupler_of_other_kinds_is_refused() -> None:
+    task = FunctionTask([0, 0.5, 1.0], [0, 0.1, 0.3], link="coupler")
+    with pytest.raises(ProblemError, match='link is "coupler"; mechanism must be four-bar or inverted'):
+        verify(SliderCrank((0, 0), 1, 3), task, Requirements(exact=False))
+
+
 @pytest.mark.parametrize("norm", ["rms", "max"])
 def test_a_function_begins_where_it_errs_least_among_the_starts_that_transmit(norm: str) -> None:
     rng = np.random.default_rng(4)

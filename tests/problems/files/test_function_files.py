@@ -19,6 +19,8 @@ LAW = {**RANGES, "law": "power", "exponent": 1.5}
     "table",
     [
         {**PAIRS, "sense": "either", "norm": "max"},
+        {**PAIRS, "link": "coupler"},
+        {**LAW, "pairs": 5, "link": "coupler"},
         LAW,
         {**LAW, "pairs": 5},
         {**RANGES, "law": "sampled", "sampled": [0.0, 1.0, 3.0, 4.0, 6.0]},
@@ -40,6 +42,7 @@ def test_functions_come_back(table: dict[str, Any]) -> None:
     assert isinstance(problem.task, FunctionTask)
     assert isinstance(again.task, FunctionTask)
     assert again.task.travels == slides
+    assert again.task.link == problem.task.link == table.get("link", "output")
     assert np.array_equal(again.task.inputs, problem.task.inputs)
     assert np.array_equal(again.task.outputs, problem.task.outputs)
     assert again.requirements == problem.requirements
@@ -91,6 +94,18 @@ mechanism = "four-bar"\n<PAIRS>[requirements]\nstructural_error_max = [0, 1] |
 mechanism = ["four-bar", "slider-crank"]\n<PAIRS> |
     function.output_deg is a rotation, which mechanism slider-crank does not generate;
     it goes with four-bar, inverted-slider-crank, stephenson-3, stephenson-1, watt-1 and watt-2
+<PAIRS>link = "rocker" | function.link is 'rocker'; it must be one of output, coupler
+<PAIRS>link = 3 | function.link is 3; it must be a string
+<SLIDER><INPUT>output = [0, 1, 2, 3]\nlink = "coupler" |
+    function.link is "coupler", which turns; with a travel of a slide it must be "output"
+<SLIDER><LAW>output_range = 80\nlink = "coupler" |
+    function.link is "coupler", which turns; with a travel of a slide it must be "output"
+<SLIDER><PAIRS>link = "coupler" |
+    function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank
+mechanism = "six-bar"\n<PAIRS>link = "coupler" |
+    function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank
+mechanism = ["four-bar", "slider-crank", "watt-1"]\n<PAIRS>link = "coupler" |
+    function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank
 <PAIRS>[driver]\ncylinder = {} | driver.cylinder does not go with function, whose driver is link 2
 """
 

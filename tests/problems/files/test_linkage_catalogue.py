@@ -28,7 +28,7 @@ def test_catalogue_is_what_is_shipped() -> None:
     shipped = {path.stem for path in (ROOT / "problems" / "data" / "linkages").glob("*.toml")}
     assert set(linkage_catalogue()) == shipped
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
-    assert "data/linkages/*.toml" in settings["package-data"]["*"]
+    assert {"data/linkages/*.toml", "data/practice/*.toml"} <= set(settings["package-data"]["*"])
 
 
 def test_pumpjack_is_that_of_the_report() -> None:

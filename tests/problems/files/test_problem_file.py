@@ -38,10 +38,9 @@ def test_every_problem_of_the_catalogue_loads_with_title_and_source(name: str) -
 
 def test_the_catalogue_is_sorted_and_is_the_folder() -> None:
     data = resources.files("grashof.problems") / "data"
-    assert list(catalogue()) == sorted(
-        file.name[:-5] for file in data.iterdir() if file.name.endswith(".toml")
-    )
-    assert "luggage" in catalogue()
+    files = [*data.iterdir(), *(data / "practice").iterdir()]
+    assert list(catalogue()) == sorted(file.name[:-5] for file in files if file.name.endswith(".toml"))
+    assert {"luggage", "coupler-angle"} <= set(catalogue())
 
 
 def test_the_luggage_problem_is_that_of_the_report() -> None:

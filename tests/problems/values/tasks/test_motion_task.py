@@ -97,6 +97,10 @@ BAD = [
     *(({"poses": poses, "angle_length": 1.0}, said) for poses, said in BAD_POSES),
     *(({"positions": places, "angles": angles}, said) for places, angles, said in BAD_ARRAYS),
     *(({"poses": MIXED, "weights": weights}, said) for weights, said in BAD_WEIGHTS),
+    (
+        {"poses": [{"angle": 3}, {"angle": 4}], "timing_deg": [0, 20]},
+        'motion.poses has no position; .* x and y: coupler angles .* kind = "function", link = "coupler"',
+    ),
     ({"poses": [[1, 1, 0], [1, 1, 40]]}, "motion.angle_length is missing: poses at a single place .*"),
     ({"poses": [{"x": 1, "y": 1}, {"angle": 3}]}, "motion.angle_length is missing.*"),
 ]

@@ -1,5 +1,6 @@
 """Three to five pairs of a function: no generator exceeds a bound, forms hold all couplers, none is lost."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -236,6 +237,36 @@ def test_a_planted_function_is_listed_and_all_are_proven() -> None:
     theta2 = np.radians([20.0, 45.0, 70.0, 95.0, 120.0])
     theta4 = np.unwrap(solve_position(linkage, theta2, 1).theta4)
     found = synthesize(function(np.degrees(theta2), np.degrees(theta4), link_ratio_max=50.0))
+    assert found.proof is not None
+    assert (found.proof.claim, found.proof.complete) == (Claim.BEST, True)
+    ratios = [one.linkage.lengths / one.linkage.lengths[0] for one in found.candidates]
+    assert min(float(np.abs(each - [1, 0.4, 1.1, 0.8]).max()) for each in ratios) < 1e-6
+
+
+@pytest.mark.quick("4")
+@pytest.mark.parametrize("count", [3, 4])
+def test_bounds_of_couplers_are_those_of_outputs_by_the_exchange(count: int) -> None:
+    """Limits of r3 and r4 change places with them; what reaches the bound is judged as a coupler."""
+    for seed in range(3):
+        output = random_function(seed, count, r3=(0.5, 2.0), r4=(0.8, 4.0))
+        other = replace(output.requirements, r3=(0.8, 4.0), r4=(0.5, 2.0))
+        coupler = Problem(task=replace(output.task, link="coupler"), requirements=other)
+        both = [bounds_of_pairs(ScaledProblem.of(each), Proving.patient(0.05)) for each in (output, coupler)]
+        first, second = both
+        assert first is not None
+        assert second is not None
+        assert (first.closed, first.upper, first.lower) == (second.closed, second.upper, second.lower)
+        if second.found is not None:
+            assert verify(second.found.linkage, coupler.task, coupler.requirements, problem=coupler).ok
+            assert not verify(second.found.linkage, output.task, output.requirements, problem=output).ok
+
+
+def test_a_planted_coupler_is_listed_and_all_are_proven() -> None:
+    linkage = FourBar(o2=(0, 0), o4=(1, 0), r2=0.4, r3=1.1, r4=0.8, assembly=1)
+    theta2 = np.radians([20.0, 45.0, 70.0, 95.0, 120.0])
+    theta3 = np.unwrap(solve_position(linkage, theta2, 1).theta3)
+    task = FunctionTask(theta2 - theta2[0], theta3 - theta3[0], link="coupler")
+    found = synthesize(Problem(task=task, requirements=Requirements(link_ratio_max=50.0)))
     assert found.proof is not None
     assert (found.proof.claim, found.proof.complete) == (Claim.BEST, True)
     ratios = [one.linkage.lengths / one.linkage.lengths[0] for one in found.candidates]

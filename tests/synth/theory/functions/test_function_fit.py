@@ -13,7 +13,7 @@ EVERY = pytest.mark.parametrize("mechanism", list(KINDS))
 
 def solved(rng: np.random.Generator, pairs: int, mechanism: str, *, full: bool) -> bool:
     task, _, _ = planted_function(rng, pairs, full=full, mechanism=mechanism)
-    kind = KINDS[mechanism].generators
+    kind = KINDS[mechanism].generators["output"]
     wanted = DesiredOutput(task.inputs, task.outputs / task.output_unit, np.ones(pairs))
     count = kind.joined([]).lengths.shape[1]
     caps = np.full((count, count), np.log(20.0 if mechanism == "four-bar" else 1e3))
@@ -59,7 +59,7 @@ def test_slopes_of_limits_are_those_of_differences(limits: ShapeLimits) -> None:
 def test_a_held_start_stays(mechanism: str) -> None:
     rng = np.random.default_rng(3)
     task, _, first = planted_function(rng, 8, mechanism=mechanism)
-    kind = KINDS[mechanism].generators
+    kind = KINDS[mechanism].generators["output"]
     wanted = DesiredOutput(task.inputs, task.outputs / task.output_unit, np.ones(8))
     made, square = fitted(wanted, function_starts(kind, wanted, rng, first), held=True)
     assert np.abs(np.exp(1j * (made.first - first)) - 1).max() < 1e-9

@@ -20,7 +20,7 @@ SAMPLES = {"four-bar": 300, "slider-crank": 1500, "inverted-slider-crank": 800} 
 
 def generator_of(linkage: Linkage, start: float, unit: float) -> Generators:
     """As the search sees a linkage, its driver at `start`, rad, when it begins."""
-    return KINDS[linkage.mechanism.word].generators.of_linkage(linkage, unit, 1, start)
+    return KINDS[linkage.mechanism.word].generators["output"].of_linkage(linkage, unit, 1, start)
 
 
 def planted(
@@ -39,7 +39,7 @@ def nearest(made: Generators, there: Generators) -> float:
 
 def several(mechanism: str, seed: int, span: float) -> Generators:
     rng = np.random.default_rng(seed)
-    made = KINDS[mechanism].generators.anything(rng, SAMPLES[mechanism], 0.0, span)
+    made = KINDS[mechanism].generators["output"].anything(rng, SAMPLES[mechanism], 0.0, span)
     shape = made.shape.copy()
     shape[:, -1] = rng.uniform(-np.pi, np.pi, len(made))
     return made.changed(shape)
@@ -67,7 +67,7 @@ def test_output_is_that_of_the_judge(mechanism: str) -> None:
 
 @EVERY
 def test_random_ones_turn_fully_or_close_over_their_rotation(mechanism: str) -> None:
-    rng, kind = np.random.default_rng(0), KINDS[mechanism].generators
+    rng, kind = np.random.default_rng(0), KINDS[mechanism].generators["output"]
     assert (kind.cranks(rng, 100).worst_cosine(2 * np.pi) < 1).all()
     made = kind.anything(rng, 1000, 0.5, 1.0)
     assert (made.worst_cosine(1.0) < 1).all()
@@ -96,7 +96,7 @@ def test_slopes_of_limits_are_those_of_differences(mechanism: str, full: bool) -
 
 
 def test_slopes_of_the_stroke_are_those_of_differences() -> None:
-    made = KINDS["slider-crank"].generators.cranks(np.random.default_rng(0), 100)
+    made = KINDS["slider-crank"].generators["output"].cranks(np.random.default_rng(0), 100)
     made = made[made.worst_cosine(2 * np.pi) < 0.95]
     limits = ShapeLimits(1.0, caps=np.full((3, 3), 3.0), margin=0.0, stroke=(0.5, 1.5))
     rows = limits.of(made)
@@ -126,7 +126,7 @@ def test_worst_cosine_is_that_of_dense_samples(mechanism: str) -> None:
 @pytest.mark.quick("inverted-slider-crank")
 @EVERY
 def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
-    rng, kind = np.random.default_rng(4), KINDS[mechanism].generators
+    rng, kind = np.random.default_rng(4), KINDS[mechanism].generators["output"]
     tasks = [planted(rng, kind.EXACT, mechanism) for _ in range(1000)]
     made, which = kind.through(*(np.array(each) for each in list(zip(*tasks, strict=True))[1:]))
     found = [nearest(made[which == k], tasks[k][0]) for k in range(1000)]
@@ -136,7 +136,7 @@ def test_all_planted_linkages_of_a_few_pairs_are_found(mechanism: str) -> None:
 
 @EVERY
 def test_given_starts_lead_to_the_linkage_that_has_them(mechanism: str) -> None:
-    rng, kind = np.random.default_rng(6), KINDS[mechanism].generators
+    rng, kind = np.random.default_rng(6), KINDS[mechanism].generators["output"]
     for count in (kind.LINEAR + 1, 9):
         there, turned, output = planted(rng, count, mechanism)
         place = there.outputs(turned[:1])[:, 0]
