@@ -9,6 +9,7 @@ import numpy as np
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
+from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -48,9 +49,9 @@ def _figures(
         past = past_line(linkage, verdict, k)
         yield "driver and coupler past their line in deg", past, (low, high), "angle"
     if limits.transmission_min_deg is not None:
-        sine = min(abs(float(np.sin(state.theta4[k] - state.theta3[k]))), 1.0)
+        mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))
-        yield "the transmission angle in deg", float(np.arcsin(sine)), (least, np.inf), "angle"
+        yield "the transmission angle in deg", min(mu, float(np.pi) - mu), (least, np.inf), "angle"
     if limits.mechanical_advantage_min is not None:
         moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
         with np.errstate(divide="ignore"):

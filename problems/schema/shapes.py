@@ -21,7 +21,7 @@ from grashof.problems.files.tables import Table, numbers, tables_of
 from grashof.problems.files.task_schema import TASKS, MotionTable
 from grashof.problems.values.linkages.cylinder import CARRIERS
 from grashof.problems.values.linkages.mechanism import WORDS
-from grashof.problems.values.linkages.mechanisms import FOUR_BAR, SIX_BAR
+from grashof.problems.values.linkages.mechanisms import SIX_BAR
 from grashof.problems.values.requirements.link_ratios import PAIR
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
@@ -92,7 +92,8 @@ def conditions(table: type[Table]) -> Shape:
     if table is ProblemFile:
         return {"allOf": [_only(kind) for kind in TASKS]}
     words = kinds_of(table)
-    given = {} if not words or FOUR_BAR in words else {"required": ["mechanism"]}
+    usual = words and table.model_fields["mechanism"].default in words
+    given = {} if usual or not words else {"required": ["mechanism"]}
     ground = [{"required": ["o4"]}, {"required": ["r1"]}] if words and "o4" in table.model_fields else []
     return {"allOf": [each for each in (given, {"oneOf": ground} if ground else {}) if each]} if words else {}
 

@@ -78,8 +78,8 @@ class SecondLoop:
     ]  # directions of P's link at the targets, in the order of visit, each near the last
 
     @classmethod
-    def of(cls, linkage: SixBar, scale: Scale, turned: FloatArray) -> SecondLoop:
-        """That of a linkage, in a frame."""
+    def of(cls, linkage: Any, scale: Scale, turned: FloatArray) -> SecondLoop:
+        """That of a six-bar, in a frame."""
         row, size = linkage.mechanism, scale.scale
         c, d, arm = (complex(*getattr(linkage, name)) for name in ("c", "d", "coupler_point"))
         return cls(

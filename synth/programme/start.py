@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position
-from grashof.problems import Linkage, Objective, SixBar
+from grashof.problems import Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.loop.dyad import PlacedLoop, Sizes, as_vector
 from grashof.synth.programme.second_loop import SecondLoop
@@ -86,10 +86,8 @@ class Start:
     def of_linkage(cls, scaled: ScaledProblem, linkage: Linkage, verdict: Verdict) -> Start:
         """A start at a linkage where the judge found it nearest to the targets, in order."""
         state = solve_position(linkage, verdict.theta2, verdict.assembly)
-        second = None
         visit = np.argsort(verdict.direction * verdict.theta2, kind="stable")
-        if isinstance(linkage, SixBar):
-            second = SecondLoop.of(linkage, scaled.frame, state.carrying[visit])
+        two_loops = len(linkage.mechanism.loops) > 1
         o2, a, b, p = (
             complex(scaled.frame.inward(x)) for x in (linkage.o2, state.a[0], state.b[0], state.p[0])
         )
@@ -103,7 +101,7 @@ class Start:
             terms=Terms(scaled.objective),
             body_angle=float(linkage.body_angle),
             kind=scaled.kind,
-            second=second,
+            second=SecondLoop.of(linkage, scaled.frame, state.carrying[visit]) if two_loops else None,
         )  # fmt: skip
 
     def at(
