@@ -160,6 +160,11 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         within(lengths[:, number : number + 1], limits)
     ratio = lengths.max(axis=1) / lengths.min(axis=1)
     rows.append(np.log(ratio / wanted.link_ratio_max)[:, None] + INSIDE)
+    for name, limits in (wanted.link_ratios or {}).items():
+        one, other = (getattr(at, link) for link in name.split("/"))
+        for side, limit in zip((-1, 1), limits, strict=True):
+            rows.append(side * np.log(one / other / limit) + INSIDE * (limits[0] < limits[1]))
+    rows += at_targets(aim, at)
     for arm in (at.coupler, at.coupler - at.r3):
         within(np.abs(arm), wanted.coupler_arms or (0.0, np.inf))
     for name in ("o2", "o4", "a", "b"):
@@ -171,6 +176,28 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
         rows += [-step, step.sum(axis=1, keepdims=True) - TURN + INSIDE]
     return np.concatenate(rows, axis=1)
+
+
+def at_targets(aim: Aim, at: Places) -> list[FloatArray]:
+    """Limits at single targets: places of A and B, and driver and coupler past their line."""
+    rows = list[FloatArray]()
+    for limits in aim.wanted.at:
+        for k in (number - 1 for number in limits.targets):
+            for name in ("a", "b"):
+                box, joint = getattr(limits, name), getattr(at, name)[:, k : k + 1]
+                for axis, sides in () if box is None else (("real", box.x), ("imag", box.y)):
+                    for side, limit in zip((-1, 1), sides, strict=True):
+                        if np.isfinite(limit):
+                            middle = getattr(aim.middle, axis)
+                            rows.append(side * (getattr(joint, axis) - (limit - middle) / aim.size) + INSIDE)
+            if limits.past_deg is not None:
+                bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
+                from_line = np.angle(bend[:, k : k + 1] ** 2) / 2  # of the line, whichever way it points
+                before = np.angle(bend[:, [0 if k else -1]] / bend[:, k : k + 1])
+                past = -np.sign(before) * from_line
+                for side, limit in zip((-1, 1), np.radians(limits.past_deg), strict=True):
+                    rows.append(side * (past - limit) + INSIDE)
+    return rows
 
 
 def turning(aim: Aim, at: Places) -> list[FloatArray]:
@@ -210,7 +237,7 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     The judge takes the driver angles that come nearest. Where the transmission angle at the ends or the
     places of A and B are limited, a design may not gain by others.
     """
-    boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box())
+    boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box()) or bool(aim.wanted.at)
     if aim.over_turn and not boxed:
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2

@@ -9,16 +9,20 @@ those of the processor.
 import json
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import process_time
 from typing import Any
 
 import numpy as np
+from independent_search import search
 from measuring import Case, spread, timed
 
 from grashof import synthesize
-from grashof.problems import Problem
+from grashof.analysis import Verdict, solve_position
+from grashof.analysis.judge.planted import planted_path
+from grashof.problems import Box, Linkage, PathTask, Problem, Requirements, Rotatability, TargetLimits
 from grashof.problems.files.problem_schema import problem_from
 
 DATA = Path(__file__).parents[2] / "tests" / "data"
@@ -90,7 +94,48 @@ def efforts(count: int, seed: int) -> Iterator[str]:
     yield summary(ratios)
 
 
+def _ratio(linkage: Linkage, _: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+    """The ratio of two links, away from that of the best design without limits."""
+    return {"link_ratios": {"r4/r2": float(linkage.r4 / linkage.r2 * rng.uniform(1.1, 1.5))}}
+
+
+def _toggle(_: Linkage, verdict: Verdict, _rng: np.random.Generator) -> dict[str, Any]:
+    """A toggle at the last target."""
+    return {"at": (TargetLimits(targets=[len(verdict.theta2)], past_deg=(2, 5)),)}
+
+
+def _place(linkage: Linkage, verdict: Verdict, rng: np.random.Generator) -> dict[str, Any]:
+    """Places of A at the first target that begin beyond the best one."""
+    least = float(solve_position(linkage, verdict.theta2[0]).a[0]) + rng.uniform(0.02, 0.1)
+    return {"at": (TargetLimits(targets=[1], a=Box(x=(least, np.inf))),)}
+
+
+LIMITS = {"link_ratios": _ratio, "toggle": _toggle, "place at a target": _place}
+
+
+def beside_independent(name: str, count: int, seed: int) -> Iterator[str]:
+    """Least errors under a limit that binds, beside those of the independent search, of random paths."""
+    ratios = list[float]()
+    for number in range(seed, seed + count):
+        rng = np.random.default_rng([11, number])
+        task, _ = planted_path(rng, points=9)
+        noisy = PathTask(task.positions + rng.normal(0, 0.02 * task.size, task.positions.shape))
+        wanted = Requirements(exact=False, rotatability=Rotatability.ANY, transmission_min_deg=10)
+        free = synthesize(Problem(task=noisy, requirements=wanted), seed=0).best
+        limits = LIMITS[name](free.linkage, free.verdict, rng)
+        problem = Problem(task=noisy, requirements=replace(wanted, **limits))
+        other, seconds = timed(partial(search, problem, seed=number), process_time)
+        error, took = searched(problem, seed=0)
+        ratios.append(ratio_to(None if other is None else other.error, error, problem))
+        yield f"{name} {number}: ours/independent {ratios[-1]:.4f}; {took:.1f} s and {seconds:.1f} s"
+    yield summary(ratios)
+
+
 CASES = [
+    *(
+        Case(f"beside an independent search: {name}", 10, partial(beside_independent, name))
+        for name in LIMITS
+    ),
     Case("known tasks", 12, partial(against_known, KNOWN, 5)),
     Case("random tasks", 60, partial(against_known, RANDOM, 1)),
     Case("efforts", 72, efforts),
