@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from grashof.analysis.four_bar.instant_centres import instant_centres
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -39,11 +40,16 @@ def _figures(
     linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int
 ) -> Iterator[tuple[str, float, Limits, str]]:
     """What is limited at a target, its value, its limits and their unit."""
-    for name in ("a", "b"):
+    for name in ("a", "b", "instant_centre"):
         box = getattr(limits, name)
-        if box is not None:
-            for axis, side, value in zip("xy", (box.x, box.y), getattr(state, name)[k].tolist(), strict=True):
-                yield f"{name}.{axis}", value, side, "length"
+        if box is None:
+            continue
+        if name == "instant_centre":
+            place = instant_centres(linkage, verdict.theta2[k], verdict.assembly[k]).i13
+        else:
+            place = getattr(state, name)[k]
+        for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
+            yield f"{name}.{axis}", value, side, "length"
     if limits.past_deg is not None:
         low, high = np.radians(limits.past_deg).tolist()
         past = past_line(linkage, verdict, k)

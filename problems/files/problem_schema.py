@@ -110,7 +110,7 @@ _BY_KIND = {
 }
 
 
-_AT_TARGETS = {"targets": list[int], "a": (Place | None, None), "b": (Place | None, None)}
+_AT_TARGETS = {"targets": list[int], **dict.fromkeys(("a", "b", "instant_centre"), (Place | None, None))}
 
 
 @tables.keys_of(TargetLimits, {**_AT_TARGETS, "past_deg": (Pair | None, None)})

@@ -5,8 +5,8 @@ closed by the elbow formula, every limit is a residual once it is overstepped, a
 improves many random starts at once, with differences for derivatives. Sequential quadratic programming
 (SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
-It is plain and serves as a reference for the package's own search. It covers free and timed points met in
-order, and poses with position and angle, but neither areas kept out nor user constraints.
+It is a plain reference. It covers free and timed points met in order, and poses with position and angle, but
+neither areas kept out nor user constraints.
 """
 
 from dataclasses import dataclass, replace
@@ -40,12 +40,9 @@ class Aim:
     timing: FloatArray
     closed: bool
     wanted: Requirements
-    turned: bool
-    "Whether the targets have angles."
-    timed: bool
-    "Whether the driver rotations are prescribed."
-    over_turn: bool
-    "Whether the transmission angle counts over the full turn."
+    turned: bool  # the targets have angles
+    timed: bool  # the driver rotations are prescribed
+    over_turn: bool  # the transmission angle counts over the full turn
 
     @classmethod
     def of(cls, problem: Problem) -> "Aim":
@@ -111,13 +108,10 @@ class Places:
 
 
 def elbow(line: ComplexArray, near: Any, far: Any, side: Any) -> ComplexArray:  # closure: RRR
-    """From the start of a line to the point `near` from it and `far` from its end, left where `side` is 1.
-
-    Where there is none, in line.
-    """
+    """From the start of a line to the point `near` from it and `far` from its end, left where `side` is 1."""
     length = np.abs(line) + HAIR
     along = (length**2 + near**2 - far**2) / (2 * length)
-    across = np.sqrt(np.maximum(near**2 - along**2, 1e-16))
+    across = np.sqrt(np.maximum(near**2 - along**2, 1e-16))  # in line where there is none
     found: ComplexArray = line / length * (along + 1j * side * across)
     return found
 
@@ -164,7 +158,13 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         one, other = (getattr(at, link) for link in name.split("/"))
         for side, limit in zip((-1, 1), limits, strict=True):
             rows.append(side * np.log(one / other / limit) + INSIDE * (limits[0] < limits[1]))
-    rows += at_targets(aim, at)
+    for single, k in ((each, number - 1) for each in wanted.at for number in each.targets):
+        for box, joint in ((single.a, at.a[:, [k]]), (single.b, at.b[:, [k]])):
+            within(joint.real, (box or Box()).x, aim.middle.real)
+            within(joint.imag, (box or Box()).y, aim.middle.imag)
+        if single.past_deg is not None:
+            low, high = (aim.size * np.radians(single.past_deg)).tolist()
+            within(past_line(at, k), (low, high))
     for arm in (at.coupler, at.coupler - at.r3):
         within(np.abs(arm), wanted.coupler_arms or (0.0, np.inf))
     for name in ("o2", "o4", "a", "b"):
@@ -178,26 +178,11 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     return np.concatenate(rows, axis=1)
 
 
-def at_targets(aim: Aim, at: Places) -> list[FloatArray]:
-    """Limits at single targets: places of A and B, and driver and coupler past their line."""
-    rows = list[FloatArray]()
-    for limits in aim.wanted.at:
-        for k in (number - 1 for number in limits.targets):
-            for name in ("a", "b"):
-                box, joint = getattr(limits, name), getattr(at, name)[:, k : k + 1]
-                for axis, sides in () if box is None else (("real", box.x), ("imag", box.y)):
-                    for side, limit in zip((-1, 1), sides, strict=True):
-                        if np.isfinite(limit):
-                            middle = getattr(aim.middle, axis)
-                            rows.append(side * (getattr(joint, axis) - (limit - middle) / aim.size) + INSIDE)
-            if limits.past_deg is not None:
-                bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
-                from_line = np.angle(bend[:, k : k + 1] ** 2) / 2  # of the line, whichever way it points
-                before = np.angle(bend[:, [0 if k else -1]] / bend[:, k : k + 1])
-                past = -np.sign(before) * from_line
-                for side, limit in zip((-1, 1), np.radians(limits.past_deg), strict=True):
-                    rows.append(side * (past - limit) + INSIDE)
-    return rows
+def past_line(at: Places, k: int) -> FloatArray:
+    """How far driver and coupler are past their line at target k, rad, (B, 1)."""
+    bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
+    before = np.angle(bend[:, [0 if k else -1]] / bend[:, [k]])
+    return np.asarray(-np.sign(before) * np.angle(bend[:, [k]] ** 2) / 2)  # whichever way the line points
 
 
 def turning(aim: Aim, at: Places) -> list[FloatArray]:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design
-from grashof.problems import Problem
+from grashof.problems import Box, Problem
 from grashof.problems.values.requirements.target_limits import TargetLimits
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
@@ -31,8 +31,10 @@ class AtTarget:
 
     def __call__(self, design: Design) -> Any:
         """Excess over the limits: lengths, or numbers of no unit."""
-        if self.name in ("a", "b"):
-            place, box = getattr(design, self.name)[self.k], getattr(self.limits, self.name)
+        box = getattr(self.limits, self.name)
+        if isinstance(box, Box):
+            centre = self.name == "instant_centre"
+            place = _centre(design, self.k) if centre else getattr(design, self.name)[self.k]
             sides = zip((place[0], place[1]), (box.x, box.y), strict=True)
             return [over for value, side in sides for over in _beyond(value, *side)]
         return [_EXCESS[self.name](self, design)]
@@ -88,6 +90,13 @@ def _links(design: Design, k: int) -> tuple[Any, Any, Any]:
     a, b = design.a[k], design.b[k]
     o4 = b if design.o4 is None else design.o4
     return _from(design.o2, a), _from(a, b), _from(o4, b)
+
+
+def _centre(design: Design, k: int) -> tuple[Any, Any]:
+    """The intersection of O2A and O4B at a target."""
+    driver, _, output = _links(design, k)
+    share = _cross(_from(design.o2, design.o4), output) / _cross(driver, output)
+    return design.o2[0] + share * driver[0], design.o2[1] + share * driver[1]
 
 
 def _of_coupler(design: Design, k: int) -> tuple[Any, Any]:

@@ -28,6 +28,8 @@ class TargetLimits:
         Numbers of the targets, counted from 1.
     a, b : Box, optional
         Where this moving pivot may be there.
+    instant_centre : Box, optional
+        Where the centre of rotation of the coupler may lie there, the intersection of O2A and O4B.
     past_deg : tuple of float, deg, optional
         Driver and coupler are so far past the line through O2, A and B there, (lo, hi), from -45 to 45: the
         toggle of a clamp or brace. Positive where the motion from the first target, or back from the last one
@@ -51,6 +53,7 @@ class TargetLimits:
     targets: Sequence[int]
     a: Box | None = None
     b: Box | None = None
+    instant_centre: Box | None = None
     past_deg: Limits | None = None
     transmission_min_deg: float | None = None
     mechanical_advantage_min: float | None = None
@@ -86,7 +89,8 @@ class TargetLimits:
 
 def _kinds_with(name: str) -> list[str]:
     """Kinds of one loop on which a limit has a meaning."""
-    return [word for word, kind in ONE_LOOP.items() if _POINTS[name] <= set(kind.points)]
+    needed = _NEEDED.get(name, {"r3", "r4"})
+    return [word for word, kind in ONE_LOOP.items() if needed <= {*kind.points, *kind.lengths}]
 
 
 def _targets(values: Sequence[int], where: str) -> tuple[int, ...]:
@@ -122,16 +126,11 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "targets": _targets,
     "a": _box,
     "b": _box,
+    "instant_centre": _box,
     "past_deg": _past,
     "transmission_min_deg": _number(0.0, 90.0),
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name != "targets")
-# Points without which a limit has no meaning.
-_POINTS = {
-    "a": {"a"},
-    "b": {"b"},
-    "past_deg": {"b"},
-    "transmission_min_deg": {"b", "o4"},
-    "mechanical_advantage_min": {"b", "o4"},
-}
+# Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
+_NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}}

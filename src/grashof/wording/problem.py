@@ -118,7 +118,7 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
     """Limits at single targets."""
     where = f"at {'targets' if len(limits.targets) > 1 else 'target'} {listing(limits.targets, 'and')}"
     said = []
-    for name, box in (("A", limits.a), ("B", limits.b)):
+    for name, box in (("A", limits.a), ("B", limits.b), ("instant centre", limits.instant_centre)):
         sides = () if box is None else ((f"{name}.x", *box.x), (f"{name}.y", *box.y))
         said += [f"{axis} {low:g} to {high:g}{unit}" for axis, low, high in sides if high - low < np.inf]
     if limits.past_deg is not None:

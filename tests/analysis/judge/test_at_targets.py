@@ -73,9 +73,17 @@ def figures(theta2: float) -> dict[str, float]:
     """The values that are limited, by their names."""
     a, b = joints(theta2)
     step = 1e-5
+    moved = [joints(theta2 + way) for way in (-step, step)]
+    turned = np.angle((moved[1][1] - moved[1][0]) / (moved[0][1] - moved[0][0]))
+    centre = a + 1j * (moved[1][0] - moved[0][0]) / turned  # where the coupler has no velocity
     rate = np.angle(np.exp(1j * (output(theta2 + step) - output(theta2 - step)))) / (2 * step)
     mu = abs(np.angle((b - a) / (b - (4 + 1j))))
-    found = {"a": a.real, "b": b.imag, "transmission_min_deg": np.degrees(min(mu, np.pi - mu))}
+    found = {
+        "instant_centre": centre.real,
+        "a": a.real,
+        "b": b.imag,
+        "transmission_min_deg": np.degrees(min(mu, np.pi - mu)),
+    }
     return found | {
         "mechanical_advantage_min": 1 / abs(rate),
         "past_deg": np.degrees(abs(np.angle((b - a) / a))),
@@ -88,13 +96,16 @@ def limits(name: str, value: float, target: int, *, kept: bool) -> TargetLimits:
     given: Any = {
         "a": Box(x=(-np.inf, value + by)),
         "b": Box(y=(value - by, np.inf)),
+        "instant_centre": Box(x=(value - by, np.inf)),
         "past_deg": (value - 5, value + by),
     }.get(name, value - by)
     return TargetLimits(targets=[target], **{name: given})
 
 
 @pytest.mark.parametrize("kept", [True, False])
-@pytest.mark.parametrize("name", ["a", "b", "past_deg", "transmission_min_deg", "mechanical_advantage_min"])
+@pytest.mark.parametrize(
+    "name", ["a", "b", "instant_centre", "past_deg", "transmission_min_deg", "mechanical_advantage_min"]
+)
 def test_judge_and_search_see_what_is_missed(name: str, kept: bool) -> None:
     line = in_line()
     theta2 = np.linspace(line - 0.9, line + 0.2, 4)
