@@ -96,7 +96,11 @@ def efforts(count: int, seed: int) -> Iterator[str]:
 
 def _ratio(linkage: Linkage, _: Verdict, rng: np.random.Generator) -> dict[str, Any]:
     """The ratio of two links, away from that of the best design without limits."""
-    return {"link_ratios": {"r4/r2": float(linkage.lengths[3] / linkage.lengths[1] * rng.uniform(1.1, 1.5))}}
+    return {
+        "link_ratios": {
+            "r4/r2": min(float(linkage.lengths[3] / linkage.lengths[1] * rng.uniform(1.1, 1.5)), 15.0)
+        }
+    }
 
 
 def _toggle(_: Linkage, verdict: Verdict, _rng: np.random.Generator) -> dict[str, Any]:
