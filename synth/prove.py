@@ -32,7 +32,8 @@ from grashof.synth.theory.stopping import stopping
 _RIGHT = 90.0  # deg: a bound without information
 _BEYOND = (
     "there are proofs of three to five whole poses, and pairs of a function, that a four-bar meets exactly, "
-    "of four whole poses of a slider-crank, and of a swing or a stroke; of no other task yet"
+    "of four whole poses of a slider-crank, and of a swing or a stroke; of no other task yet, and of none "
+    "driven by a cylinder"
 )
 
 

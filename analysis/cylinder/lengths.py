@@ -15,7 +15,7 @@ from grashof.analysis.mechanism.kinematics import Kinematics, virtual_motion
 from grashof.analysis.mechanism.position import Position
 from grashof.analysis.numerics.peaks import peaks
 from grashof.problems import Cylinder, Linkage
-from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, Limits
 
 _ROUNDS, _SECANTS, _SETTLED = 60, 30, 1e-13
 _NOTHING = 1e-13  # share of the lengths about it: a shorter way is rounding
@@ -33,6 +33,9 @@ class CylinderState:
         From C, its pivot of the ground, to Q.
     rate : ndarray, shape (...), length
         dL/dtheta2; infinite in dead positions of link 2.
+    output_rate : ndarray, shape (...), length
+        dL/dtheta4, the arm with which the force of the cylinder turns link 4; infinite in limit positions of
+        link 4, and where it does not turn at all.
     lever : ndarray, shape (...)
         |dL| / |dQ|: the sine of the angle between cylinder and arm, signed as dL in the motion of the linkage
         around its circuit; 0 where Q is at rest or lies in C.
@@ -41,6 +44,7 @@ class CylinderState:
     pivot: FloatArray
     length: FloatArray
     rate: FloatArray
+    output_rate: FloatArray
     lever: FloatArray
 
     @property
@@ -56,13 +60,19 @@ class CylinderState:
 class CylinderFigures:
     """Least and greatest length over a motion, and the least lever angle, rad; 0 unless `monotone`.
 
-    `monotone`: the length changes in one sense and is nowhere stationary, so that the cylinder drives.
+    `monotone`: the length changes in one sense and is nowhere stationary, so that the cylinder drives. Rates
+    are magnitudes of dL/dtheta4, at the first target and the last, and their extremes over the motion, which
+    are 0 and infinite unless `monotone`.
     """
 
     closed: float
     open: float
     angle_min: float
     monotone: bool
+    rate_start: float
+    rate_end: float
+    rate_min: float
+    rate_max: float
 
     @property
     def stroke(self) -> float:
@@ -103,6 +113,8 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
     >>> found = cylinder_state(jack, linkage, solve_position(linkage, [0.0, np.pi / 4]))
     >>> found.length.round(6).tolist(), np.degrees(found.angle).round(3).tolist()
     ([2.236068, 2.797933], [63.435, 30.361])
+    >>> (found.rate / found.output_rate).round(6).tolist()  # d theta4 / d theta2
+    [-0.333333, 0.070567]
     """
     sign = np.prod(np.copysign(1.0, at.margins), axis=0)
     moving = virtual_motion(linkage, at.theta2, np.copysign(1.0, at.margins[0]))[0]
@@ -115,28 +127,42 @@ def cylinder_state(cylinder: Cylinder, linkage: Linkage, at: Position | Kinemati
         change = np.real(np.conj(out) * way) / length
         lever = np.where((length > 0) & (speed > _NOTHING * scale), change / speed, 0.0)
         rate = np.where(length > 0, change / (sign * moving.omega2), 0.0)
+        output_rate = np.where(length > 0, change / (sign * moving.omega4), 0.0)
     lever = np.where(np.isnan(speed), np.nan, lever)
-    return CylinderState(q.position, length, rate, lever)
+    return CylinderState(q.position, length, rate, output_rate, lever)
 
 
 def cylinder_figures(cylinder: Cylinder, travel: Travel) -> CylinderFigures:
     """Extremes of a cylinder over a motion, right to rounding, from ever closer samples.
 
     The lever changes its sign where the length turns back: its least value, signed, decides on `monotone`.
+    The inverse of the rate, dtheta4/dL, is finite where the cylinder drives, and 0 where link 4 turns back.
     """
 
     def curves(places: FloatArray) -> FloatArray:
         state = cylinder_state(cylinder, travel.linkage, travel.at(places))
-        return np.stack([state.lever, -state.lever, state.length, -state.length])
+        with np.errstate(divide="ignore"):
+            every = np.stack([state.lever, state.length, 1 / state.output_rate])
+        return np.concatenate([every, -every])
 
     if travel.start == travel.end:
-        high, low, longest, shortest = curves(np.array([travel.start]))[:, 0]
+        found = curves(np.array([travel.start]))[:, 0]
     else:
-        (high, low, longest, shortest), _ = peaks(curves, [travel.places])
-    least = max(-low, -high)
-    driven = bool(np.isfinite([high, low, longest, shortest]).all() and least > 0)
-    angle = float(np.arcsin(min(least, 1.0))) if driven else 0.0
-    return CylinderFigures(float(-shortest), float(longest), angle, driven)
+        found, _ = peaks(curves, [travel.places])
+    (high, longest, most), (low, shortest, least) = found[:3], -found[3:]
+    lever = max(low, -high)
+    driven = bool(np.isfinite([high, low, longest, shortest]).all() and lever > 0)
+    angle = float(np.arcsin(min(lever, 1.0))) if driven else 0.0
+    ends = cylinder_state(cylinder, travel.linkage, travel.at(travel.targets[[0, -1]]))
+    first, last = np.abs(ends.output_rate).tolist()
+    extremes = _rates(least, most) if driven else (0.0, np.inf)
+    return CylinderFigures(float(shortest), float(longest), angle, driven, first, last, *extremes)
+
+
+def _rates(least: float, most: float) -> Limits:
+    """Least and greatest magnitude of a rate whose inverse is between two values."""
+    quickest, slowest = float(max(-least, most)), float(max(least, -most))
+    return 1 / quickest if quickest > 0 else np.inf, 1 / slowest if slowest > 0 else np.inf
 
 
 def cylinder_force(state: Kinematics, cylinder: Cylinder, masses: Masses, loads: Loads) -> FloatArray:

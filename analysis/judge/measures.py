@@ -30,6 +30,7 @@ from grashof.problems.values.units import Unit
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
 SLACK = 1e-9
 _OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
+_RATES = tuple(f"rate_{name}" for name in ("start", "end", "min", "max"))  # of cylinders
 
 
 class Values(Mapping[str, float]):
@@ -271,7 +272,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},
-    **{f"cylinder_{name}": partial(_cylinder, name) for name in ("closed", "stroke", "angle_min")},
+    **{f"cylinder_{name}": partial(_cylinder, name) for name in ("closed", "stroke", "angle_min", *_RATES)},
     "cylinder_force_max": lambda values: cylinder_force_peak(values.linkage, values.problem, values.verdict),
     **{
         quantity.key: partial(_made, quantity.key)
@@ -338,6 +339,7 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "b": partial(_place, "at_targets.b"),
     "a_on_body": partial(_on_body, True),
     "b_on_body": partial(_on_body, False),
+    "cylinder_rate": lambda values: {"": np.array([values[f"cylinder_{name}"] for name in _RATES[2:]])},
 }
 
 

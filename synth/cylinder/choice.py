@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Cylinder, CylinderSpec, Linkage
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.cylinder.planes import Plane, Room, performance, planes_of
 from grashof.synth.cylinder.search import best_by_search
 
@@ -23,22 +23,24 @@ def best_cylinder(
     *,
     power: FloatArray | None = None,
     force: float = np.inf,
+    rate: Limits = (0.0, np.inf),
     one_branch: bool = True,
 ) -> Cylinder | None:
     """The cylinder of the greatest worst lever angle within limits; None where none was found.
 
     Of a single linkage whose theta2, theta3 and theta4 (M,) are samples of the task motion. A limit of the
-    force, N, needs the power (M,) of a driver of link 2 at 1 rad/s, N length. Without `one_branch` link 2
-    passes a dead position, so that it cannot be driven.
+    force, N, needs the power (M,) of a driver of link 2 at 1 rad/s, N length; limits of the rate are lengths
+    for a radian of link 4. Without `one_branch` link 2 passes a dead position, so that it cannot be driven.
     """
     theta2, theta3, theta4 = map(np.unwrap, angles)
-    planes = planes_of(linkage, theta2, theta3, theta4, power if np.isfinite(force) else None)
+    limited, given = rate != (0.0, np.inf), power if np.isfinite(force) else None
+    planes = planes_of(linkage, theta2, theta3, theta4, given, rates=limited)
     coupler = planes["coupler"]
     corners = [coupler.origin + c * coupler.axis for c in coupler.joints]
     around = np.concatenate([planes["driver"].origin, planes["output"].origin, *corners])
     theta = {"driver": theta2, "output": theta4}
     allowed = [on for on in spec.on if one_branch or on != "driver"]
-    rooms = {on: Room.of(planes[on], spec, around, force) for on in allowed}
+    rooms = {on: Room.of(planes[on], spec, around, force, rate) for on in allowed}
     found = {on: _in_closed_form(planes[on], rooms[on], theta[on]) for on in allowed if on in theta}
     best = max((each[2] for each in found.values() if each is not None), default=0.0)
     for number, on in enumerate(spec.on):

@@ -11,6 +11,7 @@ from grashof.problems import CylinderSpec, Linkage
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 
 INSET = 1e-7  # share by which limits are tightened, so that the judge finds them met
+_BETWEEN = 2e-4  # the same for rates, whose extremes lie between samples
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -26,6 +27,7 @@ class Plane:
     middle: complex  # in its frame: its pivot of the ground, or half way from A to B
     reach: float  # greatest distance from there to pivots: the link's length, or r2 for a slider or block
     power: FloatArray | None = None  # (M,): of the drive, N length; None without limit of force
+    output: FloatArray | None = None  # (M,): `turn` of link 4; None without limits of the rate
 
 
 class Performance(NamedTuple):
@@ -39,14 +41,23 @@ class Performance(NamedTuple):
     closed: FloatArray
     ratio: FloatArray
     force: FloatArray
+    slow: FloatArray  # least change of the length for a radian of link 4; 1 without limits of the rate
+    quick: FloatArray  # the greatest
 
 
 def planes_of(
-    linkage: Linkage, theta2: FloatArray, theta3: FloatArray, theta4: FloatArray, power: FloatArray | None
+    linkage: Linkage,
+    theta2: FloatArray,
+    theta3: FloatArray,
+    theta4: FloatArray,
+    power: FloatArray | None,
+    *,
+    rates: bool = False,
 ) -> dict[str, Plane]:
     """The planes of links 2, 3 and 4 of a single linkage, by the words for them.
 
     Angles are of shape (M,); so is the power of a driver of link 2 at 1 rad/s, N length: the drive torque.
+    Planes whose cylinders have limits of their rates (`rates`) know how fast link 4 turns.
     The motion of link 4 has no component along n = e^(i theta4): with the crank k and c = B - A, that is
     w2 : w3 = n x c : k x n in every kind of loop, also where c is a part of a rod. Link 4 turns as the link
     that it slides on, or else i (w2 k + w3 c) = i w4 (B - O4). None of this is infinite in a dead position.
@@ -69,20 +80,20 @@ def planes_of(
     )
     slides = {link: on for on, link in linkage.mechanism.slides}
     turn4 = {1: np.zeros_like(w2), 2: w2, 3: w3, 4: w4}[slides.get(4, 4)]
-    given = None if power is None else power * w2
+    given = (None if power is None else power * w2), (turn4 if rates else None)
     still, way = np.zeros_like(crank), 1j * w2 * crank
     far, p = complex(farthest), complex(*linkage.coupler_point)
     corners, length = np.array([0j, far, p]), max(abs(far), abs(p), abs(p - far))
     if "o4" in ground:  # about O4
         arm = float(getattr(linkage, "r4" if "r4" in sizes else "offset"))
         end, reach = np.array([complex(arm)]), max(r4, abs(arm))
-        link4 = Plane(still + ground["o4"], e4, still, turn4, end, 0j, reach, given)
+        link4 = Plane(still + ground["o4"], e4, still, turn4, end, 0j, reach, *given)
     else:  # with B along a slide of the ground
         b, way_b = o2 + crank + coupler, 1j * (w2 * crank + w3 * coupler)
-        link4 = Plane(b, e4 / 1j, way_b, turn4, np.array([0j]), 0j, r4, given)
+        link4 = Plane(b, e4 / 1j, way_b, turn4, np.array([0j]), 0j, r4, *given)
     return {
-        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, given),
-        "coupler": Plane(o2 + crank, e3, way, w3, corners, far / 2, length, given),
+        "driver": Plane(still + o2, e2, still, w2, np.array([complex(r2)]), 0j, r2, *given),
+        "coupler": Plane(o2 + crank, e3, way, w3, corners, far / 2, length, *given),
         "output": link4,
     }
 
@@ -99,13 +110,17 @@ def performance(plane: Plane, point: ComplexArray, base: ComplexArray) -> Perfor
         force = np.zeros(len(point))
         if plane.power is not None:
             force = finite_or(np.abs(plane.power / change), np.inf).max(axis=1)
+        rate = np.ones((len(point), 1))
+        if plane.output is not None:
+            rate = finite_or(np.abs(change / plane.output), np.inf)
     sign = np.where(levers.sum(axis=1) < 0, -1.0, 1.0)
     levers = sign[:, None] * levers
     first, last = length[:, 0], length[:, -1]
     closed = np.minimum(first, last)
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = finite_or(np.maximum(first, last) / closed, np.inf)
-    return Performance(levers, levers.min(axis=1), closed, ratio, force)
+    extremes = rate.min(axis=1), rate.max(axis=1)
+    return Performance(levers, levers.min(axis=1), closed, ratio, force, *extremes)
 
 
 def finite_or(values: FloatArray, otherwise: float) -> FloatArray:
@@ -125,9 +140,17 @@ class Room:
     closed: Limits
     ratio: float  # limit of the greatest length over the closed one
     force: float
+    rate: Limits
 
     @classmethod
-    def of(cls, plane: Plane, spec: CylinderSpec, around: ComplexArray, force: float = np.inf) -> Room:
+    def of(
+        cls,
+        plane: Plane,
+        spec: CylinderSpec,
+        around: ComplexArray,
+        force: float = np.inf,
+        rate: Limits = (0.0, np.inf),
+    ) -> Room:
         """The room of a cylinder on the link of a plane.
 
         Sides of the base that the problem leaves open are those of the box around the places (N,) that the
@@ -147,7 +170,9 @@ class Room:
         if least > most:
             least = most = closed[0] / 2 + closed[1] / 2
         carried = plane.middle, plane.joints, plane.reach
-        return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET))
+        tight = min(_BETWEEN, (1 - rate[0] / max(rate[1], _TINY)) / 4)
+        rates = rate[0] * (1 + tight), rate[1] * (1 - tight)
+        return cls(*carried, low, high, (least, most), ratio, force * (1 - INSET), rates)
 
     def left(self, found: Performance) -> FloatArray:
         """Margins of K cylinders to the limits, in logarithms, a column each, negative beyond."""
@@ -157,6 +182,9 @@ class Room:
             columns += [closed - np.log(self.closed[0])] if self.closed[0] > 0 else []
             columns += [np.log(self.closed[1]) - closed] if np.isfinite(self.closed[1]) else []
             columns += [np.log(self.force) - force] if np.isfinite(self.force) else []
+            slow, quick = (np.log(np.maximum(each, _TINY)) for each in (found.slow, found.quick))
+            columns += [slow - np.log(self.rate[0])] if self.rate[0] > 0 else []
+            columns += [np.log(self.rate[1]) - quick] if np.isfinite(self.rate[1]) else []
         return np.stack(columns, axis=1)
 
     def beyond(self, found: Performance) -> FloatArray:

@@ -98,9 +98,9 @@ def _score(room: Room, found: Performance) -> FloatArray:
 def _thinned(plane: Plane, step: int) -> Plane:
     """The plane at every `step`-th sample, and at the last."""
     kept = np.unique(np.append(np.arange(0, len(plane.axis), step), len(plane.axis) - 1))
-    power = None if plane.power is None else plane.power[kept]
+    power, output = (None if each is None else each[kept] for each in (plane.power, plane.output))
     frame = {name: getattr(plane, name)[kept] for name in ("origin", "axis", "slide", "turn")}
-    return replace(plane, **frame, power=power)
+    return replace(plane, **frame, power=power, output=output)
 
 
 def _drawn(

@@ -12,8 +12,9 @@ from grashof.analysis.cylinder.travel import Travel, travel
 from grashof.analysis.forces.from_spec import BeyondLoadError
 from grashof.analysis.judge.over_task import as_used, driver_law, motion_ends
 from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.dynamics.dynamics_spec import metres
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.cylinder.choice import best_cylinder
 
 _SAMPLES = 129
@@ -45,8 +46,16 @@ def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylind
         problem.driver,
         power=power,
         force=np.inf if limit is None or power is None else limit[1],
+        rate=_rate(problem, linkage),
         one_branch=verdict.branch_ok,
     )
+
+
+def _rate(problem: Problem, linkage: Linkage) -> Limits:
+    """Limits of the cylinder's rate, which linkages without a link 4 that turns do not have."""
+    limits = problem.requirements.cylinder_rate
+    has = linkage.mechanism.word in LIMITS["cylinder_rate"].quantity.kinds
+    return (0.0, np.inf) if limits is None or not has else limits
 
 
 def _samples(moved: Travel) -> FloatArray:

@@ -65,6 +65,8 @@ def test_lists_page_and_analysis_have_it(grashof: Grashof, solved: Path) -> None
     found = {key: np.array([float(each[key]) for each in rows]) for key in rows[0]}
     slope = np.gradient(found["length"], np.radians(found["theta2_deg"]))
     np.testing.assert_allclose(found["rate"][1:-1], slope[1:-1], rtol=2e-3)
+    assert np.abs(found["output_rate"]).min() == pytest.approx(float(row["cylinder_rate_min"]), rel=1e-3)
+    assert np.abs(found["output_rate"]).max() <= float(row["cylinder_rate_max"]) * (1 + 1e-9)
     assert found["angle_deg"].min() == pytest.approx(float(row["cylinder_angle_min_deg"]), abs=0.01)
     assert np.abs(found["force"]).max() <= float(row["cylinder_force_max"]) * (1 + 1e-9)
     targets = (folder / "table-cylinder-at-targets.csv").read_text(encoding="utf-8").splitlines()

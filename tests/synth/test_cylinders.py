@@ -107,6 +107,25 @@ def test_limits_of_angle_and_force_are_kept(problem: Problem, result: Result) ->
     assert (frame["cylinder_force_max"] <= most).all()
 
 
+@pytest.mark.study
+def test_limits_of_the_rate_are_kept(problem: Problem, result: Result) -> None:
+    """By a force on the cylinder that turns link 4 with this arm at least, and at most."""
+    free = result.to_frame()
+    low, high = float(free["cylinder_rate_min"].median()), 2 * float(free["cylinder_rate_max"].median())
+    found = synthesize(
+        replace(problem, requirements=replace(problem.requirements, cylinder_rate=(low, high))),
+        enough=3,
+        starts=16,
+    )
+    frame = found.to_frame()
+    assert len(frame)
+    assert (frame["cylinder_rate_min"] >= low * (1 - 1e-9)).all()
+    assert (frame["cylinder_rate_max"] <= high * (1 + 1e-9)).all()
+    ends = frame[["cylinder_rate_start", "cylinder_rate_end"]]
+    assert (ends.min(axis=1) >= frame["cylinder_rate_min"] * (1 - 1e-9)).all()
+    assert (ends.max(axis=1) <= frame["cylinder_rate_max"] * (1 + 1e-9)).all()
+
+
 def test_designs_are_found_again_from_plain_text(problem: Problem, result: Result) -> None:
     assert problem_of(problem_toml(problem), "text", problem.name).driver == problem.driver
     again = restored(plain(result.best), problem)

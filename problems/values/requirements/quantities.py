@@ -135,6 +135,15 @@ def _move(name: str) -> Quantity:
     )  # fmt: skip
 
 
+def _rate(name: str = "", where: str = "", better: int = 0, *, listed: bool = True) -> Quantity:
+    """The rate of a cylinder somewhere in the motion."""
+    return _length(
+        f"cylinder_rate{name}", f"cylinder rate{name.replace('_', ' ')}", over=Scope.TASK, better=better,
+        needs=Needs.CYLINDER, about=_RATE, listed=listed, words=f"rate of the cylinder{where}",
+        full=f"cylinder, rate{where}", kinds=OUTPUTS,
+    )  # fmt: skip
+
+
 def _of_dwell(key: str, words: str) -> tuple[Quantity, Quantity]:
     """A band, of a link that swings and of a slide."""
     given: dict[str, Any] = {"over": Scope.CYCLE, "better": -1, "digits": 3, "words": words}
@@ -171,6 +180,7 @@ _WORST = "worst transmission angle over the"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
+_RATE = "change of its length for a radian of link 4: the arm with which its force turns link 4"
 _MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
 _OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": "from the first target to the last"}
 # Kinds of which some have D on the ground.
@@ -311,6 +321,11 @@ MEASURED: dict[str, Quantity] = {
             "cylinder_force_max", "cylinder force", Unit.FORCE, Scope.TASK, -1, Needs.LOADED_CYLINDER,
             digits=4, words="peak force of the cylinder", full="cylinder, peak force",
         ),
+        _rate(listed=False),
+        _rate("_start", " at the first target"),
+        _rate("_end", " at the last target"),
+        _rate("_min", " where it is least", +1),
+        _rate("_max", " where it is greatest"),
     )
 }  # fmt: skip
 

@@ -138,6 +138,8 @@ class Requirements(ReadOnly):
         Least angle between the cylinder that drives and its arm, over the task motion.
     cylinder_force_max : tuple of float, N, optional
         (lo, hi) for its greatest force.
+    cylinder_rate : tuple of float, length, optional
+        (lo, hi) for the change of its length for a radian of link 4, over the task motion.
     a_on_body, b_on_body : Box, optional
         Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
@@ -241,6 +243,7 @@ class Requirements(ReadOnly):
     )
     cylinder_angle_min_deg: float | None = limit("cylinder_angle_min", Kind.AT_LEAST, allowed=(0.0, 90.0))
     cylinder_force_max: Limits | None = between("cylinder_force_max")
+    cylinder_rate: Limits | None = between("cylinder_rate")
     structural_error_max_deg: Limits | None = between(structural_error("max"), 0.0, 360.0)
     structural_error_rms_deg: Limits | None = between(structural_error("rms"), 0.0, 360.0)
     structural_error_max: Limits | None = between(structural_error("max", TRAVEL_ERRORS))

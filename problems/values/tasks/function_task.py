@@ -131,7 +131,6 @@ class FunctionTask(Task):
     kind: ClassVar[Literal["function"]] = "function"
     target: ClassVar[Literal["pair"]] = "pair"
     usual_rotatability: ClassVar[str] = "any"
-    no_cylinder: ClassVar[str] = "whose driver is link 2"
     without: ClassVar[tuple[str, ...]] = (
         "coupler_arms", "coupler_fit_r2", "point_speed_max", "point_acceleration_max", "p", "body",
     )  # fmt: skip

@@ -12,6 +12,7 @@ from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, cylinder_
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.problems import Problem
 from grashof.problems.values.arrays import FloatArray
+from grashof.study.kinds import output_turns
 from grashof.study.samples import Columns, curves, table
 from grashof.study.section import Fact, Section, angle_fact
 from grashof.study.study import LinkageStudy
@@ -22,6 +23,12 @@ _NOTE = (
     "over the task motion; the lever angle is that between the cylinder and the arm of its pivot, on "
     "coupler and slider 90 deg less the angle between the cylinder and the path of its pivot"
 )
+_RATES = {
+    "start": "at the first target",
+    "end": "at the last target",
+    "min": "where it is least",
+    "max": "where it is greatest",
+}
 
 
 def cylinder(study: LinkageStudy) -> Section | None:
@@ -43,6 +50,10 @@ def cylinder(study: LinkageStudy) -> Section | None:
         curves(over, "cylinder-angle", "lever angle of the cylinder", "deg", {"angle": "angle_deg"}),
     ]
     notes = [_NOTE]
+    if "output_rate" in over:
+        title, shown = "rate of the cylinder dL/dθ4", {"rate": "output_rate"}
+        plots.insert(2, curves(over, "cylinder-output-rate", title, f"{unit}/rad", shown))
+        notes.append("dL/dθ4 is the arm with which the force of the cylinder turns link 4, without friction")
     if "force" in over:
         plots.append(curves(over, "cylinder-force", "force of the cylinder", "N", {"force": "force"}))
         notes.append("positive forces push; mass and friction of the cylinder itself are left out")
@@ -58,6 +69,7 @@ def _columns(study: LinkageStudy, problem: Problem, verdict: Verdict, theta2: Fl
         "theta2_deg": np.degrees(theta2),
         "length": found.length,
         "rate": found.rate,
+        **({"output_rate": found.output_rate} if output_turns(study.linkage.mechanism) else {}),
         "angle_deg": np.degrees(found.angle),
         "pivot_x": found.pivot[:, 0],
         "pivot_y": found.pivot[:, 1],
@@ -80,6 +92,10 @@ def _facts(study: LinkageStudy, problem: Problem, verdict: Verdict) -> Iterator[
     yield Fact("cylinder_stroke", "cylinder: stroke", found.stroke, unit)
     yield Fact("cylinder_ratio", "cylinder: open over closed length", found.ratio)
     yield angle_fact("cylinder_angle_min", "cylinder: worst lever angle", found.angle_min)
+    if output_turns(study.linkage.mechanism):
+        for name, where in _RATES.items():
+            label = f"cylinder: rate |dL/dθ4| {where}"
+            yield Fact(f"cylinder_rate_{name}", label, getattr(found, f"rate_{name}"), f"{unit}/rad")
     if problem.dynamics is not None:
         peak = cylinder_force_peak(study.linkage, problem, verdict)
         yield Fact("cylinder_force_max", "cylinder: peak force", peak, "N")

@@ -56,6 +56,8 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
         return None
     if len(problem.task) not in (THREE, FOUR) or problem.requirements.theta2_start_deg is not None:
         return None
+    if problem.driver is not None:  # not every linkage has a cylinder within its limits
+        return None
     if scaled.objective is None or set(scaled.objective.goals) != {"transmission"}:
         return None
     aims = FunctionAims.of(scaled)

@@ -28,6 +28,8 @@ def certified_functions(scaled: ScaledProblem) -> Certified | None:
         return None
     if len(problem.task) != FIVE or problem.requirements.theta2_start_deg is not None:
         return None
+    if problem.driver is not None:  # not every linkage has a cylinder within its limits
+        return None
     aims, since, found = FunctionAims.of(scaled), perf_counter(), []
     for sense in dict.fromkeys(sense for sense, _, _ in aims.ways()):
         wanted = aims.pairs(sense)

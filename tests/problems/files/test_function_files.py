@@ -106,7 +106,10 @@ mechanism = "six-bar"\n<PAIRS>link = "coupler" |
     function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank
 mechanism = ["four-bar", "slider-crank", "watt-1"]\n<PAIRS>link = "coupler" |
     function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank
-<PAIRS>[driver]\ncylinder = {} | driver.cylinder does not go with function, whose driver is link 2
+<PAIRS>[driver]\ncylinder = {}\n[requirements]\nrotatability = "crank-rocker" |
+    requirements.rotatability is crank-rocker; it must be any with driver.cylinder, which turns nothing fully
+<PAIRS>[requirements]\ncylinder_rate = [1, 2] |
+    driver.cylinder is missing; requirements.cylinder_rate needs it
 """
 
 

@@ -128,6 +128,7 @@ cylinder = {{ closed = [3, 9], ratio_max = 1.5, on = ["output", "driver"], base 
 [requirements]
 cylinder_angle_min_deg = 30
 cylinder_force_max = [0, 9]
+cylinder_rate = [0.5, 4]
 [dynamics]
 payload = 1
 """
@@ -250,6 +251,11 @@ closed = true\n<DRIVEN> | motion.closed is true; it must be false with driver.cy
     requirements.same_branch is false; it must be true with driver.cylinder
 [requirements]\ncylinder_angle_min_deg = 20 |
     driver.cylinder is missing; requirements.cylinder_angle_min_deg needs it
+[requirements]\ncylinder_rate = [1, 2] | driver.cylinder is missing; requirements.cylinder_rate needs it
+<DRIVEN>[requirements]\ncylinder_rate = [2, 1] |
+    requirements.cylinder_rate is [2, 1]: lo exceeds hi; it must be [lo, hi] with lo <= hi
+<DRIVEN>[requirements]\ncylinder_rate = [-1, 1] |
+    requirements.cylinder_rate is [-1, 1]; lo must be at least 0
 [driver] | driver.cylinder is missing
 """
 

@@ -10,7 +10,7 @@ from grashof.analysis import driver_ranges
 from grashof.analysis.cylinder.lengths import CylinderFigures, cylinder_figures
 from grashof.analysis.cylinder.travel import Travel, travel
 from grashof.problems import Box, Cylinder, CylinderSpec, FourBar, InvertedSliderCrank, Linkage, SliderCrank
-from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
 from grashof.synth.cylinder.choice import best_cylinder
 from grashof.synth.cylinder.planes import planes_of
 
@@ -58,10 +58,12 @@ def moved(linkage: Linkage, *theta2_deg: float) -> Travel:
     return found
 
 
-def chosen(way: Travel, spec: CylinderSpec) -> tuple[Cylinder, CylinderFigures] | None:
+def chosen(
+    way: Travel, spec: CylinderSpec, rate: Limits = (0.0, np.inf)
+) -> tuple[Cylinder, CylinderFigures] | None:
     share = (1 - np.cos(np.linspace(0, np.pi, 129))) / 2
     at = way.at(way.start + (way.end - way.start) * share)
-    found = best_cylinder(way.linkage, (at.theta2, at.theta3, at.theta4), spec)
+    found = best_cylinder(way.linkage, (at.theta2, at.theta3, at.theta4), spec, rate=rate)
     return None if found is None else (found, cylinder_figures(found, way))
 
 
@@ -226,3 +228,33 @@ def test_an_independent_search_of_great_effort_finds_no_better_one(kind: type[Li
     for links in [LINKS] if kind is FourBar else [(on,) for on in LINKS]:
         spec = CylinderSpec(closed=(1.0, 4.0), ratio_max=1.5, base=Box((-4, 5), (-4, 0)), on=[*links])
         assert angle_of(way, spec) > max(searched(way, spec, on, seed) for on in links) - 0.1
+
+
+RATED = [(BARS, (55, 110)), (SHAPER, (95, 145))]
+
+
+@pytest.mark.quick("driver-case0", "driver-case1", "coupler-case0")
+@pytest.mark.parametrize("case", RATED)
+@pytest.mark.parametrize("on", LINKS)
+def test_limits_of_the_rate_are_kept_at_the_cost_of_the_lever_angle(
+    case: tuple[Linkage, tuple[float, float]], on: str
+) -> None:
+    linkage, ends = case
+    way, spec = moved(linkage, *ends), CylinderSpec(on=[on])
+    free = chosen(way, spec)
+    assert free is not None
+    least, most = free[1].rate_min, free[1].rate_max
+    wide = chosen(way, spec, (least / 2, 2 * most))
+    assert wide is not None
+    assert wide[1].angle_min >= free[1].angle_min - 1e-6
+    for limits in ((0.0, 0.9 * most), (1.05 * least, 1e9)):
+        held = chosen(way, spec, limits)
+        if held is None:  # the longest arm has no more
+            assert limits[0] > 0
+            continue
+        assert limits[0] <= held[1].rate_min
+        assert held[1].rate_max <= limits[1]
+        assert held[1].monotone
+        assert held[1].angle_min <= free[1].angle_min + 1e-6
+    if on == "driver":
+        assert chosen(way, spec, (1e5, 1e9)) is None
