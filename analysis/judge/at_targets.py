@@ -22,7 +22,7 @@ SAMPLES = 181  # of the motion between two targets
 def missed_at_targets(
     linkage: Linkage, task: Task, wanted: Requirements, verdict: Verdict
 ) -> Iterator[Defect]:
-    """A defect for every limit at a single target that is missed."""
+    """A defect for every missed limit at a single target."""
     if not np.isfinite(verdict.theta2).all():
         return
     state = solve_position(linkage, verdict.theta2, verdict.assembly)
@@ -39,7 +39,7 @@ def missed_at_targets(
 def _figures(
     linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int
 ) -> Iterator[tuple[str, float, Limits, str]]:
-    """What is limited at a target, its value, its limits and their unit."""
+    """Name, value, limits and kind of unit of each limited quantity at a target."""
     for name in ("a", "b", "instant_centre"):
         box = getattr(limits, name)
         if box is None:
@@ -52,8 +52,8 @@ def _figures(
             yield f"{name}.{axis}", value, side, "length"
     if limits.past_deg is not None:
         low, high = np.radians(limits.past_deg).tolist()
-        past = past_line(linkage, verdict, k)
-        yield "driver and coupler past their line in deg", past, (low, high), "angle"
+        past = past_toggle(linkage, verdict, k)
+        yield "driver and coupler past toggle in deg", past, (low, high), "angle"
     if limits.transmission_min_deg is not None:
         mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))
@@ -65,10 +65,10 @@ def _figures(
         yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), "ratio"
 
 
-def past_line(linkage: Linkage, verdict: Verdict, k: int) -> float:
-    """How far driver and coupler are past the line through O2, A and B at target k, rad.
+def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:
+    """Angle of driver and coupler past toggle (O2, A and B in line) at target k, rad.
 
-    Positive where the motion from the first target, or back from the last one to the first, passes it.
+    Positive where the motion from the first target, of the first one that back from the last, passes it.
     """
     start, end = verdict.theta2[[0 if k else -1, k]].tolist()
     theta2 = np.linspace(start, end, SAMPLES)

@@ -146,14 +146,14 @@ def _speed(rate: FloatArray, part: IntArray, at: FloatArray) -> FloatArray:
 
 
 def _length(rate: FloatArray, part: IntArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Lengths (N,) of parts between parameters, by Gauss' quadrature."""
+    """Lengths (N,) of parts between parameters, by Gaussian quadrature."""
     nodes, weights = legendre.leggauss(NODES)
     half = ((high - low) / 2)[:, None]
     return np.asarray((half * weights * _speed(rate, part, low[:, None] + half * (1 + nodes))).sum(axis=1))
 
 
 def _spans(rate: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
-    """Part, parameters and length of the spans of a curve, in order: short where its speed bends sharply."""
+    """Part, parameters and length of the spans of a curve, in order: short where its speed varies sharply."""
     part = np.arange(rate.shape[1])
     low, high = np.full(len(part), -1.0), np.full(len(part), 1.0)
     whole = _length(rate, part, low, high)
@@ -180,7 +180,7 @@ def _spans(rate: FloatArray) -> tuple[IntArray, FloatArray, FloatArray, FloatArr
 def _reached(
     rate: FloatArray, part: IntArray, start: FloatArray, end: FloatArray, wanted: FloatArray, near: float
 ) -> FloatArray:
-    """The parameters at lengths from `start` on, to `near`: Newton's steps, halvings outside the bracket."""
+    """The parameters at lengths from `start` on, to `near`: Newton steps, bisection outside the bracket."""
     low, high = start.copy(), end.copy()
     at = (low + high) / 2
     left = np.arange(len(at))

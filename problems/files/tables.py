@@ -138,7 +138,7 @@ def of_length(count: int, wanted: str) -> AfterValidator:
 
 
 def numbers(count: int) -> dict[str, Any]:
-    """The JSON Schema of so many numbers."""
+    """The JSON Schema of a list of some numbers."""
     return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
 
 

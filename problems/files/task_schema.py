@@ -98,7 +98,7 @@ class PathTable(_PathKeys):
     Parameters
     ----------
     count : int
-        How many points are taken from the curve of a drawing, at equal distances along it.
+        Number of points, at equal distances along the curve of a drawing.
     """
 
     count: int = POINTS

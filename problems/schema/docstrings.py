@@ -1,4 +1,4 @@
-"""What a numpydoc docstring says of parameters, and its texts in Markdown."""
+"""Descriptions of parameters in numpydoc docstrings, and texts in Markdown."""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ def kinds_of(table: type[Table]) -> list[str]:
 
 
 def conditions(table: type[Table]) -> Shape:
-    """What the keys of a table require of each other: of a task and its kind, of a linkage and its ground."""
+    """Conditions between the keys of a table: of a task and its kind, of a linkage and its ground."""
     if table is ProblemFile:
         return {"allOf": [_only(kind) for kind in TASKS]}
     words = kinds_of(table)

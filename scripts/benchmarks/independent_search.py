@@ -164,7 +164,7 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
             within(joint.imag, (box or Box()).y, aim.middle.imag)
         if single.past_deg is not None:
             low, high = (aim.size * np.radians(single.past_deg)).tolist()
-            within(past_line(at, k), (low, high))
+            within(past_toggle(at, k), (low, high))
     for arm in (at.coupler, at.coupler - at.r3):
         within(np.abs(arm), wanted.coupler_arms or (0.0, np.inf))
     for name in ("o2", "o4", "a", "b"):
@@ -178,8 +178,8 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     return np.concatenate(rows, axis=1)
 
 
-def past_line(at: Places, k: int) -> FloatArray:
-    """How far driver and coupler are past their line at target k, rad, (B, 1)."""
+def past_toggle(at: Places, k: int) -> FloatArray:
+    """Angle of driver and coupler past toggle at target k, rad, (B, 1)."""
     bend = (at.b - at.a) / (at.a - at.o2 + HAIR) + HAIR
     before = np.angle(bend[:, [0 if k else -1]] / bend[:, [k]])
     return np.asarray(-np.sign(before) * np.angle(bend[:, [k]] ** 2) / 2)  # whichever way the line points

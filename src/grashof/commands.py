@@ -113,7 +113,7 @@ def show(
 
     spec = load_linkage_spec(_in_list(linkage, number))
     if spec.problem is not None:
-        spec = replace(spec, source="")  # where the list is on this machine
+        spec = replace(spec, source="")  # the path of the list means nothing to a recipient
     say(linkage_toml(spec).removesuffix("\n"))
 
 
@@ -125,7 +125,7 @@ def _in_list(given: str, number: str | None) -> str:
         return f"{listed}#{number or 1}"
     if number is not None:
         raise ProblemError(
-            f"NUMBER is {number}; {given} is one linkage, it must be a folder or list of a search"
+            f"NUMBER is {number}; {given} is one linkage; NUMBER needs a folder or list of a search"
         )
     return given
 
@@ -149,9 +149,9 @@ def linkages(
 
 
 def schema(
-    file: Annotated[FileKind, typer.Argument(help="The files that it is for.")] = FileKind.PROBLEM,
+    file: Annotated[FileKind, typer.Argument(help="Kind of file.")] = FileKind.PROBLEM,
 ) -> None:
-    """Print a JSON Schema of problem or linkage files, by which editors complete and check their keys."""
+    """Print a JSON Schema of problem or linkage files, by which editors complete and check keys."""
     from grashof.problems.schema.json_schema import json_schema
 
     say(json.dumps(json_schema(file), indent=1))

@@ -18,11 +18,11 @@ from grashof.synth.programme.unknowns import LEAST_OF_TWO_LOOPS, SecondUnknowns,
 
 EVEN, WORST = 24, 8  # instants of a turn, or of the task motion: even ones, and the worst of the start
 FINE = 360  # instants among which the worst are found
-AGREES = 2e-3  # by which the sine of a transmission angle may be less between the instants
+AGREES = 2e-3  # allowed drop of the sine of the transmission angle between the instants
 
 
 def bound_second_loop(build: Builder, form: Form, x: Unknowns) -> None:
-    """Round the turn where it has to close there, and over the task motion; the angle where it counts.
+    """Closure over the full turn where it is required, and over the task motion; the angle where it counts.
 
     The first loop has bounds of its own, by its extremes: here it only closes.
     """

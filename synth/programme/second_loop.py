@@ -65,7 +65,7 @@ def links_of_first_loop(
 
 @dataclass(frozen=True, slots=True)
 class SecondLoop:
-    """The second loop of a start, two bars of which one carries P; sizes and rad."""
+    """The second loop of a start: two bars, one of which carries P; sizes and rad."""
 
     row: Mechanism
     c: complex  # in the frame of its link, as D; that of the ground is the global one

@@ -30,7 +30,7 @@ class AtTarget:
         return f"{self.name} at target {self.k + 1}"
 
     def __call__(self, design: Design) -> Any:
-        """Excess over the limits: lengths, or numbers of no unit."""
+        """Excess over the limits: a length, or without a unit."""
         box = getattr(self.limits, self.name)
         if isinstance(box, Box):
             centre = self.name == "instant_centre"
@@ -40,7 +40,7 @@ class AtTarget:
         return [_EXCESS[self.name](self, design)]
 
     def past(self, design: Design) -> Any:
-        """1 - cos of twice the way beyond the middle of the range, over that of its half."""
+        """cos(high - low) - cos(2 past - low - high), not positive inside the range: both lines count."""
         low, high = np.radians(self.limits.past_deg or (0.0, 0.0)).tolist()
         cos, sin = _of_coupler(design, self.k)
         there = _of_coupler(design, 0 if self.k else -1)
@@ -57,7 +57,7 @@ class AtTarget:
         return least - _cross(coupler, output) ** 2 / (_square(coupler) * _square(output))
 
     def advantage(self, design: Design) -> Any:
-        """By the squares of the moments of link 3 about O2 and O4."""
+        """By the squares of the moment arms of link 3 about O2 and O4."""
         driver, coupler, output = _links(design, self.k)
         least = float((self.limits.mechanical_advantage_min or 0.0) * (1 + INSIDE))
         by_driver, by_output = (_cross(link, coupler) ** 2 / _square(coupler) for link in (driver, output))

@@ -29,7 +29,10 @@ AS_IT_IS = "Not_Solved"  # status of a design that was judged as the search prop
 # `MORE` solves at most are tightened by `BEYOND` times the miss, unless it exceeds a limit (as in
 # `Defect.miss`; share of a zone).
 MORE, BEYOND, A_LITTLE, OF_ZONE = 5, 1.05, 0.2, 1e-4
-STRIDE, STRIDES = 0.3, 3  # sizes that pivots of a six-bar move in a solve; such solves
+STRIDE, STRIDES = (
+    0.3,
+    3,
+)  # sizes: greatest move of a six-bar's pivots in a solve; greatest number of such solves
 # Fields that can be tightened.
 TIGHTENED = {
     "within", "transmission_min_deg", "size",
@@ -111,9 +114,9 @@ def _solved(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
 
 
 def _in_strides(scaled: ScaledProblem, start: Start, number: int) -> Attempt:
-    """Solves of a six-bar one after the other, while they help, in each of which its pivots move little.
+    """Successive solves of a six-bar while they help, each with small moves of its pivots.
 
-    Far from a start its loops seldom close.
+    Far from a start the loops seldom close.
     """
     done = _solved(scaled, start.under(radius=STRIDE), number)
     for _ in range(STRIDES - 1):

@@ -107,7 +107,7 @@ class Run:
         return self.step("quick_pass", (seed,), scaled, lambda: finder_for(scaled).quick_pass(rng), is_round)
 
     def onward(self, ledger: Ledger) -> Sequence[Proposal]:
-        """What designs, and the nearest misses, lead to, of a finder that proposes whole designs."""
+        """Proposals of a `DesignFinder` that continue from designs and the nearest misses."""
         scaled, finder = ledger.scaled, finder_for(ledger.scaled)
         if not isinstance(finder, DesignFinder):
             return ()

@@ -7,7 +7,7 @@ import pytest
 
 from grashof import load, synthesize
 from grashof.analysis import solve_position
-from grashof.analysis.judge.at_targets import past_line
+from grashof.analysis.judge.at_targets import past_toggle
 from grashof.problems import (
     Box,
     MotionTask,
@@ -33,7 +33,7 @@ def test_a_toggle_closes_past_its_line(task: Task, last: int) -> None:
     result = synthesize(Problem(task=task, requirements=wanted), seed=0, enough=5, starts=20)
     assert len(result) > 0
     for each in result.candidates:
-        assert 2 <= round(np.degrees(past_line(each.linkage, each.verdict, last - 1)), 6) <= 5
+        assert 2 <= round(np.degrees(past_toggle(each.linkage, each.verdict, last - 1)), 6) <= 5
 
 
 def test_a_place_at_one_target_alone_binds_there() -> None:

@@ -31,9 +31,9 @@ class TargetLimits:
     instant_centre : Box, optional
         Where the centre of rotation of the coupler may lie there, the intersection of O2A and O4B.
     past_deg : tuple of float, deg, optional
-        Driver and coupler are so far past the line through O2, A and B there, (lo, hi), from -45 to 45: the
-        toggle of a clamp or brace. Positive where the motion from the first target, or back from the last one
-        to the first, passes the line.
+        Angle of driver and coupler past toggle there (O2, A and B in line), (lo, hi), from -45 to 45, as in a
+        clamp or brace. Positive where the motion from the first target, of the first one that back from the
+        last, passes the toggle position.
     transmission_min_deg : float, deg, optional
         Least min(mu, pi - mu) there.
     mechanical_advantage_min : float, optional
@@ -61,7 +61,7 @@ class TargetLimits:
     def __post_init__(self) -> None:
         check_fields(self, "", **_CHECKS)
         if not self.limited:
-            raise ProblemError(f"targets have no limit; it must be one of {', '.join(LIMITED)}")
+            raise ProblemError(f"targets have no limit; give one or more of {', '.join(LIMITED)}")
 
     @property
     def limited(self) -> tuple[str, ...]:

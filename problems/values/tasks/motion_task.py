@@ -24,7 +24,7 @@ from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
 
 # Where timed poses have no places.
-ANGLES_ALONE = 'coupler angles over the driver angle alone are kind = "function", link = "coupler"'
+ANGLES_ALONE = 'coupler angles by the driver angle alone need kind = "function", link = "coupler"'
 _POSE = "a pose [x, y, angle in degrees]"
 _SAME = 1e-12  # rad
 _WEIGHTS = (1e-9, 1e9)

@@ -48,7 +48,7 @@ def failure(error: BaseException) -> tuple[ExitCode, str]:
     if isinstance(error, (SolverError, OSError)):
         return ExitCode.SURROUNDINGS, str(error)
     words = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
-    hint = f"{TRACEBACK}=1 shows where, please report it with that"
+    hint = f"{TRACEBACK}=1 prints the traceback; please report it with that"
     return ExitCode.SURROUNDINGS, f"unexpected error: {words}; {hint}"
 
 

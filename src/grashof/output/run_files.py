@@ -124,7 +124,7 @@ def _write_record(
 
 
 def outcome(result: Result) -> dict[str, Any]:
-    """What a search arrived at, besides its designs; None for errors that it does not have."""
+    """The outcome of a search besides its designs; None for errors that it lacks."""
     errors = {name: getattr(result, name) for name in ("least_error", "most_error")}
     return {
         "complete": result.complete,

@@ -122,7 +122,7 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
         sides = () if box is None else ((f"{name}.x", *box.x), (f"{name}.y", *box.y))
         said += [f"{axis} {low:g} to {high:g}{unit}" for axis, low, high in sides if high - low < np.inf]
     if limits.past_deg is not None:
-        said.append("driver and coupler {:g} to {:g} deg past their line".format(*limits.past_deg))
+        said.append("driver and coupler {:g} to {:g} deg past toggle".format(*limits.past_deg))
     if limits.transmission_min_deg is not None:
         said.append(f"mu from {limits.transmission_min_deg:g} deg")
     if limits.mechanical_advantage_min is not None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from grashof.analysis import verify
-from grashof.analysis.judge.at_targets import past_line
+from grashof.analysis.judge.at_targets import past_toggle
 from grashof.analysis.judge.design import Design, greatest
 from grashof.problems import (
     Box,
@@ -64,9 +64,9 @@ def test_past_line_is_the_bend_between_driver_and_coupler(past: float) -> None:
     assert verdict.ok
     a, b = joints(line + past)
     bend = abs(np.angle((b - a) / a))
-    assert past_line(LEG, verdict, 4) == pytest.approx(np.sign(past) * bend, abs=1e-9)
+    assert past_toggle(LEG, verdict, 4) == pytest.approx(np.sign(past) * bend, abs=1e-9)
     back = verify(LEG, task_at(theta2[::-1]), Requirements(rotatability="any"))
-    assert past_line(LEG, back, 0) == pytest.approx(np.sign(past) * bend, abs=1e-9)
+    assert past_toggle(LEG, back, 0) == pytest.approx(np.sign(past) * bend, abs=1e-9)
 
 
 def figures(theta2: float) -> dict[str, float]:
