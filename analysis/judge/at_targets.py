@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
-from grashof.problems import Linkage, Requirements, Task
+from grashof.problems import Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.target_limits import TargetLimits
 
@@ -26,7 +27,9 @@ def missed_at_targets(
     state = solve_position(linkage, verdict.theta2, verdict.assembly)
     for limits in wanted.at:
         for number in limits.targets:
-            for what, found, allowed, scale in _figures(linkage, verdict, state, limits, number - 1):
+            for what, found, allowed, scale in _figures(
+                linkage, verdict, state, limits, number - 1, task.size
+            ):
                 miss = max(allowed[0] - found, found - allowed[1]) / (task.size if scale == "length" else 1.0)
                 if not miss <= SLACK:
                     unit = float(np.degrees(1.0)) if scale == "angle" else 1.0
@@ -35,12 +38,16 @@ def missed_at_targets(
 
 
 def _figures(
-    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int
+    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int, size: float
 ) -> Iterator[tuple[str, float, Limits, str]]:
     """What is limited at a target, its value, its limits and their unit."""
     for name in ("a", "b"):
         box = getattr(limits, name)
-        if box is not None:
+        if isinstance(box, Region):
+            away = distances(box, *getattr(state, name)[[k]].T)
+            most = slack_of(box) * size
+            yield f"the distance of {name.upper()} from its region", float(away[0]), (-np.inf, most), "length"
+        elif box is not None:
             for axis, side, value in zip("xy", (box.x, box.y), getattr(state, name)[k].tolist(), strict=True):
                 yield f"{name}.{axis}", value, side, "length"
     if limits.past_deg is not None:

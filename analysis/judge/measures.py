@@ -15,6 +15,7 @@ from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
+from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -361,6 +362,9 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
         quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
+        if (region := wanted.regions.get(name)) is not None:
+            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
+            continue
         for part, numbers in values.parts(quantity.key).items():
             if part in limited:  # r1 and link_length: its own limits take their place
                 continue

@@ -26,7 +26,7 @@ class TargetLimits:
     ----------
     targets : sequence of int
         Numbers of the targets, counted from 1.
-    a, b : Box, optional
+    a, b : Box or Region, optional
         Where this moving pivot may be there.
     past_deg : tuple of float, deg, optional
         Driver and coupler are so far past the line through O2, A and B there, (lo, hi), from -45 to 45: the
@@ -101,7 +101,7 @@ def _target(number: int, where: str) -> int:
 
 def _box(value: Any, where: str) -> Box | None:
     if value is not None and not isinstance(value, Box):
-        raise wrong_value(where, value, "a Box")
+        raise wrong_value(where, value, "a Box or a Region")
     return value
 
 
