@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
-from grashof.problems.values.box import Box
+from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, counted, finite_rows
 from grashof.problems.values.errors import ProblemError, listing, wrong_value
 from grashof.problems.values.value_bases import set_fields
@@ -74,6 +74,20 @@ class Region(Box):
         wide, tall = self.x[1] - self.x[0], self.y[1] - self.y[0]
         return self.on is not None and min(wide, tall) <= NARROWEST * max(wide, tall)
 
+    @property
+    def point(self) -> Box:
+        """A place well inside it, or the middle of the segment, as a box of no width."""
+        # Here, not above: shapely takes a while to import, and few problems have areas.
+        import shapely
+
+        from grashof.problems.values.areas import shape
+
+        made = shape(self)
+        (inside,) = shapely.get_coordinates(
+            shapely.point_on_surface(made) if self.on is None else shapely.centroid(made)
+        ).tolist()
+        return Box(x=(inside[0], inside[0]), y=(inside[1], inside[1]))
+
     def moved(self, origin: complex, scale: float) -> Region:
         """The region in a frame with this origin and unit of length."""
         corners = [((x - origin.real) / scale, (y - origin.imag) / scale) for x, y in self.corners.tolist()]
@@ -93,6 +107,11 @@ def place(**sides: Any) -> Box:
         raise ProblemError(f"{given[-1]} does not go with {listing(given[:-1], 'and')}; give one of them")
     kept = {key: sides[key] for key in given}
     return Region(**kept) if {"inside", "on"} & set(given) else Box(**kept)
+
+
+def standing(box: Box | None) -> Box:
+    """A box for a pivot that is placed at once: of a region, one point in it."""
+    return box.point if isinstance(box, Region) else box or ANYWHERE
 
 
 def regions(places: dict[str, Any]) -> dict[str, Region]:
