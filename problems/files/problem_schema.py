@@ -22,7 +22,7 @@ from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
-from grashof.problems.values.region import place
+from grashof.problems.values.region import Region, place
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
@@ -57,11 +57,14 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
     yield from wrong
 
 
-@tables.keys_of(Box, dict.fromkeys(("x", "y"), (Pair | None, None)))
+_SIDES = {"x": (Pair | None, None), "y": (Pair | None, None)}
+_CORNERS = {"inside": (Drawn | None, None), "on": (Corners | None, None)}
+
+
+@tables.keys_of(Box, _SIDES | _CORNERS, [*_SIDES, *_CORNERS])
 class BoxTable(tables.SpecTable):
     suggested: ClassVar[bool] = False  # x and y do not show where they belong
-    inside: Drawn | None = None
-    on: Corners | None = None
+    described_by: ClassVar[tuple[type, ...]] = (Region,)
 
     @field_validator("x", "y", mode="before", check_fields=False)
     @classmethod
@@ -82,7 +85,7 @@ def _at(point: list[float]) -> Box:
     return Box((x, x), (y, y))
 
 
-_PLACE_SHAPES = "[x, y], { x = [lo, hi], y = [lo, hi] }, { inside = a polygon } or { on = [[x, y], [x, y]] }"
+_PLACE_SHAPES = "[x, y], { x = [lo, hi], y = [lo, hi] }, { inside = corners } or { on = ends }"
 Place = Annotated[
     Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(tables.TABLE)]
     | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST), tables.TWO],

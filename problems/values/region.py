@@ -102,7 +102,7 @@ def place(**sides: Any) -> Box:
     >>> place(x=(0, 1)), place(on=[[0, 0], [1, 1]])
     (Box(x=(0.0, 1.0), y=(-inf, inf)), Region(inside=None, on=((0.0, 0.0), (1.0, 1.0))))
     """
-    given = [key for key, value in sides.items() if value is not None]
+    given = [key for key in ("x", "y", "inside", "on") if sides.get(key) is not None]
     if len(given) > 1 and {"inside", "on"} & set(given):
         raise ProblemError(f"{given[-1]} does not go with {listing(given[:-1], 'and')}; give one of them")
     kept = {key: sides[key] for key in given}
@@ -128,7 +128,7 @@ def _polygon(values: Any, where: str) -> tuple[Corner, ...]:
 
 
 def _segment(values: Any, where: str) -> tuple[Corner, ...]:
-    wanted = "[[x, y], [x, y]], both ends of a line"
+    wanted = "[[x, y], [x, y]]"
     _refuse_words(values, where, wanted)
     ends = finite_rows(values, 2, where, "an end [x, y]", GREATEST)
     if len(ends) != 2:

@@ -17,12 +17,13 @@ import numpy as np
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Region, Requirements, Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 STARTS, POLISHED = 800, 40
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
+BESIDE = 5e-7  # share of a segment: how far beside it a joint may lie
 HAIR = 1e-12  # added to the length of a line, which may be zero
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
@@ -166,11 +167,28 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         box, joint = getattr(wanted, name), getattr(at, name)
         within(joint.real, box.x, aim.middle.real)
         within(joint.imag, box.y, aim.middle.imag)
+        for normal, least in sides(box) if isinstance(box, Region) else ():
+            along, middle = ((each * normal.conjugate()).real for each in (joint, aim.middle))
+            within(along, (least, np.inf), middle)
     rows += [*turning(aim, at), *transmission(aim, at)]
     if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
         rows += [-step, step.sum(axis=1, keepdims=True) - TURN + INSIDE]
     return np.concatenate(rows, axis=1)
+
+
+def sides(region: Region) -> list[tuple[complex, float]]:
+    """Inward normals of a convex polygon, or of both sides of a segment, and the least places along them."""
+    corners = region.corners @ np.array([1, 1j])
+    along = np.roll(corners, -1) - corners
+    turns = np.sign((along.conj() * np.roll(along, -1)).imag)  # 1 where the corners go counter-clockwise
+    if np.ptp(turns) > 1:
+        raise ValueError("concave regions are not known here")
+    normals = 1j * (turns.sum() or 1) * along
+    least = (corners * normals.conj()).real / np.abs(normals) - BESIDE * np.abs(along) * (
+        region.on is not None
+    )
+    return list(zip(normals / np.abs(normals), least.tolist(), strict=True))
 
 
 def turning(aim: Aim, at: Places) -> list[FloatArray]:

@@ -146,7 +146,7 @@ def _changes(
     elif key == "keep_out":
         yield _areas_drawn_in(wanted, missed)
     elif isinstance(asked, Region):
-        yield {key: None}, f"{key} anywhere instead of inside its region, {max(found):.3g} outside"
+        yield {key: None}, f"{key} anywhere instead of in its region, such as {max(found):.3g} outside"
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.RATIOS:
