@@ -41,12 +41,9 @@ class Aim:
     timing: FloatArray
     closed: bool
     wanted: Requirements
-    turned: bool
-    "Whether the targets have angles."
-    timed: bool
-    "Whether the driver rotations are prescribed."
-    over_turn: bool
-    "Whether the transmission angle counts over the full turn."
+    turned: bool  # whether the targets have angles
+    timed: bool  # whether the driver rotations are prescribed
+    over_turn: bool  # whether the transmission angle counts over the full turn
 
     @classmethod
     def of(cls, problem: Problem) -> "Aim":
@@ -71,12 +68,9 @@ class Aim:
 class Designs:
     """A batch of B designs being improved."""
 
-    x: FloatArray
-    "(B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles."
-    elbow: FloatArray
-    "(B,): side of B on A-O4, +1 or -1."
-    sense: FloatArray
-    "(B,): of the driver, +1 or -1."
+    x: FloatArray  # (B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles
+    elbow: FloatArray  # (B,): side of B on A-O4, +1 or -1
+    sense: FloatArray  # (B,): of the driver, +1 or -1
 
     def __getitem__(self, rows: IntArray | slice) -> "Designs":
         return Designs(*(getattr(self, name)[rows] for name in self.__slots__))
