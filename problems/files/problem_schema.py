@@ -63,6 +63,8 @@ _CORNERS = {"inside": (Drawn | None, None), "on": (Corners | None, None)}
 
 @tables.keys_of(Box, _SIDES | _CORNERS, [*_SIDES, *_CORNERS])
 class BoxTable(tables.SpecTable):
+    """Where a joint may be: an upright rectangle whose sides may be open, a polygon, or a line segment."""
+
     suggested: ClassVar[bool] = False  # x and y do not show where they belong
     described_by: ClassVar[tuple[type, ...]] = (Region,)
 
