@@ -162,8 +162,8 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         within(joint.real, box.x, aim.middle.real)
         within(joint.imag, box.y, aim.middle.imag)
         for normal, least in sides(box) if isinstance(box, Region) else ():
-            along, middle = ((each * normal.conjugate()).real for each in (joint, aim.middle))
-            within(along, (least, np.inf), middle)
+            middle = (aim.middle * normal.conjugate()).real
+            within((joint * normal.conjugate()).real, (least, np.inf), middle)
     rows += [*turning(aim, at), *transmission(aim, at)]
     if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)
