@@ -24,6 +24,7 @@ from grashof.problems.values.linkages.cylinder import Cylinder, CylinderSpec
 from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
+from grashof.problems.values.region import Region
 from grashof.problems.values.requirements.objective import Objective
 from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -63,6 +64,7 @@ __all__ = [
     "PathTask",
     "Problem",
     "ProblemError",
+    "Region",
     "Requirements",
     "Rotatability",
     "Search",

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
+from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
-from grashof.problems import Linkage, Requirements, Task
+from grashof.problems import Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.target_limits import TargetLimits
 
@@ -28,7 +29,9 @@ def missed_at_targets(
     state = solve_position(linkage, verdict.theta2, verdict.assembly)
     for limits in wanted.at:
         for number in limits.targets:
-            for what, found, allowed, scale in _figures(linkage, verdict, state, limits, number - 1):
+            for what, found, allowed, scale in _figures(
+                linkage, verdict, state, limits, number - 1, task.size
+            ):
                 miss = max(allowed[0] - found, found - allowed[1]) / (task.size if scale == "length" else 1.0)
                 if not miss <= SLACK:
                     unit = float(np.degrees(1.0)) if scale == "angle" else 1.0
@@ -37,7 +40,7 @@ def missed_at_targets(
 
 
 def _figures(
-    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int
+    linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int, size: float
 ) -> Iterator[tuple[str, float, Limits, str]]:
     """Name, value, limits and kind of unit of each limited quantity at a target."""
     for name in ("a", "b", "instant_centre"):
@@ -48,6 +51,11 @@ def _figures(
             place = instant_centres(linkage, verdict.theta2[k], verdict.assembly[k]).i13
         else:
             place = getattr(state, name)[k]
+        if isinstance(box, Region):
+            words, most = "the instant centre" if len(name) > 1 else name.upper(), slack_of(box) * size
+            away = float(distances(box, *place[:, None])[0])
+            yield f"the distance of {words} from its region", away, (-np.inf, most), "length"
+            continue
         for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
             yield f"{name}.{axis}", value, side, "length"
     if limits.past_deg is not None:

@@ -15,6 +15,7 @@ from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
+from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
@@ -210,8 +211,8 @@ def _of_output(name: str, place: int, values: Values) -> float:
 def _torque_peak(values: Values) -> float:
     """That of `over_task`, without the rest of it."""
     if values._peaks is None:
-        design = [values.linkage], values.problem, [values.verdict]
-        return float(task_peaks(*design, torque_alone=True)[0, TORQUE])
+        found = task_peaks([values.linkage], values.problem, [values.verdict], torque_alone=True)
+        return float(found[0, TORQUE])
     return float(values._peaks[TORQUE])
 
 
@@ -348,8 +349,7 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
 
     The worst target on either side. ProblemError for a quantity that needs more than the problem states.
     """
-    limited = wanted.limited
-    verdict = values.verdict  # another defect reports that no motion joins the targets
+    limited, verdict = wanted.limited, values.verdict  # another defect says that no motion joins the targets
     joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
     for name, limit in limited.items():
         if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
@@ -363,10 +363,12 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
         if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
             continue  # that there is none is a defect by itself
         quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
+        if (region := wanted.regions.get(name)) is not None:
+            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
+            continue
         for part, numbers in values.parts(quantity.key).items():
-            if part in limited:  # r1 and link_length: its own limits take their place
-                continue
-            if not {part, ""} & set(ranges):  # a ratio without limits
+            # r1 has limits of its own besides link_length, a ratio may have none
+            if part in limited or not {part, ""} & set(ranges):
                 continue
             allowed = ranges[part if part in ranges else ""]
             for value in np.unique([numbers.min(), numbers.max()]).tolist():

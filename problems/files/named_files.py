@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import reduce
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, located_in, noted, refuse, whole_number
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError, listing, shown
+from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.specs.problem import MOST_TARGETS
 
 TABLES, DRAWINGS = (".csv", ".xlsx"), (".dxf", ".svg")
@@ -163,6 +166,13 @@ def _body(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
     return {"body": areas[0]}
 
 
+def _inside(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
+    areas = areas_of(name, folder, unit)
+    if len(areas) > 1:
+        raise ProblemError(f"{name}: has {len(areas)} closed lines; a region must be one")
+    return {"inside": areas[0]}
+
+
 def _areas(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
     return {"keep_out": areas_of(name, folder, unit)}
 
@@ -171,12 +181,14 @@ def _outlines(name: str, folder: Path, unit: str, _: object) -> dict[str, Any]:
     return {"outlines": outlines_of(name, folder, unit)}
 
 
-# By table and key; a file may give further keys of the same table.
+PLACES = [name for name, limit in LIMITS.items() if limit.kind in (Kind.INSIDE, Kind.ON_BODY)]
+# By table, or its path, and key; a file may give further keys of the same table.
 FILES: dict[tuple[str, str], tuple[tuple[str, ...], Read]] = {
     ("motion", "poses"): (TABLES, lambda name, folder, *_: poses_of(name, folder)),
     ("path", "points"): (TABLES + DRAWINGS, _path_points),
     ("motion", "body"): (DRAWINGS, _body),
     ("requirements", "keep_out"): (DRAWINGS, _areas),
+    **{(f"requirements.{name}", "inside"): (DRAWINGS, _inside) for name in PLACES},
     ("scene", "outlines"): (DRAWINGS, _outlines),
 }
 
@@ -194,7 +206,7 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
     found, wrong = dict(document), list[str]()
     unit = document.get("length_unit", "")
     for (table, key), (endings, read) in FILES.items():
-        stated, where = found.get(table), f"{table}.{key}"
+        stated, where = reduce(_inner, table.split("."), cast(Any, found)), f"{table}.{key}"
         name = stated.get(key) if isinstance(stated, dict) else None
         if not isinstance(name, str) or not isinstance(stated, dict):
             continue
@@ -210,6 +222,17 @@ def with_files(document: dict[str, Any], folder: Path | None) -> dict[str, Any]:
                 for other in keys.keys() & stated.keys() - {key}:
                     if keys[other] not in (None, stated[other]):
                         raise ProblemError(f"{name} has {other}, which is given besides; give one of them")
-            found[table] = {name: value for name, value in (stated | keys).items() if value is not None}
+            given = {name: value for name, value in (stated | keys).items() if value is not None}
+            found = _with_table(found, table.split("."), given)
     refuse(wrong)
     return found
+
+
+def _inner(table: Any, key: str) -> Any:
+    return table.get(key) if isinstance(table, dict) else None
+
+
+def _with_table(document: dict[str, Any], path: list[str], table: dict[str, Any]) -> dict[str, Any]:
+    """A copy of a document with another table at a path."""
+    head, *rest = path
+    return {**document, head: _with_table(document[head], rest, table) if rest else table}

@@ -13,6 +13,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
 from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanisms import kinds_text
+from grashof.problems.values.region import Region
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.problem import Problem
@@ -161,6 +162,8 @@ def degrees_of(angles: FloatArray) -> FloatArray:
 
 def toml_value(value: Any) -> str:
     """A value as TOML has it, numbers in full precision."""
+    if isinstance(value, Region):
+        value = {"inside": value.inside} if value.on is None else {"on": value.on}
     if isinstance(value, Box):
         value = asdict(value)
     if isinstance(value, TargetLimits):

@@ -1,12 +1,14 @@
 """Areas for parts of a linkage to avoid: polygons checked, and joined.
 
-The only module that gives polygons to shapely. It is imported only where there are areas.
+Regions for joints are shapes here, too. The only module that gives polygons to shapely. It is imported only
+where there are areas.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +17,7 @@ import shapely
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.region import Region
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
 
@@ -26,7 +29,7 @@ def polygons(values: Iterable[npt.ArrayLike], where: str) -> tuple[FloatArray, .
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise wrong_value(where, values, "a list of polygons")
-    return tuple(each_checked(values, where, _polygon))
+    return tuple(each_checked(values, where, polygon))
 
 
 def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
@@ -36,7 +39,21 @@ def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
     return joined
 
 
-def _polygon(values: npt.ArrayLike, where: str) -> FloatArray:
+def shape(region: Region) -> shapely.Geometry:
+    """A region as a polygon or a line, prepared for many queries."""
+    return _shape(region.corners.tobytes(), region.on is not None)
+
+
+@lru_cache(maxsize=64)
+def _shape(corners: bytes, is_line: bool) -> shapely.Geometry:
+    rows = np.frombuffer(corners).reshape(-1, 2)
+    made = shapely.LineString(rows) if is_line else shapely.Polygon(rows)
+    shapely.prepare(made)
+    return made
+
+
+def polygon(values: npt.ArrayLike, where: str) -> FloatArray:
+    """Corners of a simple polygon, read-only (M, 2); see `polygons`."""
     corners = finite_rows(values, 2, where, "a corner [x, y]", GREATEST)
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:

@@ -32,6 +32,13 @@ class Box:
                 check_fields(self, **{axis: _side})
         refuse(wrong)
 
+    def moved(self, origin: complex, scale: float) -> Box:
+        """The same place in a frame with this origin and unit of length."""
+        return Box(
+            ((self.x[0] - origin.real) / scale, (self.x[1] - origin.real) / scale),
+            ((self.y[0] - origin.imag) / scale, (self.y[1] - origin.imag) / scale),
+        )
+
 
 def _side(values: Limits, name: str) -> Limits:
     wanted = "[lo, hi] with lo <= hi"

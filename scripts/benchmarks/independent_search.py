@@ -14,10 +14,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from convex_sides import sides
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
-from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Region, Requirements, Rotatability
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 
 STARTS, POLISHED = 800, 40
@@ -67,12 +68,9 @@ class Aim:
 class Designs:
     """A batch of B designs being improved."""
 
-    x: FloatArray
-    "(B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles."
-    elbow: FloatArray
-    "(B,): side of B on A-O4, +1 or -1."
-    sense: FloatArray
-    "(B,): of the driver, +1 or -1."
+    x: FloatArray  # (B, n): O2, O4, logarithms of r2, r3, r4, coupler point, body angle, driver angles
+    elbow: FloatArray  # (B,): side of B on A-O4, +1 or -1
+    sense: FloatArray  # (B,): of the driver, +1 or -1
 
     def __getitem__(self, rows: IntArray | slice) -> "Designs":
         return Designs(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -171,6 +169,9 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         box, joint = getattr(wanted, name), getattr(at, name)
         within(joint.real, box.x, aim.middle.real)
         within(joint.imag, box.y, aim.middle.imag)
+        for normal, least in sides(box) if isinstance(box, Region) else ():
+            middle = (aim.middle * normal.conjugate()).real
+            within((joint * normal.conjugate()).real, (least, np.inf), middle)
     rows += [*turning(aim, at), *transmission(aim, at)]
     if not aim.timed:
         step = designs.sense[:, None] * np.diff(at.theta2, axis=1)

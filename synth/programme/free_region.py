@@ -12,15 +12,15 @@ from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES
 from grashof.synth.quantities.screening import TOUCHING
 
-_EVERY_PLANE = np.array([0.0, 0.0, -1.0])  # 0 x + 0 y >= -1: no limit
+EVERY_PLANE = np.array([0.0, 0.0, -1.0])  # 0 x + 0 y >= -1: no limit
 
 
-def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
+def half_planes(area: shapely.Geometry, point: complex, count: int = PLANES) -> FloatArray:
     """Half-planes about a point whose intersection is free of an area (see `solid`).
 
-    Rows (nx, ny, c), (PLANES, 3): nx x + ny y >= c in the free region, (nx, ny) a unit vector. For a point
+    Rows (nx, ny, c), (`count`, 3): nx x + ny y >= c in the free region, (nx, ny) a unit vector. For a point
     inside the area its nearest boundary point is taken. The side nearest to the point is extended to a
-    straight line, and the area beyond it cut off; this is repeated until nothing is left, or `PLANES` are
+    straight line, and the area beyond it cut off; this is repeated until nothing is left, or all are
     used up and some of the area farther away is left. (Deits & Tedrake, "Computing large convex regions of
     obstacle-free space", 2015, take the same greedy cuts.)
 
@@ -28,7 +28,7 @@ def half_planes(area: shapely.Geometry, point: complex) -> FloatArray:
     >>> half_planes(stairs, 3 + 1j)[:3].tolist()
     [[0.0, 1.0, 0.0], [-1.0, 0.0, -5.0], [0.0, 0.0, -1.0]]
     """
-    planes = np.tile(_EVERY_PLANE, (PLANES, 1))
+    planes = np.tile(EVERY_PLANE, (count, 1))
     if shapely.contains_xy(area, point.real, point.imag):
         place = shapely.Point(point.real, point.imag)
         nearest = shapely.get_coordinates(shapely.shortest_line(shapely.boundary(area), place))[0]

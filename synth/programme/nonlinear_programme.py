@@ -163,6 +163,10 @@ def _stated(
     bound_second_loop(build, form, x)
     require_limits(build, form, x, places)
     keep_out(build, form, x, places)
+    if form.regions:
+        from grashof.synth.programme.regions import require_regions
+
+        require_regions(build, form, x, places)
     require_own(build, form, x, places, constraints)
     cost = cost_of_goals(build, form, x, places)
     if form.own_goal and own_objective is not None:

@@ -17,9 +17,11 @@ from grashof.synth.quantities.driver_motion import drive_of
 from grashof.synth.quantities.formulas import Formulas, of_six_bars
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.loading import Loading
+from grashof.synth.quantities.regions import pairs_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import points_kept_out
 
+MOST_SIDES = 64  # half-planes that bound a convex piece of a region
 PLANES = 4  # half-planes that bound a free region
 STEPS = 24  # of the driver in every half turn, at whose ends quantities along the motion are bounded
 
@@ -47,6 +49,9 @@ class Form:
     motor: MotorSpec | None  # drive law where anything is bounded along the motion
     closed: bool  # the task motion is a full turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
+    # Fields of places that are regions, with the half-planes of each; none for a segment. Bounds suffice for
+    # segments along an axis.
+    regions: tuple[tuple[str, int], ...]
     stay: bool  # the distance from the start is the objective
     elastic: bool  # requirements may be missed; the amount is the objective
     # Targets, in the order of visit, at which the driver has the angle of the least miss, as for the judge;
@@ -103,6 +108,7 @@ class Form:
             motor=drive_of(scaled.problem)[0],
             closed=closed,
             keep_out=points_held(scaled),
+            regions=_regions(scaled, start),
             stay=start.terms.stay,
             elastic=bool(start.terms.relaxed),
             nearest=_nearest(scaled, start),
@@ -124,6 +130,15 @@ def _limited(scaled: ScaledProblem, start: Start) -> tuple[str, ...]:
     if not start.terms.relaxed and high <= low * wanted.link_ratio_max:
         names.remove("link_ratio_max")
     return tuple(names)
+
+
+def _regions(scaled: ScaledProblem, start: Start) -> tuple[tuple[str, int], ...]:
+    formulas = scaled.kind.formulas if start.second is None else of_six_bars(())
+    return tuple(
+        (name, min(len(region.corners), MOST_SIDES) if region.on is None else 0)
+        for name, region, *_ in pairs_of(scaled.wanted, formulas)
+        if not region.is_upright
+    )
 
 
 def _grid_size(start: Start, closed: bool) -> int:

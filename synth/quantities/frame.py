@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems import Box, Requirements, Task
-from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 
@@ -46,7 +46,7 @@ class Frame:
         """The value of a field in this frame."""
         if isinstance(value, Box):
             begin = self.origin if limit.kind is Kind.INSIDE else 0j
-            return Box(self._side(value.x, begin.real), self._side(value.y, begin.imag))
+            return value.moved(begin, self.scale)
         power = limit.quantity.unit.lengths
         if not power:
             return value
@@ -55,6 +55,3 @@ class Frame:
             if isinstance(value, tuple)
             else value / self.scale**power
         )
-
-    def _side(self, side: Limits, begin: float) -> Limits:
-        return (side[0] - begin) / self.scale, (side[1] - begin) / self.scale

@@ -15,6 +15,7 @@ from grashof.synth.loop.dyad import as_vector
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.formulas import Part, View, parts_of, range_of
 from grashof.synth.quantities.kind import LENGTHS, Kind
+from grashof.synth.quantities.regions import outside, pairs_of
 
 ROUNDING = 1e-10  # sizes, rad: up to which a limit counts as kept
 TOUCHING = 1e-10  # sizes: a point no deeper inside an area counts as on its boundary
@@ -144,6 +145,10 @@ def _oversteps(view: Many, wanted: Requirements, dyad: int | None) -> Iterator[t
     for name, part in parts_of(wanted.limited, view.kind.formulas):
         if part.dyad == dyad:
             missed[name] = missed.get(name, 0.0) + _overstep(view, name, part, wanted)
+    for name, region, x, y in pairs_of(wanted, view.kind.formulas):
+        if x.dyad == dyad:  # in place of the box around it
+            amount = outside(region, x.of(view), y.of(view))
+            missed[name] = np.where(amount > ROUNDING, amount, 0.0)
     yield from ((name, amount.max(axis=1)) for name, amount in missed.items())
 
 

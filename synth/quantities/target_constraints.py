@@ -9,8 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design
-from grashof.problems import Box, Problem
+from grashof.problems import Box, Problem, Region
+from grashof.problems.values.arrays import Limits
 from grashof.problems.values.requirements.target_limits import TargetLimits
+from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
 FLAT = 1e-4  # sine of a rotation between two targets below which its sense is not certain
@@ -36,7 +38,8 @@ class AtTarget:
             centre = self.name == "instant_centre"
             place = _centre(design, self.k) if centre else getattr(design, self.name)[self.k]
             sides = zip((place[0], place[1]), (box.x, box.y), strict=True)
-            return [over for value, side in sides for over in _beyond(value, *side)]
+            inside = [over for value, side in sides for over in _beyond(value, *side)]
+            return inside + [over for row in _hull(box) for over in _beyond(_along(place, row[0]), *row[1])]
         return [_EXCESS[self.name](self, design)]
 
     def past(self, design: Design) -> Any:
@@ -83,6 +86,15 @@ def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
 def _beyond(value: Any, low: float, high: float) -> list[Any]:
     """Excess over the sides that are there."""
     return [low - value] * bool(np.isfinite(low)) + [value - high] * bool(np.isfinite(high))
+
+
+def _hull(box: Box) -> list[tuple[complex, Limits]]:
+    """Rows of the convex hull of a region (see `hull_rows`); the judge decides on the rest."""
+    return hull_rows(box) if isinstance(box, Region) else []
+
+
+def _along(place: Any, normal: complex) -> Any:
+    return normal.real * place[0] + normal.imag * place[1]
 
 
 def _links(design: Design, k: int) -> tuple[Any, Any, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
-from grashof.problems import Box, FourBar, Problem, Requirements, Rotatability
+from grashof.problems import Box, FourBar, Problem, Region, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits, turned_beyond, turned_from
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
@@ -145,6 +145,8 @@ def _changes(
         yield {"at": ()}, "no limits at single targets"
     elif key == "keep_out":
         yield _areas_drawn_in(wanted, missed)
+    elif isinstance(asked, Region):
+        yield {key: None}, f"{key} anywhere instead of in its region, such as {max(found):.3g} outside"
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
     elif kind is Kind.RATIOS:

@@ -14,6 +14,7 @@ from grashof.problems import Requirements, Rotatability, TransmissionOver
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.synth.quantities.formulas import Formulas, Part, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
+from grashof.synth.quantities.regions import hull_parts, pairs_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
@@ -42,13 +43,18 @@ class SearchTargets:
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        limited = parts_of(
-            self.wanted.limited, self.kind.formulas if self.formulas is None else self.formulas
-        )
-        rows = tuple(
-            (name, part, narrowed(range_of(self.wanted, name, part), self.spare)) for name, part in limited
-        )
-        object.__setattr__(self, "limited", rows)
+        formulas = self.kind.formulas if self.formulas is None else self.formulas
+        rows = [
+            (name, part, range_of(self.wanted, name, part))
+            for name, part in parts_of(self.wanted.limited, formulas)
+        ]
+        rows += [
+            (name, *side)
+            for name, region, x, y in pairs_of(self.wanted, formulas)
+            for side in hull_parts(name, region, x, y)
+        ]
+        kept = tuple((name, part, narrowed(limits, self.spare)) for name, part, limits in rows)
+        object.__setattr__(self, "limited", kept)
 
     @classmethod
     def of(cls, scaled: ScaledProblem) -> SearchTargets:

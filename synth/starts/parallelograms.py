@@ -26,6 +26,7 @@ from grashof.problems.values.arrays import (
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.driver_motion import meeting_order, shorter_way
+from grashof.synth.quantities.regions import into
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import (
     GROUPS,
@@ -233,8 +234,8 @@ def _kept(scaled: ScaledProblem, drawn: _Drawn) -> _Drawn:
         (allowed,) = wanted.ranges("ground_angle_deg").values()
         angle = np.angle(coupler)
         coupler = np.abs(coupler) * np.exp(1j * (angle - turned_beyond(angle, allowed)))
-    o2 = _into(wanted.o2, drawn.a - drawn.crank)
-    o4 = _into(wanted.o4, o2 + coupler)
+    o2 = into(wanted.o2, drawn.a - drawn.crank)
+    o4 = into(wanted.o4, o2 + coupler)
     if wanted.ground_angle_deg is None:
         coupler = o4 - o2
     else:
@@ -287,11 +288,6 @@ def _short(found: Screened) -> BoolArray:
     """Those without a coupler, as where both pivots were moved into the same corner."""
     _, _, a, b, _ = found.points.T
     return np.asarray(np.abs(a - b) < SHORTEST)
-
-
-def _into(box: Box | None, points: ComplexArray) -> ComplexArray:
-    x, y = (box or Box()).x, (box or Box()).y
-    return np.clip(points.real, *x) + 1j * np.clip(points.imag, *y)
 
 
 def _both(first: Limits, second: Limits) -> Limits:

@@ -6,6 +6,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import ComplexArray, FloatArray, Limits
+from grashof.synth.quantities.regions import into
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.burmester import (
     Displacements,
@@ -125,7 +126,7 @@ def arms(limits: Limits | None, count: int, rng: np.random.Generator) -> Complex
 
 
 def ground_pivots(box: Box | None, longest: float, samples: int, rng: np.random.Generator) -> ComplexArray:
-    """Random places of a ground pivot inside its box, within reach of the task; few where it is fixed."""
+    """Random places of a ground pivot where it may be, within reach of the task; few where it is fixed."""
     reach = min(3.0 + longest, 100.0)
     x, y = (
         (max(low, -reach), min(high, reach)) if low < reach and high > -reach else (low, high)
@@ -134,7 +135,7 @@ def ground_pivots(box: Box | None, longest: float, samples: int, rng: np.random.
     count = samples // 2 if x[0] < x[1] or y[0] < y[1] else samples // 20
     wide = rng.uniform(*x, count) + 1j * rng.uniform(*y, count)
     near = np.clip(rng.normal(0, 1.5, count), *x) + 1j * np.clip(rng.normal(0, 1.5, count), *y)
-    return np.where(rng.random(count) < 0.5, wide, near)
+    return into(box, np.where(rng.random(count) < 0.5, wide, near))
 
 
 def fixed_pivots(wanted: Requirements) -> dict[str, complex]:

@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
-from itertools import islice
+from itertools import islice, pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.path import Path
 
 from grashof.analysis import verify
 from grashof.analysis.judge.measures import Values
@@ -19,9 +20,10 @@ from grashof.problems import (
     MotionTask,
     PathTask,
     Problem,
+    Region,
     Requirements,
 )
-from grashof.problems.values.arrays import FloatArray
+from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.start import Start
@@ -226,3 +228,81 @@ def solved_from_those_that_miss(scaled: ScaledProblem, of: Pool, beyond: FloatAr
         if done.verified:
             return of.values(done.verified[0].linkage, scaled.problem.requirements).verdict.ok
     return not missing
+
+
+JOINTS = ("o2", "o4", "a", "b", "a_on_body", "b_on_body")
+SLANTED = np.exp(0.4j)
+
+
+def places(of: Pool, name: str) -> ComplexArray:
+    """Of a joint of every linkage, at every target: (n, N), or (n, 1)."""
+    every = [each.parts(name) for each in of.known]
+    return np.array([each["x"] + 1j * each["y"] for each in every])
+
+
+def halving_region(of: Pool, name: str, shape: str) -> tuple[Region, FloatArray]:
+    """A region that about half of the linkages miss, and how far they are outside at worst, or inside."""
+    at = places(of, name)
+    if shape == "segment":
+        middle = at[np.argsort(at[:, 0].real)[len(at) // 2], 0]
+        ends = middle + 0.7 * of.problem.task.size * SLANTED * np.array([-1, 1])
+        return on(ends), distance_from(ends, at).max(axis=1)
+    ahead = (at / SLANTED).real.max(axis=1)
+    edge, far = float(np.median(ahead)) + 2 * NEAR, 50 * of.problem.task.size
+    corners = [edge - far - 1j * far, edge - 1j * far, edge + 1j * far, edge - far + 1j * far]
+    if shape == "notched":  # the notch begins beyond all of them
+        corners[3:3] = [edge - far + 1j * far, edge - 0.9 * far + 0.9j * far]
+        corners.pop()
+    region = inside(np.array(corners) * SLANTED)
+    within = contains(region, at)
+    away = distance_from(np.append(region.places, region.places[0]), at)
+    return region, np.where(within, -away, away).max(axis=1)
+
+
+def inside(corners: ComplexArray) -> Region:
+    return Region(inside=np.column_stack([corners.real, corners.imag]))  # type: ignore[arg-type]
+
+
+def on(ends: ComplexArray) -> Region:
+    return Region(on=np.column_stack([ends.real, ends.imag]))  # type: ignore[arg-type]
+
+
+def contains(region: Region, at: ComplexArray) -> Any:
+    flat = np.column_stack([at.ravel().real, at.ravel().imag])
+    return Path(region.corners).contains_points(flat).reshape(at.shape)
+
+
+def distance_from(line: ComplexArray, at: ComplexArray) -> FloatArray:
+    """Of places from a polyline, by turning each of its sides onto the real axis."""
+    away = np.full(at.shape, np.inf)
+    for begin, end in pairwise(line.tolist()):
+        turned = (at - begin) * abs(end - begin) / (end - begin)
+        beyond = turned.real - np.clip(turned.real, 0, abs(end - begin))
+        away = np.minimum(away, np.hypot(beyond, turned.imag))
+    return away
+
+
+@pytest.mark.quick("poses met-polygon-o2", "poses met-notched-a_on_body", "poses met-segment-o4")
+@pytest.mark.parametrize("name", JOINTS)
+@pytest.mark.parametrize("shape", ["polygon", "notched", "segment"])
+@pytest.mark.parametrize("kind", TASKS)
+def test_misses_are_named_and_regions_kept(kind: str, shape: str, name: str) -> None:
+    of = pool(kind)
+    if name.endswith("_on_body") and not of.problem.task.has_angle.any():
+        return
+    if shape == "segment" and name in ("a", "b"):  # a joint that turns leaves every line
+        return
+    region, beyond = halving_region(of, name, shape)
+    problem = with_field(of, name, region)
+    size = of.problem.task.size
+    clear = np.abs(beyond) > NEAR * size
+    for each, missed in zip(of.known, np.where(clear, beyond, np.nan), strict=True):
+        if np.isfinite(missed):
+            found = verify(each.linkage, problem.task, problem.requirements, problem=problem).defects
+            assert [defect.requirement for defect in found] == [name] * int(missed > 0)
+            if missed > 0:
+                assert found[0].found == pytest.approx(missed, rel=1e-6)
+    scaled = ScaledProblem.of(problem)
+    seen = rejudged(scaled, of.screened).violations[:, GROUPS.index(name)] > 0
+    np.testing.assert_array_equal(seen[clear], (beyond > 0)[clear])
+    assert solved_from_those_that_miss(scaled, of, np.where(clear, beyond, 0.0))

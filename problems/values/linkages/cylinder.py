@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.box import Box
 from grashof.problems.values.checks import finite_number, limits, one_of, pair, some_of
-from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.errors import ProblemError, shown
 from grashof.problems.values.linkages.one_loop import FourBar
+from grashof.problems.values.region import Region
 from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
 
 CARRIERS: dict[str, int] = {link.name: link.number for link in FourBar.mechanism.links[1:]}
@@ -69,8 +70,9 @@ below 2: a rod is no longer than its cylinder
             )
         on = some_of(self.on, f"{_WHERE}.on", CARRIERS, f"a list of some of {', '.join(CARRIERS)}")
         set_fields(self, ratio_max=ratio, on=tuple(sorted(on, key=list(CARRIERS).index)))
-        if not isinstance(self.base, Box | None):
-            raise wrong_value(f"{_WHERE}.base", self.base, "a Box")
+        if not isinstance(self.base, Box | None) or isinstance(self.base, Region):
+            given = "a region" if isinstance(self.base, Region) else shown(self.base)
+            raise ProblemError(f"{_WHERE}.base is {given}; it must be a box")
 
 
 @dataclass(frozen=True, slots=True)

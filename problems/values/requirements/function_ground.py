@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.box import ANYWHERE, Box
+from grashof.problems.values.box import Box
+from grashof.problems.values.region import standing
 from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.tasks.task import Task
 
@@ -30,8 +31,8 @@ class FunctionGround:
 
     @classmethod
     def of(cls, wanted: Requirements) -> FunctionGround:
-        """By limits of o2, o4, r1, link_length and the ground angle."""
-        o2, o4 = wanted.o2 or ANYWHERE, wanted.o4 or ANYWHERE
+        """By limits of o2, o4, r1, link_length and the ground angle; in a region the pivot has one place."""
+        o2, o4 = standing(wanted.o2), standing(wanted.o4)
         low, high = wanted.r1 or wanted.link_length or (0.0, np.inf)
         usual = float(np.clip(1.0, low, high))
         sides = [(g[0] - m[1], g[1] - m[0]) for m, g in ((o2.x, o4.x), (o2.y, o4.y))]

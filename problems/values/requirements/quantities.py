@@ -338,8 +338,8 @@ class Kind(Enum):
     AT_MOST = auto()
     EQUAL = auto()  # an angle
     DIRECTION = auto()  # an angle, or [lo, hi]
-    INSIDE = auto()  # a box in the plane
-    ON_BODY = auto()  # a box in the body's frame
+    INSIDE = auto()  # a box or a region in the plane
+    ON_BODY = auto()  # one in the body's frame
     WORD = auto()  # one of several words, each allowing a range
     RATIOS = auto()  # [lo, hi] of each of some ratios of links
 
@@ -367,7 +367,7 @@ class Limit:
     def ranges(self, value: Any) -> dict[str, Limits]:
         """The ranges that a value of the field allows, angles in rad.
 
-        By the axis of a box, or the name of a ratio; else by "".
+        By the axis of a box, also that around a region, or the name of a ratio; else by "".
         """
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}

@@ -23,7 +23,7 @@ def limits(limited: Limit, value: Any, where: str) -> Box | LinkRatios | Limits 
     """A checked limit of a quantity: a box, ratios, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
-            raise wrong_value(where, value, "a Box")
+            raise wrong_value(where, value, "a Box or a Region")
         return value
     if limited.kind is Kind.RATIOS:
         return value if isinstance(value, LinkRatios) else LinkRatios.checked(value, where)

@@ -14,6 +14,7 @@ from grashof.problems.values.arrays import TURN, FloatArray, Limits
 from grashof.problems.values.box import ANYWHERE, Box
 from grashof.problems.values.checks import GREATEST, some_of, true_or_false, within
 from grashof.problems.values.linkages.mechanisms import having
+from grashof.problems.values.region import Region, regions
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
 from grashof.problems.values.requirements.link_ratios import LinkRatios
@@ -97,9 +98,9 @@ class Requirements(ReadOnly):
         Ratios of two links, such as ``{"r4/r2": 1, "r3/r2": (2, 2.5)}``: a number, or (lo, hi).
     coupler_arms : tuple of float, optional
         (lo, hi) for the distances of P from the joints of its link: A-P and B-P, of a six-bar C-P and E-P.
-    o2, o4, d : Box, optional
+    o2, o4, d : Box or Region, optional
         Where this ground pivot may lie; D is that of link 6, of a Watt II or Stephenson III.
-    a, b : Box, optional
+    a, b : Box or Region, optional
         Where this moving pivot may be at every target.
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
@@ -140,7 +141,7 @@ class Requirements(ReadOnly):
         (lo, hi) for its greatest force.
     cylinder_rate : tuple of float, length, optional
         (lo, hi) for the change of its length for a radian of link 4, over the task motion.
-    a_on_body, b_on_body : Box, optional
+    a_on_body, b_on_body : Box or Region, optional
         Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
         Polygons; their boundary may be touched. Where two overlap or share a side they are one.
@@ -331,6 +332,11 @@ class Requirements(ReadOnly):
         return {
             name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
+
+    @property
+    def regions(self) -> dict[str, Region]:
+        """The places that are regions, not boxes, by field."""
+        return regions({name: getattr(self, name) for name in LIMITS})
 
     def as_required(self, quantity: Quantity) -> Quantity:
         """The quantity itself; of the transmission angle, the one over the motion that is required."""

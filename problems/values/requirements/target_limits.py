@@ -26,7 +26,7 @@ class TargetLimits:
     ----------
     targets : sequence of int
         Numbers of the targets, counted from 1.
-    a, b : Box, optional
+    a, b : Box or Region, optional
         Where this moving pivot may be there.
     instant_centre : Box, optional
         Where the centre of rotation of the coupler may lie there, the intersection of O2A and O4B.
@@ -105,7 +105,7 @@ def _target(number: int, where: str) -> int:
 
 def _box(value: Any, where: str) -> Box | None:
     if value is not None and not isinstance(value, Box):
-        raise wrong_value(where, value, "a Box")
+        raise wrong_value(where, value, "a Box or a Region")
     return value
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
@@ -201,7 +200,7 @@ def stated_size(wanted: Requirements) -> float:
     if wanted.o2 is not None and wanted.o4 is not None:
         apart = [
             (sum(four) - sum(two)) / 2  # NaN where a box is open
-            for two, four in zip(*map(astuple, (wanted.o2, wanted.o4)), strict=True)
+            for two, four in ((wanted.o2.x, wanted.o4.x), (wanted.o2.y, wanted.o4.y))
         ]
         if LEAST < (distance := math.hypot(*apart)) < GREATEST:
             return distance

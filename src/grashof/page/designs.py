@@ -22,7 +22,7 @@ from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import Scene, bodies_of
 from grashof.page.render import compact, plain
-from grashof.problems import Cylinder, DynamicsSpec, FourBar, Linkage, Problem, Task, catalogue, load
+from grashof.problems import Cylinder, DynamicsSpec, FourBar, Linkage, Problem, Region, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -52,6 +52,7 @@ def scene_of(problem: Problem) -> dict[str, Any]:
                 "name": ", ".join(name.upper() for name, other in boxes.items() if other == box),
                 "x": list(map(plain, np.array(box.x, dtype=float))),
                 "y": list(map(plain, np.array(box.y, dtype=float))),
+                **({"corners": box.corners.tolist()} if isinstance(box, Region) else {}),
             }
             for box in dict.fromkeys(boxes.values())
         ],

@@ -16,6 +16,7 @@ from grashof.problems import (
     MotionTask,
     Problem,
     ProblemError,
+    Region,
     Requirements,
     StrokeTask,
     TandemTask,
@@ -108,10 +109,21 @@ def _limit(problem: Problem, wanted: Requirements, name: str) -> str:
     """The quantity that a field of the requirements limits, with its limits."""
     limited = wanted.limited[name]
     quantity = wanted.as_required(limited.quantity)
+    if (region := wanted.regions.get(name)) is not None:
+        return f"{quantity.words}: {_region(region)} {problem.length_unit}".strip()
     sides = {part: limited.range_text(limits) for part, limits in wanted.ranges(name).items()}
     unit = problem.length_unit if quantity.unit is Unit.LENGTH else quantity.unit
     limits = ", ".join(f"{part} {side}".strip() for part, side in sides.items() if side)
     return f"{quantity.words}: {limits} {unit}".strip()
+
+
+def _region(region: Region) -> str:
+    """A region of joints in words."""
+    (left, right), (low, high) = region.x, region.y
+    if region.on is not None:
+        return "on the line from ({:g}, {:g}) to ({:g}, {:g})".format(*region.corners.ravel().tolist())
+    corners = counted(len(region.corners), "corner")
+    return f"inside a polygon of {corners}, x {left:g} to {right:g}, y {low:g} to {high:g}"
 
 
 def _at_targets(limits: TargetLimits, unit: str) -> str:
@@ -119,6 +131,9 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
     where = f"at {'targets' if len(limits.targets) > 1 else 'target'} {listing(limits.targets, 'and')}"
     said = []
     for name, box in (("A", limits.a), ("B", limits.b), ("instant centre", limits.instant_centre)):
+        if isinstance(box, Region):
+            said.append(f"{name} {_region(box)}{unit}")
+            continue
         sides = () if box is None else ((f"{name}.x", *box.x), (f"{name}.y", *box.y))
         said += [f"{axis} {low:g} to {high:g}{unit}" for axis, low, high in sides if high - low < np.inf]
     if limits.past_deg is not None:

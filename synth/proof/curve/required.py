@@ -182,6 +182,7 @@ def left_out(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> tuple[str,
         without += [name for name in wanted.limited if name in _OF_ORDER and not _says_nothing(wanted, name)]
     moving = wanted.keep_out and not set(wanted.keep_out_for) <= _GROUND
     without += ["keep_out"] * bool(moving) + ["constraints"] * bool(scaled.constraints)
+    without += [name for name in wanted.regions if name in forms]  # the box around has one
     without += ["at"] * bool(wanted.at)
     return tuple(without)
 
@@ -199,6 +200,7 @@ def with_forms(scaled: ScaledProblem, forms: Sequence[str] = _FORMS) -> ScaledPr
         for name in left_out(scaled, forms)
         if name in LIMITS
     }
+    changed |= {name: Box(each.x, each.y) for name, each in wanted.regions.items() if name in forms}
     for_ground = tuple(name for name in wanted.keep_out_for if name in _GROUND)
     if for_ground:
         changed["keep_out_for"] = for_ground

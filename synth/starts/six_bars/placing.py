@@ -9,6 +9,7 @@ import numpy as np
 from grashof.problems import Box, Requirements
 from grashof.problems.values.arrays import ComplexArray
 from grashof.problems.values.box import ANYWHERE
+from grashof.synth.quantities.regions import into
 
 
 def place_of(
@@ -51,8 +52,11 @@ def _scales(wanted: Requirements, lengths: Mapping[str, float], reached: Complex
 
 
 def _inside(box: Box, near: complex) -> complex:
-    """The middle of a box; along an axis on which it is open, the place in it nearest to another."""
+    """The middle of a box, of a region the place nearest to it.
+
+    Along an axis on which a box is open, the place in it nearest to another.
+    """
     places = []
     for (low, high), at in zip((box.x, box.y), (near.real, near.imag), strict=True):
         places.append((low + high) / 2 if np.isfinite(high - low) else min(max(at, low), high))
-    return complex(*places)
+    return complex(into(box, np.array(complex(*places))))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar, TypeAlias
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from grashof.problems.values.region import standing
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH, Round, Start, Terms
 from grashof.synth.programme.whole_screening import fully_screened
@@ -76,8 +78,9 @@ class LimitPositions(DesignFinder):
 
     @property
     def wanted(self) -> Requirements:
-        """Resolved, in the problem's unit."""
-        return self.scaled.problem.requirements.resolved(self.task.size, scale_free=self.task.scale_free)
+        """Resolved, in the problem's unit; in a region a ground pivot has one place."""
+        wanted = self.scaled.problem.requirements.resolved(self.task.size, scale_free=self.task.scale_free)
+        return replace(wanted, o2=standing(wanted.o2), o4=standing(wanted.o4)) if wanted.regions else wanted
 
     @property
     def elsewhere(self) -> bool:

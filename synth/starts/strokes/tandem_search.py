@@ -16,6 +16,7 @@ import numpy as np
 from grashof.problems import Box, Problem, Requirements, Rotatability
 from grashof.problems.values.arrays import TURN, BoolArray, ComplexArray, FloatArray, IntArray, Limits
 from grashof.problems.values.box import ANYWHERE
+from grashof.problems.values.region import standing
 from grashof.synth.starts.strokes.tandem_shapes import (
     DRIVEN_BY_4,
     DRIVEN_BY_CRANK,
@@ -129,7 +130,7 @@ class TandemAim:
     @property
     def _boxes(self) -> list[Box]:
         wanted = self.wanted
-        return [wanted.o2 or ANYWHERE, wanted.o4 or ANYWHERE, wanted.d or ANYWHERE]
+        return [standing(wanted.o2), standing(wanted.o4), standing(wanted.d)]
 
     @cached_property
     def size(self) -> float:

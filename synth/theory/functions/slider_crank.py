@@ -10,6 +10,7 @@ import numpy as np
 
 from grashof.problems import Requirements, SliderCrank
 from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray, Limits
+from grashof.problems.values.region import standing
 from grashof.synth.loop.dual import Dual
 from grashof.synth.loop.dyad import Closed, Sizes, Slider, stroke_of
 from grashof.synth.loop.vector import Vector
@@ -168,7 +169,7 @@ class SliderCranks(Generators):
         o2 = (
             [0.0, 0.0]
             if wanted.o2 is None
-            else [float(np.clip(0.0, *side)) for side in (wanted.o2.x, wanted.o2.y)]
+            else [float(np.clip(0.0, *side)) for side in (standing(wanted.o2).x, standing(wanted.o2).y)]
         )
         return SliderCrank(
             o2=o2, r2=r2, r3=r3, offset=offset, slide_angle=self.direction(wanted),

@@ -139,6 +139,7 @@ def limiting(key: str, low: float, high: float) -> Any:
         ranges=lambda name: {"": (low, high)},
         as_required=lambda quantity: quantity,
         same_branch=True,
+        regions={},
     )
 
 

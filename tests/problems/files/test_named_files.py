@@ -191,6 +191,21 @@ def test_a_body_is_one_area(tmp_path: Path) -> None:
     assert refused(tmp_path, text, body__svg=two) == said
 
 
+def test_a_place_inside_a_drawing(tmp_path: Path) -> None:
+    head, poses = 'kind = "motion"\nlength_unit = "mm"\n', "[motion]\nposes = [[0, 0, 0], [5, 5, 30]]\n"
+    text = head + poses + '[requirements]\no4 = { inside = "wing.svg#spar" }\n'
+    spar = '<path id="spar" d="M 0 0 L 9 0 L 4 -3 Z"/>'
+    wing = f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" viewBox="0 0 50 50">{spar}</svg>'
+    region = written(tmp_path, text, wing__svg=wing).requirements.regions["o4"]
+    assert shapely.Polygon(region.corners).area == pytest.approx(4 * 9 * 3 / 2)
+    assert region.y == pytest.approx((0, 6))
+    both = '<g id="spar"><rect width="1" height="1"/><rect x="5" width="1" height="1"/></g>'
+    said = refused(tmp_path, text, wing__svg=wing.replace(spar, both))
+    assert said.endswith("requirements.o4.inside: wing.svg#spar: has 2 closed lines; a region must be one")
+    said = refused(tmp_path, text.replace(".svg#spar", ".csv"))
+    assert said.endswith("requirements.o4.inside is 'wing.csv'; it must be a list, or a file .dxf or .svg")
+
+
 def svg_areas(folder: Path, body: str, width: str = "100mm") -> list[list[list[float]]]:
     head = f'xmlns="http://www.w3.org/2000/svg" width="{width}" height="100mm" viewBox="0 0 100 100"'
     (folder / "a.svg").write_text(f"<svg {head}>{body}</svg>")

@@ -15,6 +15,7 @@ from grashof.problems import (
     MotionTask,
     Objective,
     ProblemError,
+    Region,
     Requirements,
     Rotatability,
     Search,
@@ -285,3 +286,45 @@ def test_a_number_for_a_side_is_a_line() -> None:
     assert wanted(5).o4 == Box(x=(5, 5))
     with pytest.raises(ProblemError, match=r"requirements\.o4\.x is true; it must be \[lo, hi\]"):
         wanted(True)
+
+
+@pytest.mark.parametrize("name", ["o2", "o4", "a", "b", "a_on_body", "b_on_body"])
+def test_a_place_may_be_a_region(name: str) -> None:
+    inside = problem(f"{MOTION}[requirements]\n{name} = {{ inside = [[0, 0], [4, 0], [1, 2]] }}\n")
+    assert getattr(inside.requirements, name) == Region(inside=[(0, 0), (4, 0), (1, 2)])
+    on = problem(f"{MOTION}[requirements]\n{name} = {{ on = [[0, 0], [4, 2]] }}\n").requirements
+    assert getattr(on, name) == Region(on=[(0, 0), (4, 2)])
+    assert on.ranges(name) == {"x": (0, 4), "y": (0, 2)}
+
+
+BAD_REGIONS = """
+inside = [[0, 0], [4, 4], [4, 0], [0, 4]] |
+    requirements.o2.inside crosses or touches itself at (2, 2); it must be a simple polygon
+inside = [[0, 0], [1, 1], [2, 2]] | requirements.o2.inside has no area: its corners lie on a straight line
+inside = [[0, 0], [1, 1]] | requirements.o2.inside has 2 distinct corners; it must have three or more
+inside = [] | requirements.o2.inside is []; it must be a list of corners [x, y]
+inside = [[0, 0], [1, "a"], [2, 3]] | requirements.o2.inside[1][1] is 'a'; it must be a number
+inside = 3 | requirements.o2.inside is 3; it must be a list of corners [x, y], or a .dxf or .svg file
+inside = "wing.svg" | requirements.o2.inside is the file wing.svg; here it must be a list instead
+on = [[1, 1], [1, 1]] |
+    requirements.o2.on has no length: both ends are the same point; it must be [[x, y], [x, y]]
+on = [[0, 0], [1, 1], [2, 0]] |
+    requirements.o2.on has 3 ends; it must be [[x, y], [x, y]]
+on = [[0, 0], [inf, 1]] | requirements.o2.on[1] is [inf, 1.0]; all numbers must be finite
+on = [[0, 0], [1, 1]], x = [0, 1] | requirements.o2.on does not go with x; give one of them
+on = [[0, 0], [1, 1]], inside = [[0, 0], [4, 0], [1, 2]] |
+    requirements.o2.on does not go with inside; give one of them
+"""
+
+
+@pytest.mark.parametrize(("text", "line"), rows(BAD_REGIONS))
+def test_impossible_regions_are_refused_in_a_line(text: str, line: str) -> None:
+    assert message(f"{MOTION}[requirements]\no2 = {{ {text} }}\n") == line
+
+
+def test_regions_at_single_targets_and_of_cylinders() -> None:
+    edge = "{ on = [[0, 0], [4, 2]] }"
+    at = problem(f"{MOTION}[requirements]\nat = [{{ targets = [2], a = {edge} }}]\n").requirements.at
+    assert at[0].a == Region(on=[(0, 0), (4, 2)])
+    driven = f"{MOTION}[driver]\ncylinder = {{ base = {edge} }}\n"
+    assert message(driven) == "driver.cylinder.base is a region; it must be a box"

@@ -12,6 +12,7 @@ from grashof.problems import (
     Objective,
     PathTask,
     Problem,
+    Region,
     Requirements,
     Search,
     catalogue,
@@ -48,6 +49,7 @@ def test_everything_that_python_can_state_comes_back() -> None:
             requirements=Requirements(
                 tolerance=0.1, rotatability="any", order=False, transmission_min_deg=1 / 3,  # type: ignore[arg-type]
                 r1=(0, 1e20), coupler_arms=(0.1, 0.2), o2=Box(x=(1, 2)), b=Box((-np.inf, 3), (0, 0)),
+                o4=Region(inside=[(0, 0), (1 / 3, 0), (0, 1)]), a=Region(on=[(0, 0), (1 / 3, 7)]),
                 ground_angle_deg=-400.0, keep_out=(SQUARE + 7,), keep_out_for=("links", "p"),
             ),
             objective=Objective(0.1, 0.2, 0.0),

@@ -28,9 +28,10 @@ requirements | ground_angle_deg = 'up' |
 requirements | ground_angle_deg = [1] | requirements.ground_angle_deg is [1.0]; it must be [lo, hi]
 requirements | ground_angle_deg = [20, 10] |
     requirements.ground_angle_deg is [20, 10]: lo exceeds hi; it must be [lo, hi] with lo <= hi
-requirements | o2 = 5 | requirements.o2 is 5; it must be [x, y] or { x = [lo, hi], y = [lo, hi] }
+requirements | o2 = 5 |
+    requirements.o2 is 5; it must be [x, y], <PLACE>
 requirements | o2 = [1, 2, 3] |
-    requirements.o2 is [1, 2, 3]; it must be [x, y] or { x = [lo, hi], y = [lo, hi] }
+    requirements.o2 is [1, 2, 3]; it must be [x, y], <PLACE>
 requirements | o2 = [1, true] | requirements.o2[1] is true; it must be a number
 requirements | o2 = { x = '5' } | requirements.o2.x is '5'; it must be [lo, hi]
 requirements | link_length = [8, 0.3] |
@@ -45,7 +46,7 @@ requirements | o4 = [0, nan] | requirements.o4.y is [nan, nan]; it must be [lo, 
 requirements | r1 = [1, 1e21] | requirements.r1 is [1, 1e+21]; hi must be at most 1e+20
 requirements | o2 = { x = [0, 1e100] } | requirements.o2.x is [0, 1e+100]; its sides must be at most 1e+20
 requirements | link_lenght = [1, 2] | requirements.link_lenght is unknown; did you mean link_length?
-requirements | o2 = { z = [1, 2] } | requirements.o2.z is unknown; the keys are x, y
+requirements | o2 = { z = [1, 2] } | requirements.o2.z is unknown; the keys are x, y, inside, on
 objective | maximise = 3 |
     objective.maximise is 3; it must be transmission, compactness, torque, another quantity or a table of
     weights
@@ -68,7 +69,10 @@ UNKNOWN = (
 )
 
 
-@pytest.mark.parametrize(("table", "line", "said"), [*rows(WRONG), UNKNOWN])
+PLACE = "{ x = [lo, hi], y = [lo, hi] }, { inside = corners } or { on = ends }"
+
+
+@pytest.mark.parametrize(("table", "line", "said"), [*rows(WRONG, PLACE=PLACE), UNKNOWN])
 def test_a_wrong_value_names_its_key(table: str, line: str, said: str) -> None:
     text = line if table == "motion" else f"[{table}]\n{line}"
     assert message(MOTION + text) == said

@@ -166,7 +166,7 @@ class Stage {
     for (const corners of scene.keepOut || []) {
       add(this.svg, "path", { d: through(corners.map(this.at), true), class: "kept-out" });
     }
-    for (const { name, x, y } of scene.regions || []) {
+    for (const { name, x, y, corners } of scene.regions || []) {
       const seen = (place, most) => Math.min(Math.max(place, -beyond), most + beyond);
       const [left, bottom] = this.at([x[0] === null ? -Infinity : x[0], y[0] === null ? -Infinity : y[0]]);
       const [right, top] = this.at([x[1] === null ? Infinity : x[1], y[1] === null ? Infinity : y[1]]);
@@ -177,7 +177,9 @@ class Stage {
         seen(bottom, height),
       ];
       const single = x0 === x1 && y0 === y1;
-      const shape = single
+      const shape = corners
+        ? through(corners.map(this.at), true)
+        : single
         ? `M${px(x0)} ${px(y0)}m-7 0h14m-7 -7v14`
         : `M${px(x0)} ${px(y0)}H${px(x1)}V${px(y1)}H${px(x0)}Z`;
       add(this.svg, "path", { d: shape, class: "region" });

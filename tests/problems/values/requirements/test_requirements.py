@@ -56,7 +56,7 @@ BAD: list[tuple[type, dict[str, Any], str]] = [
     (Requirements, {"rotatability_margin": 0.3}, "rotatability_margin is 0.3; it must be from 0 to 0.25"),
     (Requirements, {"link_ratio_max": 0.5}, "link_ratio_max is 0.5; it must be from 1 to 1e+06"),
     (Requirements, {"r3": (-1, 2)}, "r3 is [-1, 2]; lo must be at least 0"),
-    (Requirements, {"o4": (0, 0)}, "o4 is (0, 0); it must be a Box"),
+    (Requirements, {"o4": (0, 0)}, "o4 is (0, 0); it must be a Box or a Region"),
     *(
         (Box, {axis: side}, f"{axis} is {shown}; it must be [lo, hi] with lo <= hi")
         for axis in ("x", "y")

@@ -317,6 +317,14 @@ function sceneOf(task, published) {
       ? { poses: rows.map(({ x, y, angle }) => [x, y, angle === null ? null : angle / DEG]), body: table.body || null }
       : { points: rows.map(({ x, y }) => [x, y]) };
   const regions = task.regions.map(([names, box]) => {
+    const corners = box.inside || box.on;
+    if (Array.isArray(corners)) {
+      const [x, y] = [0, 1].map((axis) => {
+        const side = corners.map((corner) => corner[axis]);
+        return [Math.min(...side), Math.max(...side)];
+      });
+      return { name: names.map((name) => name.toUpperCase()).join(", "), x, y, corners };
+    }
     const { x, y } = Array.isArray(box) ? { x: [box[0], box[0]], y: [box[1], box[1]] } : box;
     return { name: names.map((name) => name.toUpperCase()).join(", "), x: x || [null, null], y: y || [null, null] };
   });
