@@ -38,9 +38,9 @@ print(trunk.source)
 assert best.verdict.ok
 
 # %%
-# A garage door whose top runs in a track under the ceiling, on an arm of the jamb. When the door is closed, arm
-# and track leave it hardly any transmission angle, because the leaf is at right angles to the track: the
-# bracket of the roller has to be deeper than that of the arm.
+# A garage door whose top runs in a track under the ceiling, on an arm of the jamb. A closed leaf is at
+# right angles to the track, which is a dead position of the arm if both brackets are equally deep. With a
+# deeper one for the roller a few degrees remain.
 
 garage = load("garage-door-track")
 best = synthesize(garage, enough=6).best

@@ -7,9 +7,9 @@ pushes it further against its stop.
 """
 
 # %%
-# The drag brace of a landing gear. ``past_deg`` under ``at`` asks for driver and coupler 2 to 5 deg past their
-# line when the leg is down. P is where the lower brace joins the leg, so that three points on a circle about
-# the trunnion state how the leg moves.
+# The drag brace of a landing gear. ``past_deg`` under ``at`` asks for driver and coupler 2 to 5 deg past
+# their line when the leg is down. P is where the lower brace joins the leg, so that three points on a circle
+# about the trunnion state how the leg moves.
 
 import numpy as np
 
@@ -34,7 +34,8 @@ print(f"{past(best):.2f} deg past straight")
 assert 2 - 1e-6 <= past(best) <= 5 + 1e-6
 
 # %%
-# A hold-down clamp. Its handle is the coupler, its arm link 4; a hand brings the handle from upright to level.
+# A hold-down clamp. Its handle is the coupler, its arm link 4; a hand brings the handle from upright to
+# level.
 
 clamp = load("toggle-clamp")
 best = synthesize(clamp, enough=6).best
