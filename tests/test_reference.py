@@ -81,7 +81,7 @@ def test_every_public_name_is_listed_and_has_a_docstring() -> None:
 
 
 def test_every_example_is_short_and_has_a_title() -> None:
-    for path in (DOCS / "gallery").glob("*.py"):
+    for path in (DOCS / "gallery").rglob("*.py"):
         text = path.read_text(encoding="utf-8")
         assert len(text.splitlines()) <= 90, path.name
         assert re.match(r'"""\n.+\n=+\n', text), path.name

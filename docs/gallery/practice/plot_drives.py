@@ -1,0 +1,54 @@
+"""
+Drives and steering
+===================
+
+A crank or a wheel turns, and something else has to turn, or be somewhere, at the same time.
+"""
+
+# %%
+# The wheels of a car turn about one common point if the cotangents of their angles differ by the track over
+# the wheelbase. Arms of one length, ``link_ratios``, meet that at both locks and straight ahead. The list is
+# short, because the trapezium is symmetric: only the length of the arms is free.
+
+from grashof import load, plot_linkage, synthesize
+
+car = load("steering")
+best = synthesize(car, enough=6).best
+plot_linkage(best, car)
+print(car.source)
+print(f"arms of {best.linkage.r2:.0f} and {best.linkage.r4:.0f} mm, track rod of {best.linkage.r3:.0f} mm")
+
+# %%
+# The coupler of a four-bar turns as twenty measured values say, while the crank makes half a turn.
+
+coupler = load("coupler-angle")
+best = synthesize(coupler, enough=6).best
+plot_linkage(best, coupler)
+print(coupler.source)
+
+# %%
+# Twelve points at equal steps of the crank are far more than a four-bar can meet. The best one passes them
+# within a hundredth of the loop's size.
+
+loop = load("twelve-timed")
+best = synthesize(loop).best
+plot_linkage(best, loop)
+print(loop.source)
+
+# %%
+# The drive of a bus wiper. A parallelogram keeps the blade upright; one of its arms is the rocker of this
+# crank-rocker. No four-bar within the limits has a greater worst transmission angle, which is proven.
+
+wiper = load("bus-wiper")
+best = synthesize(wiper, enough=6).best
+plot_linkage(best, wiper)
+print(wiper.source)
+
+# %%
+# The intake of a competition robot. A pneumatic cylinder, placed by the search, swings the roller from behind
+# the bumper over it, to the height where it meets a ball; at the first pose all joints are within the frame.
+
+robot = load("robot-intake")
+best = synthesize(robot, enough=6).best
+plot_linkage(best, robot)
+print(robot.source)

@@ -1,0 +1,49 @@
+"""
+Lids and doors
+==============
+
+Four bodies that a hand moves: their positions are known, and hinges have to be found that fit into the little
+room beside them.
+"""
+
+# %%
+# Problems of the catalogue are loaded by name. The first is a jewellery box cut by a laser: two links on each
+# side, in place of hinges, lift its lid and stand it upright behind the box.
+
+from grashof import load, plot_linkage, synthesize
+
+box = load("jewellery-box-lid")
+best = synthesize(box, enough=6).best
+plot_linkage(best, box)
+print(box.source)
+assert best.verdict.ok
+
+# %%
+# The lid of a container, from its front up, over and onto its top. ``keep_out`` keeps the lid out of the
+# container on the whole way.
+
+container = load("container-lid")
+best = synthesize(container, enough=6).best
+plot_linkage(best, container)
+print(container.source)
+assert best.verdict.ok
+
+# %%
+# The trunk lid of a car, whose front edge has to stay clear of the rear window while the lid rises.
+
+trunk = load("trunk-lid")
+best = synthesize(trunk, enough=6).best
+plot_linkage(best, trunk)
+print(trunk.source)
+assert best.verdict.ok
+
+# %%
+# A garage door whose top runs in a track under the ceiling, on an arm of the jamb. A closed leaf is at
+# right angles to the track, which is a dead position of the arm if both brackets are equally deep. With a
+# deeper one for the roller a few degrees remain.
+
+garage = load("garage-door-track")
+best = synthesize(garage, enough=6).best
+plot_linkage(best, garage)
+print(garage.source)
+assert best.verdict.ok

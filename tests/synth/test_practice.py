@@ -1,0 +1,82 @@
+"""Problems from practice have verified designs, whose key figures hold by formulas of their own."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from grashof import load, synthesize
+from grashof.synth import Candidate, Result
+
+QUICK = ["bus-wiper", "garage-door-track", "jewellery-box-lid", "robot-intake", "toggle-clamp", "trunk-lid"]
+SLOW = ["container-lid", "drag-brace", "steering", "twelve-timed"]
+
+
+@cache
+def solved(name: str) -> Result:
+    return synthesize(load(name), seed=0, enough=4)
+
+
+def poses(design: Candidate) -> np.ndarray:
+    """O2, A, B, O4 at the targets by the law of cosines, complex, shape (4, N)."""
+    linkage, theta2 = design.linkage, design.verdict.theta2
+    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
+    a = o2 + linkage.r2 * np.exp(1j * theta2)
+    s = np.abs(o4 - a)
+    at_a = np.arccos((s**2 + linkage.r3**2 - linkage.r4**2) / (2 * s * linkage.r3))
+    b = a + linkage.r3 * (o4 - a) / s * np.exp(1j * np.asarray(design.verdict.assembly) * at_a)
+    return np.stack([np.full_like(a, o2), a, b, np.full_like(a, o4)])
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in SLOW)])
+def test_there_are_verified_designs(name: str) -> None:
+    result = solved(name)
+    assert len(result) > 0
+    assert all(each.verdict.ok for each in result.candidates)
+
+
+@pytest.mark.parametrize("name", ["toggle-clamp", pytest.param("drag-brace", marks=pytest.mark.slow)])
+def test_locks_are_2_to_5_deg_past_their_line(name: str) -> None:
+    for each in solved(name).candidates:
+        o2, a, b, _ = poses(each)
+        bend = np.degrees(np.angle((b - a)[-1] / (a - o2)[-1]))
+        past = min(abs(bend), 180 - abs(bend))
+        assert 2 - 1e-6 <= past <= 5 + 1e-6
+
+
+def test_the_bus_wiper_swings_as_far_both_ways_alike() -> None:
+    for each in solved("bus-wiper").candidates:
+        r1, r2, r3, r4 = each.linkage.lengths
+        far, near = (
+            np.arccos((r1**2 + r4**2 - reach**2) / (2 * r1 * r4)) for reach in (r3 + r2, abs(r3 - r2))
+        )
+        assert np.degrees(far - near) == pytest.approx(84, abs=1e-6)
+        assert r1**2 + r2**2 == pytest.approx(r3**2 + r4**2, rel=1e-8)  # time ratio 1
+
+
+def test_the_garage_door_hangs_on_its_track() -> None:
+    for each in solved("garage-door-track").candidates:
+        one = each.linkage
+        a = complex(*one.o2) + one.r2 * np.exp(1j * each.verdict.theta2)
+        arm = complex(*one.coupler_point)
+        rod = (load("garage-door-track").task.positions @ [1, 1j] - a) / arm
+        b = a + one.r3 * rod / np.abs(rod) * 1.0
+        assert np.ptp(b.imag) < 1e-6
+        assert 2 - 1e-9 <= b.imag[0] <= 2.2 + 1e-9
+        assert (np.diff(b.real) < 0).all()
+
+
+@pytest.mark.slow
+def test_the_steering_is_a_symmetric_trapezium_that_keeps_to_the_law_of_ackermann() -> None:
+    for each in solved("steering").candidates:
+        linkage = each.linkage
+        assert linkage.r2 == pytest.approx(linkage.r4, abs=1e-6)
+        out = np.cos(each.verdict.theta2[1]) * linkage.r2  # of A from the king pin, straight ahead
+        assert linkage.r3 == pytest.approx(1250 - 2 * out, abs=1e-3)
+        o2, a, b, o4 = poses(each)
+        left, right = (np.degrees(np.unwrap(np.angle(arm))) for arm in (a - o2, b - o4))
+        to_left = left[0] - left[1], right[0] - right[1]  # inner and outer wheel
+        to_right = right[1] - right[2], left[1] - left[2]
+        for turned in (to_left, to_right):
+            inner, outer = 1 / np.tan(np.radians(turned))
+            assert outer - inner == pytest.approx(0.5, abs=1e-4)
