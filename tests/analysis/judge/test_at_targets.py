@@ -57,7 +57,7 @@ def in_line() -> float:
 
 
 @pytest.mark.parametrize("past", [-0.3, 0.05, 0.4])
-def test_past_line_is_the_bend_between_driver_and_coupler(past: float) -> None:
+def test_past_toggle_is_the_bend_between_driver_and_coupler(past: float) -> None:
     line = in_line()
     theta2 = np.linspace(line - 0.9, line + past, 5)
     verdict = verify(LEG, task_at(theta2), Requirements(rotatability="any"))
