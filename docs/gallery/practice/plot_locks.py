@@ -8,8 +8,8 @@ pushes it further against its stop.
 
 # %%
 # The drag brace of a landing gear. ``past_deg`` under ``at`` asks for driver and coupler 2 to 5 deg past
-# their line when the leg is down. P is where the lower brace joins the leg, so that three points on a circle
-# about the trunnion state how the leg moves.
+# their line when the leg is down. P is close to where the lower brace joins the leg, so that three points
+# on a circle about the trunnion state how the leg moves.
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def past(design: Candidate) -> float:
 
 
 gear = load("drag-brace")
-best = synthesize(gear).best
+best = synthesize(gear, enough=6).best
 plot_linkage(best, gear)
 print(gear.source)
 print(f"{past(best):.2f} deg past straight")
