@@ -26,8 +26,10 @@ FIVE = PathTask([[0, 0], [1, 0.4], [2, 0.5], [3, 0.2], [3.6, -0.3]])
 TOGGLE = TargetLimits(targets=[3], past_deg=(2, 5))
 
 
-@pytest.mark.parametrize(("task", "last"), [(THREE, 3), (FIVE, 5)], ids=["poses", "points"])
-def test_a_toggle_closes_past_its_line(task: Task, last: int) -> None:
+@pytest.mark.parametrize(
+    ("task", "last"), [pytest.param(THREE, 3, marks=pytest.mark.slow), (FIVE, 5)], ids=["poses", "points"]
+)
+def test_a_toggle_closes_past_its_position(task: Task, last: int) -> None:
     at = (TargetLimits(targets=[last], past_deg=(2, 5)),)
     wanted = Requirements(rotatability=Rotatability.ANY, at=at)
     result = synthesize(Problem(task=task, requirements=wanted), seed=0, enough=5, starts=20)
@@ -36,6 +38,7 @@ def test_a_toggle_closes_past_its_line(task: Task, last: int) -> None:
         assert 2 <= round(np.degrees(past_toggle(each.linkage, each.verdict, last - 1)), 6) <= 5
 
 
+@pytest.mark.slow
 def test_a_place_at_one_target_alone_binds_there() -> None:
     free = replace(load("luggage"), requirements=Requirements(at=()))
     first = synthesize(free, seed=0, enough=5).best

@@ -57,6 +57,7 @@ def test_the_rod_of_an_inverted_slider_crank_turns_as_its_block() -> None:
     assert [each.id for each in both[0].candidates] == [each.id for each in both[1].candidates]
 
 
+@pytest.mark.slow
 def test_the_practice_problem_is_solved_as_well_as_by_an_independent_search() -> None:
     """Reference: `scipy.optimize.least_squares` over r2 to r4, both starts and the zero, from many starts."""
     problem = load("coupler-angle")
@@ -71,6 +72,7 @@ def test_the_practice_problem_is_solved_as_well_as_by_an_independent_search() ->
     assert best.verdict.structural_error_rms * DEG < 0.146
 
 
+@pytest.mark.slow
 def test_the_greatest_error_of_a_law_is_that_of_an_output() -> None:
     """By the exchange, of limits that do not know links 3 and 4 apart; 0.05011 deg as of the output."""
     task = FunctionTask.from_degrees(
