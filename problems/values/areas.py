@@ -17,7 +17,6 @@ import shapely
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import GREATEST, counted, each_checked, finite_rows
 from grashof.problems.values.errors import ProblemError, wrong_value
-from grashof.problems.values.region import Region
 
 _FLAT = 1e-12  # share of the square of its extent below which a polygon has no area
 
@@ -39,9 +38,9 @@ def solid(areas: Sequence[FloatArray]) -> shapely.Geometry:
     return joined
 
 
-def shape(region: Region) -> shapely.Geometry:
-    """A region as a polygon or a line, prepared for many queries."""
-    return _shape(region.corners.tobytes(), region.on is not None)
+def shape(corners: FloatArray, *, is_line: bool) -> shapely.Geometry:
+    """Corners (M, 2) as a polygon or a line, prepared for many queries."""
+    return _shape(corners.tobytes(), is_line)
 
 
 @lru_cache(maxsize=64)

@@ -82,7 +82,7 @@ class Region(Box):
 
         from grashof.problems.values.areas import shape
 
-        made = shape(self)
+        made = shape(self.corners, is_line=self.on is not None)
         (inside,) = shapely.get_coordinates(
             shapely.point_on_surface(made) if self.on is None else shapely.centroid(made)
         ).tolist()

@@ -68,7 +68,8 @@ def _about(region: Region, point: complex, count: int) -> FloatArray:
 @lru_cache(maxsize=64)
 def is_convex(region: Region) -> bool:
     """Whether a polygon is its own convex hull."""
-    area, around = shapely.area(shape(region)), shapely.area(shapely.convex_hull(shape(region)))
+    made = shape(region.corners, is_line=region.on is not None)
+    area, around = shapely.area(made), shapely.area(shapely.convex_hull(made))
     return bool(around - area <= 1e-12 * around)
 
 
@@ -78,7 +79,7 @@ def _beyond(region: Region) -> shapely.Geometry:
     (left, right), (low, high) = region.x, region.y
     room = max(right - left, high - low)
     around = shapely.box(left - room, low - room, right + room, high + room)
-    left_over = shapely.difference(around, shape(region))
+    left_over = shapely.difference(around, shape(region.corners, is_line=region.on is not None))
     shapely.prepare(left_over)
     return left_over
 
