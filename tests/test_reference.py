@@ -21,7 +21,7 @@ import columns  # noqa: E402
 import command_line  # noqa: E402
 import keys  # noqa: E402
 
-from grashof.problems.schema.keys import keys_of, linkage_tables, problem_tables  # noqa: E402
+from grashof.problems.schema.keys import described_keys, linkage_tables, problem_tables  # noqa: E402
 
 FILES = {"problem": problem_tables, "linkage": linkage_tables, "study": keys.study_tables}
 TABLES = [(f"{file}: {path}", table) for file, tables in FILES.items() for path, table in tables().items()]
@@ -30,7 +30,7 @@ TABLES = [(f"{file}: {path}", table) for file, tables in FILES.items() for path,
 def test_every_key_has_a_value_and_a_sentence() -> None:
     """One of its own, not that of a type of Python."""
     for path, table in TABLES:
-        listed = keys_of(table)
+        listed = described_keys(table)
         assert [key.name for key in listed] == list(table.model_fields), path  # type: ignore[attr-defined]
         assert all(key.value and key.text.endswith(".") for key in listed), path
         assert not any(re.match("Built-in|Represent", key.text) for key in listed), path

@@ -7,7 +7,7 @@ from marking import row
 from grashof.problems.files.linkage_schema import FILES, LinkageTable
 from grashof.problems.files.tables import Table, tables_of
 from grashof.problems.schema.docstrings import code
-from grashof.problems.schema.keys import keys_of
+from grashof.problems.schema.keys import described_keys
 from grashof.sweep.study import StudyFile
 
 
@@ -22,7 +22,7 @@ def key_table(table: type[Table]) -> str:
     head = [row("key", "value", "unit", "default", "meaning"), "|---|---|---|---|---|"]
     body = [
         row(code(key.name), key.value, key.unit, key.default, key.text)
-        for key in keys_of(table)
+        for key in described_keys(table)
         if key.name not in shared
     ]
     return "\n".join([*head, *body])

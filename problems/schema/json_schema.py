@@ -13,7 +13,7 @@ from grashof.problems.files.linkage_schema import FILES
 from grashof.problems.files.problem_schema import ProblemFile
 from grashof.problems.files.tables import Table
 from grashof.problems.schema import FileKind
-from grashof.problems.schema.keys import Key, keys_of, summary
+from grashof.problems.schema.keys import Key, described_keys, summary
 from grashof.problems.schema.shapes import Shape, conditions, kinds_of, shape_of
 
 
@@ -62,7 +62,9 @@ class _Generator(GenerateJsonSchema):
         table, made = schema["cls"], super().model_schema(schema)
         made.pop("title", None)
         given = made["properties"]
-        made["properties"] = {key.name: _property(table, key, given[key.name]) for key in keys_of(table)}
+        made["properties"] = {
+            key.name: _property(table, key, given[key.name]) for key in described_keys(table)
+        }
         made["description"] = summary(table)
         return {**made, **conditions(table)}
 

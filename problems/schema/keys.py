@@ -98,12 +98,12 @@ def linkage_tables() -> dict[str, type[Table]]:
     return {"": LinkageTable, **kinds, **own}
 
 
-def keys_of(table: type[Table]) -> list[Key]:
+def described_keys(table: type[Table]) -> list[Key]:
     """The keys of a table, in the order of a file.
 
     Examples
     --------
-    >>> starts = keys_of(problem_tables()["search"])[0]
+    >>> starts = described_keys(problem_tables()["search"])[0]
     >>> starts.name, starts.value, starts.default
     ('starts', 'whole number', '`200`')
     """

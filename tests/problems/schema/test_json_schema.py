@@ -21,7 +21,7 @@ from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.tables import tables_of
 from grashof.problems.schema import FileKind
 from grashof.problems.schema.json_schema import json_schema
-from grashof.problems.schema.keys import keys_of, linkage_tables, problem_tables
+from grashof.problems.schema.keys import described_keys, linkage_tables, problem_tables
 from grashof.problems.values.dynamics.load_specs import OVER
 from grashof.problems.values.dynamics.pumping_unit import CRANK, POSITION
 from grashof.problems.values.tasks.function_law import LAWS, SAMPLED
@@ -174,7 +174,7 @@ def test_descriptions_and_words_are_those_of_the_reference() -> None:
     for kind, tables in ((FileKind.PROBLEM, problem_tables()), (FileKind.LINKAGE, linkage_tables())):
         for table in (each for path, each in tables.items() if path and each.__name__ in made[kind]):
             stated = made[kind][table.__name__]["properties"]
-            for key in keys_of(table):
+            for key in described_keys(table):
                 assert stated[key.name]["description"].startswith(key.text)
     assert "$ref" in made[FileKind.PROBLEM]["ObjectiveTable"]["properties"]["maximise"]["anyOf"][1]
 
