@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any, cast
@@ -11,7 +11,7 @@ from typing import Any, cast
 import numpy as np
 
 from grashof.problems.values import checks
-from grashof.problems.values.arrays import Limits
+from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 
 PAIR = re.compile(r"(r[1-6])/(r[1-6])")
@@ -89,20 +89,32 @@ def contradictions(
     return wrong
 
 
+def greatest_logs(names: Sequence[str], ratios: LinkRatios, greatest: float) -> FloatArray:
+    """Greatest logarithm of each length (rows) over each other one (columns), (n, n).
+
+    By the greatest ratio of any two, and by those ratios whose links are both named.
+
+    >>> np.exp(greatest_logs(["r2", "r4"], LinkRatios((("r4/r2", (0.5, 2.0)),)), 9.0)).round(6).tolist()
+    [[9.0, 2.0], [2.0, 9.0]]
+    """
+    most = np.full((len(names), len(names)), np.log(greatest))
+    for name, (low, high) in ratios.of(names).items():
+        over, under = map(names.index, links_of(name))
+        most[over, under] = min(most[over, under], np.log(high))
+        most[under, over] = min(most[under, over], -np.log(low))
+    return most
+
+
 def _allowed(name: str, ratios: LinkRatios, lengths: Mapping[str, Limits], greatest: float) -> Limits:
     """The range of a ratio by chains of other limits, the shortest ways between logarithms of lengths."""
     one, other = links_of(name)
     names = list(dict.fromkeys(["", one, other, *lengths, *chain.from_iterable(map(links_of, ratios))]))
-    most = np.full((len(names), len(names)), np.log(greatest))  # of a row's length over a column's
+    most = greatest_logs(names, ratios, greatest)
     most[0] = most[:, 0] = np.inf  # the unit of length
     np.fill_diagonal(most, 0.0)
-    for (over, under), (low, high) in [
-        *((links_of(each), limits) for each, limits in ratios.items()),
-        *(((each, ""), limits) for each, limits in lengths.items()),
-    ]:
-        i, j = names.index(over), names.index(under)
-        most[i, j] = min(most[i, j], np.log(max(high, LEAST_LENGTH)))
-        most[j, i] = min(most[j, i], -np.log(max(low, LEAST_LENGTH)))
+    for each, limits in lengths.items():
+        i, (low, high) = names.index(each), np.log(np.maximum(limits, LEAST_LENGTH))
+        most[i, 0], most[0, i] = high, -low
     for k in range(len(names)):
         most = np.minimum(most, most[:, [k]] + most[[k]])
     i, j = names.index(one), names.index(other)

@@ -17,7 +17,7 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
-from grashof.problems.values.requirements.link_ratios import LinkRatios, links_of
+from grashof.problems.values.requirements.link_ratios import LinkRatios, greatest_logs
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.functions.fit import DesiredOutput
@@ -153,13 +153,9 @@ class FunctionAims:
 def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requirements) -> FloatArray:
     """Greatest logarithm of one length over another."""
     low, high = np.array(list(sizes.values()), dtype=np.float64).T
-    most, names = np.full((len(sizes), len(sizes)), np.log(wanted.link_ratio_max)), list(sizes)
+    most = greatest_logs(list(sizes), wanted.link_ratios or LinkRatios(), wanted.link_ratio_max)
     if not kind.FIRST_IS_LINK:
         most[0], most[:, 0] = np.inf, np.inf
-    for name, (least, greatest) in (wanted.link_ratios or LinkRatios()).of(names).items():
-        one, other = map(names.index, links_of(name))
-        most[one, other] = min(most[one, other], np.log(greatest))
-        most[other, one] = min(most[other, one], -np.log(least))
     with np.errstate(divide="ignore", invalid="ignore"):
         caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low))
     room = (caps + caps.T) / 2
