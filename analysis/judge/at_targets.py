@@ -15,9 +15,10 @@ from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.target_limits import TargetLimits
+from grashof.problems.values.units import Unit
 
 SLACK = 1e-9  # sizes, rad or ratio
-SAMPLES = 181  # of the motion between two targets
+SAMPLES = 181  # of the motion from an end target
 
 
 def missed_at_targets(
@@ -29,20 +30,18 @@ def missed_at_targets(
     state = solve_position(linkage, verdict.theta2, verdict.assembly)
     for limits in wanted.at:
         for number in limits.targets:
-            for what, found, allowed, scale in _figures(
-                linkage, verdict, state, limits, number - 1, task.size
-            ):
-                miss = max(allowed[0] - found, found - allowed[1]) / (task.size if scale == "length" else 1.0)
+            figures = _figures(linkage, verdict, state, limits, number - 1, task.size)
+            for what, found, allowed, unit in figures:
+                miss = max(allowed[0] - found, found - allowed[1]) / task.size**unit.lengths
                 if not miss <= SLACK:
-                    unit = float(np.degrees(1.0)) if scale == "angle" else 1.0
-                    text = _range_text(allowed, unit)
-                    yield Defect("at", f"{what} at target {number}", unit * found, text, miss)
+                    shown = unit.shown * found
+                    yield Defect("at", f"{what} at target {number}", shown, unit.range_text(allowed), miss)
 
 
 def _figures(
     linkage: Linkage, verdict: Verdict, state: Position, limits: TargetLimits, k: int, size: float
-) -> Iterator[tuple[str, float, Limits, str]]:
-    """Name, value, limits and kind of unit of each limited quantity at a target."""
+) -> Iterator[tuple[str, float, Limits, Unit]]:
+    """Name, value, limits and unit of each limited quantity at a target."""
     for name in ("a", "b", "instant_centre"):
         box = getattr(limits, name)
         if box is None:
@@ -54,23 +53,23 @@ def _figures(
         if isinstance(box, Region):
             words, most = "the instant centre" if len(name) > 1 else name.upper(), slack_of(box) * size
             away = float(distances(box, *place[:, None])[0])
-            yield f"the distance of {words} from its region", away, (-np.inf, most), "length"
+            yield f"the distance of {words} from its region", away, (-np.inf, most), Unit.LENGTH
             continue
         for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
-            yield f"{name}.{axis}", value, side, "length"
+            yield f"{name}.{axis}", value, side, Unit.LENGTH
     if limits.past_deg is not None:
         low, high = np.radians(limits.past_deg).tolist()
         past = past_toggle(linkage, verdict, k)
-        yield "driver and coupler past toggle in deg", past, (low, high), "angle"
+        yield "driver and coupler past toggle in deg", past, (low, high), Unit.ANGLE
     if limits.transmission_min_deg is not None:
         mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))
-        yield "the transmission angle in deg", min(mu, float(np.pi) - mu), (least, np.inf), "angle"
+        yield "the transmission angle in deg", min(mu, float(np.pi) - mu), (least, np.inf), Unit.ANGLE
     if limits.mechanical_advantage_min is not None:
         moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
         with np.errstate(divide="ignore"):
             advantage = float(1.0 / np.abs(moving.omega4))
-        yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), "ratio"
+        yield "the mechanical advantage", advantage, (limits.mechanical_advantage_min, np.inf), Unit.RATIO
 
 
 def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:
@@ -84,10 +83,3 @@ def past_toggle(linkage: Linkage, verdict: Verdict, k: int) -> float:
     turned = np.unwrap(turned)
     line = np.pi * np.round(turned[-1] / np.pi)
     return float(-np.sign(turned[0] - line) * (turned[-1] - line))
-
-
-def _range_text(limits: Limits, unit: float) -> str:
-    low, high = (f"{unit * side:.6g}" for side in limits)
-    if np.isinf(limits[1]):
-        return f"from {low}"
-    return f"up to {high}" if np.isinf(limits[0]) else f"{low} to {high}"

@@ -383,13 +383,6 @@ class Limit:
         return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
 
     def range_text(self, limits: Limits) -> str:
-        """Limits as files state them: "0.3 to 8", "from 15", "up to 20", "ccw"; empty where none are."""
-        for word, allowed in self.words.items():
-            if allowed == limits:
-                return word
-        low, high = (f"{side * self.quantity.unit.shown:.6g}" for side in limits)
-        if np.isinf(limits[0]):
-            return "" if np.isinf(limits[1]) else f"up to {high}"
-        if np.isinf(limits[1]):
-            return f"from {low}"
-        return low if low == high else f"{low} to {high}"
+        """Limits as files state them, as `Unit.range_text` or by a word; empty where none are."""
+        words = (word for word, allowed in self.words.items() if allowed == limits)
+        return next(words, self.quantity.unit.range_text(limits))

@@ -134,8 +134,9 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
         if isinstance(box, Region):
             said.append(f"{name} {_region(box)}{unit}")
             continue
-        sides = () if box is None else ((f"{name}.x", *box.x), (f"{name}.y", *box.y))
-        said += [f"{axis} {low:g} to {high:g}{unit}" for axis, low, high in sides if high - low < np.inf]
+        sides = {} if box is None else {"x": box.x, "y": box.y}
+        texts = {axis: Unit.LENGTH.range_text(side) for axis, side in sides.items()}
+        said += [f"{name}.{axis} {text}{unit}" for axis, text in texts.items() if text]
     if limits.past_deg is not None:
         said.append("driver and coupler {:g} to {:g} deg past toggle".format(*limits.past_deg))
     if limits.transmission_min_deg is not None:
