@@ -49,9 +49,9 @@ class AtTarget:
         there = _of_coupler(design, 0 if self.k else -1)
         ahead = there[1] * cos - there[0] * sin  # sine of the turn to the other target
         sense = ahead / (ahead**2 + FLAT**2) ** 0.5
-        double, by_double = cos**2 - sin**2, -2 * sense * sin * cos
-        middle, half = low + high, high - low - INSIDE
-        return float(np.cos(half)) - double * float(np.cos(middle)) - by_double * float(np.sin(middle))
+        cos_twice, sin_twice = cos**2 - sin**2, -2 * sense * sin * cos  # of twice the angle past toggle
+        middle, width = low + high, high - low - INSIDE  # twice the middle of the range, and its width
+        return float(np.cos(width)) - cos_twice * float(np.cos(middle)) - sin_twice * float(np.sin(middle))
 
     def transmission(self, design: Design) -> Any:
         """By the square of the sine."""

@@ -37,7 +37,8 @@ print(loop.source)
 
 # %%
 # The drive of a bus wiper. A parallelogram keeps the blade upright; one of its arms is the rocker of this
-# crank-rocker. No four-bar within the limits has a greater worst transmission angle, which is proven.
+# crank-rocker. It is proven that no four-bar within the limits has a worst transmission angle of more than
+# 47.44 deg; this one has 47.42 deg.
 
 wiper = load("bus-wiper")
 best = synthesize(wiper, enough=6).best

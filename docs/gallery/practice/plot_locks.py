@@ -7,8 +7,8 @@ pushes it further against its stop.
 """
 
 # %%
-# The drag brace of a landing gear. ``past_deg`` under ``at`` asks for driver and coupler 2 to 5 deg past
-# their line when the leg is down. P is close to where the lower brace joins the leg, so that three points
+# The drag brace of a landing gear. ``past_deg`` under ``at`` puts driver and coupler 2 to 5 deg past
+# toggle when the leg is down. P is close to where the lower brace joins the leg, so that three points
 # on a circle about the trunnion state how the leg moves.
 
 import numpy as np
@@ -19,7 +19,7 @@ from grashof.synth import Candidate
 
 
 def past(design: Candidate) -> float:
-    """How far driver and coupler are from their line at the last target, deg."""
+    """Angle of driver and coupler from toggle at the last target, deg."""
     at = solve_position(design.linkage, design.verdict.theta2[-1])
     one, two = (at.a - design.linkage.o2) @ [1, 1j], (at.b - at.a) @ [1, 1j]
     angle = abs(np.degrees(np.angle(two / one)))
@@ -30,7 +30,7 @@ gear = load("drag-brace")
 best = synthesize(gear, enough=6).best
 plot_linkage(best, gear)
 print(gear.source)
-print(f"{past(best):.2f} deg past straight")
+print(f"{past(best):.2f} deg past toggle")
 assert 2 - 1e-6 <= past(best) <= 5 + 1e-6
 
 # %%
@@ -41,5 +41,5 @@ clamp = load("toggle-clamp")
 best = synthesize(clamp, enough=6).best
 plot_linkage(best, clamp)
 print(clamp.source)
-print(f"{past(best):.2f} deg past the line")
+print(f"{past(best):.2f} deg past toggle")
 assert 2 - 1e-6 <= past(best) <= 5 + 1e-6
