@@ -123,7 +123,7 @@ def test_a_range_that_no_linkage_keeps_is_widened_at_its_nearer_end(
     angle = float(np.degrees(linkage.slide_angle))  # the only one
     allowed = (angle + 1.0, angle + 3.0)
     wanted = Requirements(exact=True, slide_angle_deg=allowed, transmission_min_deg=0)
-    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted), starts=8)
+    result = synthesize(Problem(task=task, mechanism="slider-crank", requirements=wanted), starts=2)
     assert not result.candidates
     reached = float(result.note.split("slide_angle_deg from ")[1].split()[0])
     assert reached == pytest.approx(angle, abs=0.01)

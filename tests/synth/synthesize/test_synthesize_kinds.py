@@ -287,7 +287,7 @@ def test_a_dwell_is_searched_judged_and_described(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(HOW_MET, Dwell, HOW_MET[FunctionTask])
     task = Dwell(*np.radians([40, 120, 40]).tolist())
     problem = Problem(task=task, requirements=Requirements(transmission_min_deg=20))
-    found = synthesize(problem, seed=0, effort=0.2, workers=1)
+    found = synthesize(problem, seed=0, effort=0.2, enough=3, workers=1)
     pairs = FunctionTask(task.timing, task.outputs)
     assert len(found) > 2
     for one in found.candidates:

@@ -122,6 +122,7 @@ def test_planted_linkage_is_made_from_its_own_chain(name: str) -> None:
     assert min(missed) < 1e-8
 
 
+@pytest.mark.quick("full-crank")
 @pytest.mark.parametrize("rotatability", ["full-crank", "any"])
 def test_finds_carry_the_body_by_their_joints_alone(rotatability: str) -> None:
     """From the judge's driver angle at the first pose, without a dead position; and round where they turn."""
