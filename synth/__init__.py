@@ -1,11 +1,5 @@
 """How designs are found: starts, the CasADi programme, Ipopt, verification, ranking."""
 
-from grashof.synth.designs.candidate import Candidate
-from grashof.synth.proof.claims.proof import Claim, Proof
-from grashof.synth.prove import prove
-from grashof.synth.results.result import Result
-from grashof.synth.search.run import Progress
-from grashof.synth.synthesize import synthesize
-from grashof.synth.track import track
+from lazy_loader import attach_stub
 
-__all__ = ["Candidate", "Claim", "Progress", "Proof", "Result", "prove", "synthesize", "track"]
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -62,7 +62,7 @@ def prove(problem: ProblemName, options: ProveOptions) -> ExitCode:
     3: environment error; 130: interrupted (Ctrl-C).
     """
     from grashof.synth import prove as proven
-    from grashof.synth.prove import has_certificate
+    from grashof.synth.proving import has_certificate
     from grashof.wording.proof import bound_line, is_decided, work_line
 
     loaded = load(problem)

@@ -15,7 +15,6 @@ from grashof.problems import Cylinder, DeadPositionWarning, Linkage, Problem
 from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.requirements.requirements import LIMITS
-from grashof.synth.cylinder.choice import best_cylinder
 
 _SAMPLES = 129
 _NEAR = np.array([1e-3, 3e-3, 0.01, 0.03, 0.1])  # rad, about angles that may be close to a dead position
@@ -37,6 +36,8 @@ def cylinder_for(problem: Problem, linkage: Linkage, verdict: Verdict) -> Cylind
     at = moved.at(_samples(moved))
     if np.isnan(at.theta3).any():
         return None
+    from grashof.synth.cylinder.choice import best_cylinder  # few problems have cylinders
+
     limit, power = problem.requirements.cylinder_force_max, None
     if limit is not None and verdict.branch_ok:
         power = _power(problem, linkage, verdict, np.unwrap(at.theta2))

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import quantity_of
-from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
-from grashof.synth.proof.functions.five_pairs import certified_functions
-from grashof.synth.proof.poses.five_poses import Certified, certified_poses
-from grashof.synth.proof.poses.four_poses import bounds_of_four
-from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
-from grashof.synth.proof.poses.three_poses import bounds_of_three
-from grashof.synth.proof.strokes.cover import bounds_of_stroke
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 
-_PROVERS = bounds_of_stroke, bounds_of_four, bounds_of_three, bounds_of_slider_cranks
+if TYPE_CHECKING:
+    from grashof.synth.proof.poses.five_poses import Certified
 
 
 def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = None) -> Bounds | None:
@@ -25,8 +20,30 @@ def bounds_of(scaled: ScaledProblem, proving: Proving, at_least: float | None = 
 
     With `at_least`, deg, it only decides whether a design has that much.
     """
-    found = (prover(scaled, proving, at_least) for prover in _PROVERS if scaled.one_loop)
+    found = (prover(scaled, proving, at_least) for prover in _provers(scaled))
     return next((bounds for bounds in found if bounds is not None), None)
+
+
+def _provers(
+    scaled: ScaledProblem,
+) -> Iterator[Callable[[ScaledProblem, Proving, float | None], Bounds | None]]:
+    """Those of a kind of task; none is loaded for others."""
+    if not scaled.one_loop:
+        return
+    if scaled.problem.task.at_limits:
+        from grashof.synth.proof.strokes.cover import bounds_of_stroke
+
+        yield bounds_of_stroke
+    elif scaled.motion is not None:
+        from grashof.synth.proof.poses.four_poses import bounds_of_four
+
+        yield bounds_of_four
+        from grashof.synth.proof.poses.three_poses import bounds_of_three
+
+        yield bounds_of_three
+        from grashof.synth.proof.poses.slider_cranks import bounds_of_slider_cranks
+
+        yield bounds_of_slider_cranks
 
 
 def bounds_before(scaled: ScaledProblem, proving: Proving) -> Bounds | None:
@@ -44,15 +61,27 @@ def bounds_after(
     if not scaled.one_loop:
         return None
     best = max((one.values[quantity_of(scaled.problem).key] for one in designs), default=0.0)
-    pairs = bounds_of_pairs(scaled, proving, float(best))
-    if pairs is not None:
-        return pairs
-    if not proving.minutes or (before is not None and before.closed):
+    if scaled.problem.task.has_output.all():
+        from grashof.synth.proof.functions.few_pairs import bounds_of_pairs
+
+        return bounds_of_pairs(scaled, proving, float(best))
+    if not proving.minutes or (before is not None and before.closed) or scaled.motion is None:
         return before
+    from grashof.synth.proof.poses.three_poses import bounds_of_three
+
     return bounds_of_three(scaled, proving, lower=float(best)) or before
 
 
 def certified_of(scaled: ScaledProblem) -> Certified | None:
     """All dyads of five whole poses or five pairs of a function; None for other problems."""
-    found = (each(scaled) for each in (certified_poses, certified_functions) if scaled.one_loop)
-    return next((dyads for dyads in found if dyads is not None), None)
+    if not scaled.one_loop:
+        return None
+    if scaled.problem.task.has_output.all():
+        from grashof.synth.proof.functions.five_pairs import certified_functions
+
+        return certified_functions(scaled)
+    if scaled.motion is None:
+        return None
+    from grashof.synth.proof.poses.five_poses import certified_poses
+
+    return certified_poses(scaled)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import replace
 
+from grashof.problems import Problem
+from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import best_listed, proof_of
-from grashof.synth.proof.points.followed import proof_of_points
 from grashof.synth.proof.poses.atlas import Atlas
 from grashof.synth.proof.poses.five_poses import Certified, proof_of_all
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.choice import choose, least_error, why_ended
-from grashof.synth.results.explain import advice, explain
 from grashof.synth.results.result import Result
+from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
@@ -34,12 +36,12 @@ def conclude(
     """The ranked list of one or two searches, or why it is empty, with the proof from bounds."""
     chosen = choose(scaled, ledgers, run)
     _LOG.info("choice: %d designs, %d solves for it", len(chosen.designs), chosen.solved)
-    explanation = explain(scaled, ledgers[-1], chosen, run)
-    if explanation.note:
-        _LOG.info("explanation: %s", explanation.note)
+    found, nearest, note = _explained(scaled, ledgers[-1], chosen, run)
+    if note:
+        _LOG.info("explanation: %s", note)
     run.ended()
     problem, ledger = scaled.problem, ledgers[-1]
-    designs = listed(problem, chosen.designs or explanation.designs)
+    designs = listed(problem, found)
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
         designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))
@@ -65,7 +67,9 @@ def conclude(
         proof = proof_of_all(problem, bounds, designs, whole=ledger.exhaustive)
     elif bounds is not None:
         proof = proof_of(problem, bounds, best_listed(problem, designs), run.proving.gap)
-    else:
+    elif scaled.exact and problem.task.only_points:
+        from grashof.synth.proof.points.followed import proof_of_points
+
         proof = proof_of_points(
             scaled,
             designs,
@@ -79,10 +83,10 @@ def conclude(
     return Result(
         problem=problem,
         candidates=designs,
-        nearest=explanation.nearest,
+        nearest=nearest,
         tally=ledger.tally,
         seconds=seconds,
-        note=explanation.note or (advice(problem) if designs else ""),
+        note=note or (_advice(problem) if designs else ""),
         complete=ledger.complete,
         ended=ended,
         least_error=least_error(scaled, ledger),
@@ -90,6 +94,26 @@ def conclude(
         proof=proof,
         loci=None if atlas is None else atlas.loci,
     )
+
+
+def _explained(
+    scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run
+) -> tuple[Sequence[Candidate], tuple[Candidate, ...], str]:
+    """Designs to list, the closest misses and a note; few searches need an explanation."""
+    if chosen.designs:
+        return chosen.designs, (), ""
+    from grashof.synth.results.explain import explain
+
+    found = explain(scaled, ledger, chosen, run)
+    return found.designs, found.nearest, found.note
+
+
+def _advice(problem: Problem) -> str:
+    if not problem.task.at_limits:
+        return ""
+    from grashof.synth.results.explain import advice
+
+    return advice(problem)
 
 
 def needless(scaled: ScaledProblem, stop_condition: StopCondition) -> Result:

@@ -16,6 +16,7 @@ from grashof.synth.programme.user_functions import relaxed_by_own
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.larger_zones import up, wider
 from grashof.synth.results.relaxations import relaxations
+from grashof.synth.results.result import BETWEEN, WOULD
 from grashof.synth.results.trade_offs import Chosen
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.finder import finder_for
@@ -29,7 +30,6 @@ from grashof.synth.theory.stopping import StopRequested
 STOPPED = "no design: the search was stopped before it found one"
 UNEXPLAINED = "no design: the search for the reason was stopped"
 SHOWN = 8  # least-squares designs that stand for the nearest
-_WOULD, _BETWEEN = " alone would do", "; "
 ALTERNATIVES = 6  # that the note names
 NEAR_EFFORT, NEAR = 0.35, 8  # of a search for designs that come near
 GOOD = float(np.radians(40))  # transmission angle that textbooks recommend (Norton, sec. 3.3)
@@ -56,8 +56,6 @@ class _Near:
 
 def explain(scaled: ScaledProblem, ledger: Ledger, chosen: Chosen, run: Run) -> Explanation:
     """State why a list is empty: what changes would give a design, and how near designs come."""
-    if chosen.designs:
-        return Explanation("")
     if not ledger.complete:
         return Explanation(STOPPED)
     asked = ledger.scaled if len(scaled.targets) < 3 else scaled  # two poses nearly met are two that are met
@@ -154,20 +152,8 @@ def _miss(near: _Near, size: float) -> float:
 def _ways_note(why: str, words: list[str], given: str = "") -> str:
     """The note that names single requirements, each sufficient together with `given`."""
     reason = f"no design: {why}" if why else "no design meets all requirements"
-    alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{_WOULD}"
-    return f"{reason}; {alone}: {_BETWEEN.join(words)}"
-
-
-def note_parts(note: str) -> tuple[str, list[str]]:
-    """The reason in a note, and the requirements that it names one by one.
-
-    >>> note_parts("no design; each of these alone would do: r 3 instead of 2; order = false")
-    ('no design; each of these alone would do', ['r 3 instead of 2', 'order = false'])
-    >>> note_parts("no design: the search found none")
-    ('no design: the search found none', [])
-    """
-    said, found, ways = note.partition(f"{_WOULD}: ")
-    return (f"{said}{_WOULD}", ways.split(_BETWEEN)) if found else (note, [])
+    alone = f"{given}{'this' if len(words) == 1 else 'each of these'}{WOULD}"
+    return f"{reason}; {alone}: {BETWEEN.join(words)}"
 
 
 def _comes_within(scaled: ScaledProblem, near: _Near, then: str = "") -> str:

@@ -21,6 +21,8 @@ from grashof.synth.search.ledger import Tally
 if TYPE_CHECKING:
     import pandas as pd
 
+WOULD, BETWEEN = " alone would do", "; "  # in notes that name requirements
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Result(Displayed):
@@ -134,3 +136,15 @@ class Result(Displayed):
     def to_csv(self, path: str | PathLike[str]) -> None:
         """Write `to_frame` with floats in full precision."""
         self.to_frame().to_csv(path, index=False, lineterminator="\n")
+
+
+def note_parts(note: str) -> tuple[str, list[str]]:
+    """The reason in a note, and the requirements that it names one by one.
+
+    >>> note_parts("no design; each of these alone would do: r 3 instead of 2; order = false")
+    ('no design; each of these alone would do', ['r 3 instead of 2', 'order = false'])
+    >>> note_parts("no design: the search found none")
+    ('no design: the search found none', [])
+    """
+    said, found, ways = note.partition(f"{WOULD}: ")
+    return (f"{said}{WOULD}", ways.split(BETWEEN)) if found else (note, [])

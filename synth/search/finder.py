@@ -9,31 +9,8 @@ from grashof.problems import Problem, ProblemError, Search
 from grashof.problems.values.checks import located, whole_number
 from grashof.synth.programme.start import Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
-from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
 from grashof.synth.starts.finder import DesignFinder, Finder, StartFinder
-from grashof.synth.starts.functions.finder import Functions
-from grashof.synth.starts.least_squares import LeastSquares
-from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
-from grashof.synth.starts.six_bars.dwells import Dwells
-from grashof.synth.starts.six_bars.finder import SixBars
-from grashof.synth.starts.strokes.limit_positions import LimitPositions
-from grashof.synth.starts.strokes.tandem import TandemRockers
-
-# The first that suits a problem is taken; the last suits all.
-KINDS: tuple[type[StartFinder] | type[DesignFinder], ...] = (
-    SixBars,
-    Functions,
-    LimitPositions,
-    Dwells,
-    TandemRockers,
-    Parallelograms,
-    FewPoses,
-    ManyPoses,
-    NinePoints,
-    EightPoints,
-    PrecisionPoints,
-    LeastSquares,
-)
+from grashof.synth.theory.burmester import Displacements
 
 
 def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Round]:
@@ -48,8 +25,46 @@ def rounds(finder: Finder, made: Callable[[int], Round | None]) -> Iterator[Roun
 
 
 def finder_for(scaled: ScaledProblem) -> StartFinder | DesignFinder:
-    """The first kind of search that suits a problem."""
-    return next(kind(scaled) for kind in KINDS if kind.suits(scaled))
+    """The first kind of search that suits a problem; the last suits all. None is loaded before it does."""
+    task = scaled.problem.task
+    if not scaled.one_loop and bool(task.in_plane or task.has_output.any()):
+        from grashof.synth.starts.six_bars.finder import SixBars
+
+        return SixBars(scaled)
+    if task.has_output.any():
+        from grashof.synth.starts.functions.finder import Functions
+
+        return Functions(scaled)
+    if task.at_limits:
+        from grashof.synth.starts.strokes.limit_positions import LimitPositions
+
+        return LimitPositions(scaled)
+    if task.dwell is not None:
+        from grashof.synth.starts.six_bars.dwells import Dwells
+
+        return Dwells(scaled)
+    if task.swings is not None:
+        from grashof.synth.starts.strokes.tandem import TandemRockers
+
+        return TandemRockers(scaled)
+    if scaled.motion is not None:  # whole poses, all to be met
+        return _of_exact_poses(scaled, scaled.motion)
+    if scaled.exact:
+        from grashof.synth.starts.precision_points import EightPoints, NinePoints, PrecisionPoints
+
+        every = next((kind for kind in (NinePoints, EightPoints) if kind.suits(scaled)), PrecisionPoints)
+        return every(scaled)
+    from grashof.synth.starts.least_squares import LeastSquares
+
+    return LeastSquares(scaled)
+
+
+def _of_exact_poses(scaled: ScaledProblem, motion: Displacements) -> StartFinder:
+    from grashof.synth.starts.exact_poses import FewPoses, ManyPoses, Parallelograms
+
+    if len(scaled.targets) > 2 and motion.translates:
+        return Parallelograms(scaled)
+    return FewPoses(scaled) if len(scaled.targets) < 5 else ManyPoses(scaled)
 
 
 def refuse_unsearchable(problem: Problem) -> None:

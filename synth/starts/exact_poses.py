@@ -116,11 +116,6 @@ def pure_rotation(scaled: ScaledProblem, motion: Displacements) -> str:
 class Parallelograms(ExactPoses):
     """Three poses or more that are pure translations of each other."""
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Three whole poses or more, all of one angle."""
-        return scaled.motion is not None and len(scaled.targets) > 2 and scaled.motion.translates
-
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """A single round."""
         if number or not (self.freedom or size == 1):
@@ -176,11 +171,6 @@ class DyadPairs(ExactPoses):
 class FewPoses(DyadPairs):
     """Two to four whole poses."""
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Two to four whole poses, all to be met."""
-        return scaled.motion is not None and len(scaled.targets) < 5
-
     def quick_pass(self, rng: np.random.Generator) -> Round | None:
         """The best of far fewer dyads."""
         if self.motion.translates:
@@ -235,11 +225,6 @@ class FewPoses(DyadPairs):
 
 class ManyPoses(DyadPairs):
     """Five whole poses and more, which leave no freedom."""
-
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Five whole poses or more, all to be met."""
-        return scaled.motion is not None and len(scaled.targets) > 4
 
     def round(self, number: int, _enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """A single round of all linkages; a second one would be the same."""

@@ -20,11 +20,6 @@ class Finder(ABC):
 
     scaled: ScaledProblem
 
-    @staticmethod
-    def suits(_scaled: ScaledProblem) -> bool:
-        """Whether it suits a problem that no kind before it suits."""
-        return True
-
     @property
     @abstractmethod
     def beginning(self) -> str:

@@ -35,11 +35,6 @@ class PrecisionPoints(CouplerSearch):
 
     patience: ClassVar[float] = BARREN
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """All targets that have to be met exactly."""
-        return scaled.exact
-
     def round(self, _number: int, enough: int, rng: np.random.Generator, _size: int, /) -> Round | None:
         """A round of the search."""
         return searched_round(self.scaled, enough, rng)

@@ -7,23 +7,6 @@ unit, speed and masses are the problem's. Fonts are those of matplotlib's settin
 as text, and the same bytes each time.
 """
 
-from grashof.figures.animation import animate, save_animation
-from grashof.figures.curves import plot_dynamics, plot_kinematics
-from grashof.figures.files import draw_design, draw_motion, save
-from grashof.figures.linkage import plot_coupler_curve, plot_design_space, plot_linkage, plot_task
-from grashof.figures.section_plots import plot_section
+from lazy_loader import attach_stub
 
-__all__ = [
-    "animate",
-    "draw_design",
-    "draw_motion",
-    "plot_coupler_curve",
-    "plot_design_space",
-    "plot_dynamics",
-    "plot_kinematics",
-    "plot_linkage",
-    "plot_section",
-    "plot_task",
-    "save",
-    "save_animation",
-]
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -1,17 +1,5 @@
 """Pages of searches and of analysed linkages, each a single self-contained HTML file."""
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from lazy_loader import attach_stub
 
-if TYPE_CHECKING:
-    from grashof.page.analysis import analysis_page
-    from grashof.page.search import search_page
-
-__all__ = ["analysis_page", "search_page"]
-
-
-def __getattr__(name: str) -> Any:
-    """Loaded on first use: a search needs no pandas."""
-    if name in __all__:
-        return getattr(import_module(f"grashof.page.{name.removesuffix('_page')}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -15,7 +15,7 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.linkages.mechanisms import ROWS
 from grashof.synth import Candidate, Result
 from grashof.synth.designs.table import Row, rows_of, rows_of_nearest
-from grashof.synth.results.explain import note_parts
+from grashof.synth.results.result import note_parts
 from grashof.synth.search.ledger import LISTED, Tally
 from grashof.wording.problem import goals, summary
 from grashof.wording.proof import enclosure_line, proof_line, work_line

@@ -38,11 +38,6 @@ class Functions(DesignFinder):
 
     beginning: ClassVar[str] = "looking for linkages that generate the function"
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Tasks with an output."""
-        return bool(scaled.problem.task.has_output.any())
-
     @cached_property
     def aims(self) -> FunctionAims:
         """The aims of the search."""

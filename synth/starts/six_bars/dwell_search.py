@@ -13,7 +13,7 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import expit, logit
+import scipy
 
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntArray
 from grashof.problems.values.linkages.mechanism import DyadKind
@@ -118,7 +118,7 @@ def curve(
 def linkages(aim: DwellAim, batch: Batch, round_: int = ROUND) -> tuple[DwellLinkages, ComplexArray]:
     """The six-bars of a batch, and C at even driver angles round the turn."""
     x = np.moveaxis(batch.unknowns, -1, 0)
-    first = feasible(Bars(), expit(batch.unknowns[..., :3]), batch.longer_driver, aim.demand)
+    first = feasible(Bars(), scipy.special.expit(batch.unknowns[..., :3]), batch.longer_driver, aim.demand)
     c, (side, side_2) = x[3] + 1j * x[4], np.moveaxis(batch.assembly, -1, 0)
     lengths = first.r2, first.r3, first.r4
     path = curve(lengths, c, side, np.broadcast_to(np.arange(round_) * TURN / round_, (*c.shape, round_)))
@@ -128,12 +128,12 @@ def linkages(aim: DwellAim, batch: Batch, round_: int = ROUND) -> tuple[DwellLin
         shortest = _slide_limits(aim, path, d, np.ones_like(x[7]), short)[0]
         r5 = shortest * (1 + np.exp(x[7]))
         _, least, most = _slide_limits(aim, path, d, r5, short)
-        r6 = least + expit(x[8]) * (most - least)
+        r6 = least + scipy.special.expit(x[8]) * (most - least)
     else:
         d = x[6] + 1j * x[7]
         near, far = _reach(path, d)
         r5, r6 = bars_between(
-            near * (1 - short), far * (1 + short), expit(batch.unknowns[..., 8:]), aim.demand
+            near * (1 - short), far * (1 + short), scipy.special.expit(batch.unknowns[..., 8:]), aim.demand
         )
     return DwellLinkages(*lengths, c, side, d, r5, r6, side_2), path
 
@@ -317,7 +317,7 @@ def drawn(aim: DwellAim, rng: np.random.Generator) -> Batch:
     of, which = np.unravel_index(np.argsort(cost, axis=None, kind="stable"), cost.shape)
     few = _first_of_each(of[np.isfinite(cost[of, which])], OF_ONE)[:BEGUN]
     of, which = of[few], which[few]
-    four_bar = np.column_stack([logit(shares), c.real, c.imag, at])[kept[of]]
+    four_bar = np.column_stack([scipy.special.logit(shares), c.real, c.imag, at])[kept[of]]
     return Batch(
         unknowns=np.concatenate([four_bar, dyads.unknowns[of, which]], axis=1),
         longer_driver=longer[kept[of]],
@@ -374,7 +374,7 @@ def _sliders(aim: DwellAim, arcs: Arcs) -> Dyads:
 
 def _inner(shares: FloatArray) -> FloatArray:
     """Unknowns of shares, away from the ends."""
-    inner: FloatArray = logit(np.clip(np.nan_to_num(shares, nan=0.5), 0.02, 0.98))
+    inner: FloatArray = scipy.special.logit(np.clip(np.nan_to_num(shares, nan=0.5), 0.02, 0.98))
     return inner
 
 

@@ -38,11 +38,6 @@ class Dwells(DesignFinder):
     exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
     rounds_a_pass: ClassVar[int] = ROUNDS
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Tasks with a dwell."""
-        return scaled.problem.task.dwell is not None
-
     @property
     def task(self) -> Task:
         """The task of the problem."""

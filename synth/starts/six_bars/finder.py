@@ -60,12 +60,6 @@ class SixBars(DesignFinder):
     beginning: ClassVar[str] = "looking for six-bars"
     exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Paths, poses and functions with linkages of two loops."""
-        task = scaled.problem.task
-        return not scaled.one_loop and bool(task.in_plane or task.has_output.any())
-
     @cached_property
     def wanted(self) -> Requirements:
         """Resolved, in the problem's unit."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import expit, logit
+import scipy
 
 from grashof.problems.values.arrays import TURN, BoolArray, FloatArray
 from grashof.problems.values.linkages.mechanism import Mechanism, Parameter
@@ -58,14 +58,14 @@ class Shapes:
 
     def drawn(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Random free numbers, (count, width)."""
-        columns = [logit(rng.random((count, FIRST)))]
+        columns = [scipy.special.logit(rng.random((count, FIRST)))]
         for row in self.later:
             if row.paired:
                 columns.append(rng.normal(0, SPREAD, (count, 2)))
             elif row.kind == "angle":
                 columns.append(rng.uniform(-np.pi, np.pi, (count, 1)))
             else:
-                columns.append(logit(rng.random((count, 1))))
+                columns.append(scipy.special.logit(rng.random((count, 1))))
         return np.concatenate(columns, axis=1)
 
     def made(self, free: FloatArray, longer: BoolArray, sides: FloatArray, ends: FloatArray) -> Made:
@@ -118,7 +118,7 @@ class Made:
         def lengths(numbers: FloatArray) -> FloatArray:
             free, low, high = numbers[..., :FIRST], numbers[..., FIRST], numbers[..., FIRST + 1]
             longer = np.broadcast_to(self.longer[:, None], low.shape)
-            sizes = feasible(Bars(), expit(free), longer, self._demand(low, high))
+            sizes = feasible(Bars(), scipy.special.expit(free), longer, self._demand(low, high))
             return np.stack([sizes.r2, sizes.r3, sizes.r4], axis=-1)
 
         found = Differences(lengths, np.concatenate([self.free[:, :FIRST], self.ends], axis=1))
@@ -151,7 +151,7 @@ class Made:
 
     def _between_pins(self, numbers: FloatArray) -> FloatArray:
         near, far, near_mu, far_mu, first, second = np.moveaxis(numbers, -1, 0)
-        shares = expit(np.stack([first, second], axis=-1))
+        shares = scipy.special.expit(np.stack([first, second], axis=-1))
         demand = Demand.turning(self.shapes.transmission, self.shapes.margin * self.shapes.turning)
         near, far = near * (1 - SHORT), far * (1 + SHORT)
         within = near_mu * (1 - SHORT), far_mu * (1 + SHORT)
@@ -171,7 +171,7 @@ class Made:
         r5 = shortest * (1 + np.exp(longer))
         least = np.maximum(high + slack - r5, high_mu + slack - cosine * r5)
         most = np.minimum(low - slack + r5, low_mu - slack + cosine * r5)
-        return np.stack([r5, least + expit(share) * (most - least)], axis=-1)
+        return np.stack([r5, least + scipy.special.expit(share) * (most - least)], axis=-1)
 
     def _extremes(self) -> list[Dual]:
         """Least and greatest gap of the last loop where it closes, and where it transmits."""

@@ -51,11 +51,6 @@ class LimitPositions(DesignFinder):
 
     exhausted: ClassVar[str] = "no others are worth listing"
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Tasks with a swing or stroke and a time ratio."""
-        return scaled.problem.task.at_limits
-
     @property
     def beginning(self) -> str:
         """The first step of the search, in words."""

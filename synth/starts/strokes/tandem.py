@@ -41,11 +41,6 @@ class TandemRockers(DesignFinder):
     beginning: ClassVar[str] = "looking for linkages with both swings"
     exhausted: ClassVar[str] = "its rounds are done; an effort above 1 adds more"
 
-    @staticmethod
-    def suits(scaled: ScaledProblem) -> bool:
-        """Tasks with two outputs."""
-        return scaled.problem.task.swings is not None
-
     @cached_property
     def aim(self) -> TandemAim:
         """Limits and goals."""

@@ -12,8 +12,8 @@ from grashof import load, synthesize
 from grashof.analysis import verify
 from grashof.problems import Box, MotionTask, Objective, PathTask, Problem, Requirements
 from grashof.synth import Result
-from grashof.synth.results.explain import note_parts
 from grashof.synth.results.larger_zones import up
+from grashof.synth.results.result import note_parts
 
 pytestmark = pytest.mark.usefixtures("small_search")
 

@@ -168,7 +168,7 @@ def test_enough_is_enough(luggage: Problem) -> None:
 def test_a_fruitless_search_ends(luggage: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("grashof.synth.search.ledger"), "FRUITLESS", 16)
     monkeypatch.setattr(
-        import_module("grashof.synth.results.conclusion"), "explain", lambda *_: Explanation("none")
+        import_module("grashof.synth.results.explain"), "explain", lambda *_: Explanation("none")
     )
     seen: list[Progress] = []
     far = replace(luggage.requirements, o2=Box((100, 101), (100, 101)))

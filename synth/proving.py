@@ -14,6 +14,7 @@ from grashof.problems import Problem, ProblemError
 from grashof.problems.values.checks import number_within
 from grashof.problems.values.linkages.mechanism import DyadKind
 from grashof.problems.values.linkages.mechanisms import closing_dyad
+from grashof.synth.pipeline import synthesize
 from grashof.synth.proof.claims.bounds import Bounds, Proving
 from grashof.synth.proof.claims.proof import Claim, Proof, proof_of, quantity_of
 from grashof.synth.proof.curve.required import POSES, refusal
@@ -26,7 +27,6 @@ from grashof.synth.proof.provers import bounds_before, bounds_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.finder import refuse_unsearchable
 from grashof.synth.search.history import StopCondition
-from grashof.synth.synthesize import synthesize
 from grashof.synth.theory.stopping import stopping
 
 _RIGHT = 90.0  # deg: a bound without information
