@@ -60,10 +60,12 @@ def _solve(problem: Problem, text: str, options: SolveOptions, folder: Path, doc
     from grashof.synth.results.lists import ReportedDesigns
     from grashof.synth.search.history import StopReason
     from grashof.synth.search.journal import remove_record
+    from grashof.wording.problem import ends_with_enough
 
     given = _fields(options, "starts", "seed", "effort")
     search = replace(problem.search, **{name: value for name, value in given.items() if value is not None})
-    search = replace(search, enough=max(search.enough, options.top or 0))
+    alone = options.top == 1 and not ends_with_enough(problem)
+    search = replace(search, enough=1 if alone else max(search.enough, options.top or 0))
     settings = {
         **asdict(search),
         "workers": options.workers,

@@ -15,7 +15,7 @@ from grashof.synth.proof.claims.proof import quantity_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.larger_zones import nearest_zones
 from grashof.synth.results.lists import within_factor
-from grashof.synth.results.trade_offs import Chosen, seeds_of, started_at, trade_offs
+from grashof.synth.results.trade_offs import LEAST, Chosen, seeds_of, started_at, trade_offs
 from grashof.synth.search.ledger import EXACT_ERROR, Ledger
 from grashof.synth.search.run import Run
 from grashof.synth.search.searches import error_of_use
@@ -45,6 +45,9 @@ def choose(scaled: ScaledProblem, ledgers: list[Ledger], run: Run) -> Chosen:
             found = [candidate for each in ledgers for candidate in each.verified]
             return _best_within_bounds(scaled, found, ledger, run)
         if not scaled.exact and ledger.best:
+            if run.search.enough == 1:  # nothing to choose from
+                least = min(ledger.best, key=lambda one: (one.error(scaled.problem), one.id))
+                return Chosen((replace(least, best_at=LEAST),), ledger.rejected, 0)
             return trade_offs(scaled, ledger, run)
     return Chosen(ledger.best, ledger.rejected, 0)
 
@@ -78,7 +81,7 @@ def _best_within_bounds(
 def best_at(problem: Problem, one: Candidate, least: float) -> str:
     """The words for a design: least error, least error for its transmission angle, or least error nearby."""
     if one.error(problem) <= max(least * SAME_LEAST, NO_ERROR):
-        return "least error"
+        return LEAST
     transmission = float(np.degrees(one.values[quantity_of(problem).key]))
     level = LEVEL * round(transmission / LEVEL)
     asked = problem.requirements.transmission_min_deg

@@ -25,6 +25,7 @@ MET = 1e-10  # sizes: rounding
 APART = 0.05  # share: seeds that are closer are one
 SLACK = 1e-6  # share of the error: rounding
 ALIKE = 5  # decimals up to which mirror images have the same transmission and size
+LEAST = "least error"
 COMPROMISE = "compromise"  # best at nothing alone, but no other design is better in every goal
 
 
@@ -126,7 +127,7 @@ def _worth_choosing(problem: Problem, every: list[Candidate], least: float) -> t
     kept = [one for one, best in zip(best_first, front, strict=True) if best]
     words: dict[int, list[str]] = {k: [] for k in range(len(kept))}
     if kept:  # the first of the list may be another one, if it is impractical
-        words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append("least error")
+        words[min(words, key=lambda k: round(_error(problem, kept[k]), ALIKE + 1))].append(LEAST)
     values = {
         "best mu": [-round(one.values["transmission"], ALIKE) for one in kept],
         "smallest": [round(one.verdict.size / problem.task.size, ALIKE) for one in kept],

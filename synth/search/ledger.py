@@ -258,7 +258,8 @@ class Ledger:
         share = min(1.0, self.search.effort)
         if not self.scaled.by_descent:
             return bool(self._no_use)
-        agreed, many = self._came_up >= ceil(AGREEING * share), max(1, round(MOST_ROUNDS * share))
+        agreeing = min(AGREEING, 1 + self.search.enough)
+        agreed, many = self._came_up >= ceil(agreeing * share), max(1, round(MOST_ROUNDS * share))
         return agreed or len(self._errors) >= many or bool(self._no_use)
 
     @property

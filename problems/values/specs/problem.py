@@ -64,7 +64,8 @@ class Search:
     starts : int
         Most Ipopt solves.
     enough : int
-        Stop between batches once this many distinct designs are verified.
+        Exact tasks: stop between batches once this many distinct designs are verified. Least squares with 1:
+        find the design of least error alone, without a list to choose from.
     seed : int
         Random seed.
     effort : float

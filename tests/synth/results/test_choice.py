@@ -25,6 +25,7 @@ from grashof.synth import Candidate, Result
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.choice import best_at
 from grashof.synth.results.surrogate import FEW, LONG, Surrogate
+from grashof.synth.search.ledger import CHOICE
 
 pytestmark = pytest.mark.usefixtures("small_search")
 
@@ -259,3 +260,16 @@ def test_short_tasks_and_those_with_user_constraints_have_no_surrogate() -> None
         assert surrogate.scaled is scaled
         assert surrogate.most_error(0.3, 1.0) == 0.3
     assert linkage.shape == ()
+
+
+def test_one_design_is_that_of_least_error_without_a_choice() -> None:
+    rng = np.random.default_rng(5)
+    task, _ = planted_path(rng, points=18, timed=True)
+    noisy = PathTask(task.positions + rng.normal(0, 0.02 * task.size, (18, 2)), timing=task.timing)
+    problem = Problem(task=noisy, requirements=Requirements(exact=False))
+    every, one = (synthesize(problem, enough=enough) for enough in (50, 1))
+    assert len(every) > 1
+    assert [each.best_at for each in one.candidates] == ["least error"]
+    least = min(each.verdict.square for each in every.candidates)
+    assert one.best.verdict.square == pytest.approx(least, rel=1e-6)
+    assert (one.tally.totals[CHOICE], every.tally.totals[CHOICE] > 0) == (0, True)
