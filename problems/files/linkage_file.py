@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from grashof.problems.files.design_link import SharedDesign, is_link, read_link
 from grashof.problems.files.on_disk import MOST_BYTES_MADE, Catalogue, document_of, exists, file_text
 from grashof.problems.files.problem_file import catalogue, problem_of
 from grashof.problems.values import checks
@@ -35,8 +36,8 @@ def load_linkage(linkage: str | os.PathLike[str]) -> Linkage:
     Parameters
     ----------
     linkage : str or path-like
-        A name of `linkage_catalogue`, a linkage file, or ``DIR/candidates.json#3`` for the design of
-        rank 3 of a list; in place of the rank also the design's id.
+        A name of `linkage_catalogue`, a linkage file, ``DIR/candidates.json#3`` for the design of
+        rank 3 of a list, in place of the rank also the design's id, or a link copied from the live page.
 
     Raises
     ------
@@ -63,6 +64,8 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
     ('in', 180.0)
     """
     text = os.fspath(linkage)
+    if is_link(text):
+        return _linked(read_link(text))
     file, mark, which = text.rpartition("#")
     if mark and file.endswith(".json"):
         return _candidate(Path(file), which)[0]
@@ -75,7 +78,7 @@ def load_linkage_spec(linkage: str | os.PathLike[str]) -> LinkageSpec:
         raise ProblemError(f"{text}: is a list of designs; name one of them, such as {text}#1")
     if isinstance(linkage, str) and text in catalogue() and not exists(text):
         raise ProblemError(_problem_given(text, text))
-    return _parsed(*_LINKAGES.read(linkage))
+    return linkage_spec_of(*_LINKAGES.read(linkage))
 
 
 def load_design(path: Path, which: str) -> ListedDesign:
@@ -131,7 +134,8 @@ def _problem_given(given: str, name: str) -> str:
     return f"{given}: is a problem; solve it, then name a design: {name}-designs/candidates.json#1"
 
 
-def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> LinkageSpec:
+def linkage_spec_of(text: str, file_name: str, name: str, folder: Path | None = None) -> LinkageSpec:
+    """Linkage that the text of a file states; messages begin with the name of the file."""
     # Here, not above: worker processes import this package, and need not pay for pydantic.
     from grashof.problems.files.linkage_schema import linkage_from
 
@@ -140,6 +144,18 @@ def _parsed(text: str, file_name: str, name: str, folder: Path | None) -> Linkag
         raise ProblemError(_problem_given(file_name, name))
     with checks.located_in(file_name):
         return linkage_from(document, name, folder)
+
+
+def _linked(shared: SharedDesign) -> LinkageSpec:
+    """The design of a link, with its problem."""
+    # Here, not above, likewise.
+    from grashof.problems.files.problem_schema import problem_from
+
+    if not shared.linkage:
+        raise ProblemError("the link has a problem alone, without a design; grashof live opens it")
+    spec = linkage_spec_of(shared.linkage, "the link", shared.name)
+    with checks.located_in("the link"):
+        return replace(spec, problem=problem_from(shared.document, shared.name))
 
 
 def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, replace
 from typing import Any
 
 import numpy as np
@@ -39,6 +39,11 @@ def linkage_toml(spec: LinkageSpec) -> str:
         place |= _angle(key, in_radians(key), stated[name])
     own = {} if spec.cylinder is None else {"cylinder": spec.cylinder.stated}
     return toml_text({**head, **document, **_given(spec, ("output_arm",)), **own}, _tables(spec, dyad))
+
+
+def mail_toml(spec: LinkageSpec) -> str:
+    """The same as `grashof show` prints it: of a design, without the path of its list."""
+    return linkage_toml(spec if spec.problem is None else replace(spec, source=""))
 
 
 def _given(spec: LinkageSpec, names: tuple[str, ...]) -> dict[str, Any]:

@@ -317,6 +317,15 @@ def readable(text: str) -> str:
     return "".join("?" if _unprintable(character) else character for character in text)
 
 
+def file_name(text: str) -> str:
+    """A name for files, of letters, digits, dots and dashes.
+
+    >>> file_name("../my task"), file_name("")
+    ('my-task', 'task')
+    """
+    return re.sub(r"[^\w.-]+", "-", readable(text)).strip("-._")[:60] or "task"
+
+
 def no_formula(text: str) -> str:
     r"""Text that no spreadsheet runs as a formula: a quotation mark before text that begins like one.
 

@@ -6,7 +6,7 @@ import json
 import webbrowser
 from collections.abc import Callable, Iterable
 from contextlib import closing, suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
 from socket import AF_INET, SO_REUSEADDR, SOCK_STREAM, SOL_SOCKET, socket
@@ -36,6 +36,7 @@ from grashof.problems import (
     load_linkage_spec,
     problem_text,
 )
+from grashof.problems.files.design_link import is_link
 from grashof.problems.schema import FileKind
 
 
@@ -109,16 +110,17 @@ def show(
 
     Exit code 0: done; 2: bad input; 3: environment error.
     """
-    from grashof.problems.files.linkage_writing import linkage_toml
+    from grashof.problems.files.linkage_writing import mail_toml
 
-    spec = load_linkage_spec(_in_list(linkage, number))
-    if spec.problem is not None:
-        spec = replace(spec, source="")  # the path of the list means nothing to a recipient
-    say(linkage_toml(spec).removesuffix("\n"))
+    say(mail_toml(load_linkage_spec(_in_list(linkage, number))).removesuffix("\n"))
 
 
 def _in_list(given: str, number: str | None) -> str:
     """The name of a linkage: of a folder or list that of a design in it."""
+    if is_link(given):
+        if number is not None:
+            raise ProblemError(f"NUMBER is {number}; a link has one design")
+        return given
     folder = Path(given)
     listed = folder / "candidates.json" if folder.is_dir() and given not in linkage_catalogue() else folder
     if listed.suffix == ".json":
@@ -195,7 +197,9 @@ def live(
     problem: Annotated[
         str | None,
         typer.Argument(
-            metavar="PROBLEM", help="Name in the catalogue, or a TOML file.", show_default="luggage"
+            metavar="PROBLEM",
+            help="Name in the catalogue, a TOML file, or a link copied from the page.",
+            show_default="luggage",
         ),
     ] = None,
 ) -> None:

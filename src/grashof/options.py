@@ -29,7 +29,8 @@ LinkageName = Annotated[
     str,
     typer.Argument(
         metavar="LINKAGE",
-        help="Name in the catalogue of linkages, a linkage file, or DIR/candidates.json#3 (rank or id).",
+        help="Name in the catalogue of linkages, a linkage file, DIR/candidates.json#3 (rank or id), "
+        "or a link from grashof live.",
     ),
 ]
 _Workers = Annotated[int, _option("Processes; they change the time, not the result.", min=1)]

@@ -13,9 +13,19 @@ import pytest
 from command_runs import Grashof
 
 from grashof.output.run_files import write_run
-from grashof.problems import Cylinder, FourBar, LinkageSpec, SixBar, SliderCrank, linkage_catalogue
+from grashof.problems import (
+    Cylinder,
+    FourBar,
+    LinkageSpec,
+    SixBar,
+    SliderCrank,
+    linkage_catalogue,
+    problem_text,
+)
+from grashof.problems.files.design_link import SharedDesign, design_link
 from grashof.problems.files.linkage_file import load_linkage_spec
 from grashof.problems.files.linkage_writing import linkage_toml
+from grashof.problems.files.on_disk import document_of
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.synth import Result
 
@@ -57,6 +67,19 @@ def test_a_design_by_folder_list_rank_and_id(grashof: Grashof, few: Result, fold
     ]
     assert [each.exit_code for each in judged] == [0, 0]
     assert judged[0].stdout.splitlines()[1:] == judged[1].stdout.splitlines()[1:]
+
+
+def test_a_link_is_read_wherever_a_linkage_is(
+    grashof: Grashof, refused: Callable[..., str], folder: Path
+) -> None:
+    said = grashof("show", folder, "2").stdout
+    document = document_of(problem_text("luggage"), "luggage.toml")
+    link = design_link(SharedDesign("luggage", document, said), "http://127.0.0.1/")
+    assert grashof("show", link).stdout == said
+    judged = [grashof("judge", name, "luggage").stdout for name in (link, f"{folder}/candidates.json#2")]
+    assert judged[0].splitlines()[1:] == judged[1].splitlines()[1:]
+    assert "NUMBER is 2; a link has one design" in refused("show", link, 2)
+    assert "the link is damaged" in refused("analyse", link[:-9])
 
 
 def test_a_list_may_have_another_name(grashof: Grashof, folder: Path) -> None:

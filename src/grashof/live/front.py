@@ -11,7 +11,7 @@ SCRIPTS = (
     *DRAWING,
     *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js"),
     *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
-    "live/live.js",
+    *("live/sharing.js", "live/live.js"),
 )
 
 

@@ -3,36 +3,37 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn
 
-from grashof.problems import Problem, ProblemError, catalogue, load_with_text
+from grashof.problems import Problem, ProblemError, catalogue, load_linkage_spec, load_with_text
+from grashof.problems.files.design_link import is_link, read_link
 from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_file import problem_of, problem_text
+from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
-from grashof.problems.values.checks import readable
+from grashof.problems.values.checks import file_name, located_in
 from grashof.problems.values.errors import wrong_value
 
 KINDS = ("track", "search", "file", "outline")
-FILES = ("problem", "list", "designs", "report", "dxf")
+FILES = ("problem", "list", "designs", "report", "dxf", "linkage", "link")
+TOP = 50  # families in a list, as `grashof solve` has them
 MOST_BYTES = 1_000_000  # of a request
 MOST_TARGETS = 200
 MOST_CORNERS = 1000  # of all areas, outlines and bodies together
 MOST_EFFORT = 4.0
 MOST_KEYS = 50
 _DEPTH = 12  # of tables and lists in each other
-_NAME = re.compile(r"[^\w.-]+")
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
     """Work for a page, one of `KINDS`, with the problem file as JSON and its name.
 
-    `options` are those of its kind: keys of designs, a kind of file, the text of a drawing; `shown` has the
-    designs of the page, as the previous job left them.
+    `options` are those of its kind: keys of designs, a kind of file, the text of a drawing, the linkage file
+    of a link; `shown` has the designs of the page, as the previous job left them.
     """
 
     what: str
@@ -73,8 +74,9 @@ def _no_constant(word: str) -> NoReturn:
 
 
 def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
-    """The job of a request with "what", "document", "name", and for some kinds "keys", "key", "file", "text".
+    """The job of a request with "what", "document", "name", and what its kind needs.
 
+    That is "keys" to follow, "given" to search, "text" of an outline; "key", "file" and "address" of a file.
     ProblemError where it is malformed or exceeds a limit.
     """
     what = _one_of(request, "what", KINDS)
@@ -84,23 +86,23 @@ def job_of(request: dict[str, Any], shown: bytes = b"") -> Job:
     refuse_too_much(document)
     options: dict[str, Any] = {"keys": _keys(request.get("keys", []), "keys")}
     if what == "outline":
-        if not isinstance(text := request.get("text"), str):
-            raise ProblemError("text must be that of a DXF file")
-        options = {"text": text}
+        options = {"text": _text(request, "text", "a DXF file")}
+    if what == "search":
+        options = {"given": _text(request, "given", "a linkage file") if "given" in request else ""}
     if what == "file":
-        options = {"file": _one_of(request, "file", FILES), "key": _keys([request.get("key", 0)], "key")[0]}
+        options = {
+            "file": _one_of(request, "file", FILES),
+            "key": _keys([request.get("key", 0)], "key")[0],
+            "address": _text(request, "address", "a page") if "address" in request else "",
+        }
     return Job(what, document, name_of(request.get("name", "")), options, shown)
 
 
 def name_of(name: object) -> str:
-    """A name for files, of letters, digits, dots and dashes.
-
-    >>> name_of("../my task"), name_of("")
-    ('my-task', 'task')
-    """
+    """A name for files from that of a request."""
     if not isinstance(name, str):
         raise wrong_value("name", name, "text")
-    return _NAME.sub("-", readable(name)).strip("-._")[:60] or "task"
+    return file_name(name)
 
 
 def _one_of(request: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str:
@@ -108,6 +110,12 @@ def _one_of(request: dict[str, Any], key: str, allowed: tuple[str, ...]) -> str:
     if word not in allowed:
         raise wrong_value(key, word, f"one of {', '.join(allowed)}")
     return str(word)
+
+
+def _text(request: dict[str, Any], key: str, of: str) -> str:
+    if not isinstance(text := request.get(key), str):
+        raise ProblemError(f"{key} must be that of {of}")
+    return text
 
 
 def _keys(given: object, name: str) -> list[int]:
@@ -162,11 +170,13 @@ def document_from(text: str, name: str) -> dict[str, Any]:
 
 
 def beginning(problem: Problem | str | None) -> dict[str, Any]:
-    """The "document" and "name" of a new page: of a problem, one of the catalogue or of a file, or luggage.
+    """The "document" and "name" of a new page: of a problem, or by the name of one, a file or a link.
 
     Tables of numbers that a file names become part of the document. ProblemError where the problem is invalid
     or exceeds a limit.
     """
+    if isinstance(problem, str) and is_link(problem):
+        return _linked(problem)
     if isinstance(problem, Problem):
         found, text = problem, problem_toml(problem)
     else:
@@ -179,13 +189,32 @@ def beginning(problem: Problem | str | None) -> dict[str, Any]:
     return {"document": document, "name": name_of(Path(found.name).name)}
 
 
+def _linked(link: str) -> dict[str, Any]:
+    """The "document" and "name" of a link, and a linkage file "given" with them.
+
+    ProblemError where they are invalid, or exceed a limit.
+    """
+    shared = read_link(link)
+    refuse_too_much(shared.document)
+    with located_in("the link"):
+        problem_from(shared.document, shared.name)
+    given = {}
+    if shared.linkage:
+        load_linkage_spec(link)
+        given = {"given": shared.linkage}
+    return {"document": shared.document, "name": shared.name, **given}
+
+
 def opened(begin: dict[str, Any], request: dict[str, Any]) -> dict[str, Any]:
-    """The "document" and "name" of the first problem, one of the catalogue, or a file's; the "catalogue"."""
+    """The "document" and "name" that a request opens, and the "catalogue".
+
+    They are those of a link, of one of the catalogue, of a file or, if it names none, of the first problem.
+    """
     found = begin
-    if "text" in request:
-        text, name = request["text"], name_of(request.get("name", ""))
-        if not isinstance(text, str):
-            raise ProblemError("text must be that of a problem file")
+    if "link" in request:
+        found = _linked(_text(request, "link", "a design"))
+    elif "text" in request:
+        text, name = _text(request, "text", "a problem file"), name_of(request.get("name", ""))
         found = {"document": document_from(text, name), "name": name}
     elif "catalogue" in request:
         name = str(request["catalogue"])

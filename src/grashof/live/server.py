@@ -31,6 +31,7 @@ HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cache-Control": "no-store",
 }
+_LOST = "the token is missing or wrong; open the address that grashof live prints, and a link on its page"
 JSON_LINES = "application/x-ndjson"
 
 
@@ -112,7 +113,7 @@ def _guarded(live: Live, answer: Answer) -> Callable[[Request], Awaitable[Respon
         if request.headers.get("origin") != live.origin:
             return _refused(403, "the request does not come from the live page")
         if not secrets.compare_digest(request.headers.get(TOKEN, "").encode(), live.token.encode()):
-            return _refused(403, "the token is missing or wrong; open the address that grashof live prints")
+            return _refused(403, _LOST)
         try:
             body = await _body(request)
             return await answer(request, request_of(body))

@@ -5,27 +5,25 @@ from __future__ import annotations
 import json
 import pickle
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from itertools import islice
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
-from grashof.live.requests import Job, Line, error_line
+from grashof.live.requests import TOP, Job, Line, error_line
 from grashof.page.designs import moves
 from grashof.page.search import headline, search_data
 from grashof.problems import Problem, ProblemError
+from grashof.problems.files.linkage_file import linkage_spec_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.linkages.mechanisms import DIMENSIONS, is_of
 from grashof.synth import Candidate, Progress, Result, synthesize, track
 from grashof.synth.designs.table import LISTED, rows_of
-from grashof.wording.problem import summary
+from grashof.wording.problem import judged_for, summary
 
-TOP = 50  # families in a list, as `grashof solve` has them
 TIME_LIMIT = 120.0  # s, of a search
 TRACKED = 10  # designs that follow the hand
 # Quantities known at once; others take longer than following the design.
@@ -33,6 +31,7 @@ _FOLLOWED = ("error", "transmission_min_task", "transmission_min_cycle", "size",
 AT_ONCE = tuple(each for each in LISTED if each.key in _FOLLOWED)
 ABSENT = 100  # designs of earlier lists that are recognised when they return
 SHARE = 0.2  # of the time of a search, for reports
+ONLY_GIVEN = "The design of the link; the search found no other"
 SAME = 1e-6  # of the largest parameter: then two designs are the same
 
 
@@ -112,6 +111,7 @@ def _problem(job: Job) -> Problem:
 
 def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
+    _tell_problem(problem, send)
     chosen = [key for key in job.options.get("keys", ()) if key in shown.designs]
     first = list(dict.fromkeys([*chosen, *shown.designs]))[:TRACKED]
     followed = {key: design for key, design in shown.designs.items() if key in first}
@@ -125,27 +125,72 @@ def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
 
 def _search(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
+    _tell_problem(problem, send)
+    given = _given(job, problem)
+    if given is not None and not moves(given):
+        send(error_line(f"the design of the link cannot be shown with this task: {_defects(given)}"))
+        given = None
     next_at = 0.0
 
+    def listed(designs: Sequence[Candidate]) -> None:
+        nonlocal shown
+        shown = shown.matched(_with(given, designs))
+        send(_list_line("searching", problem, shown.designs, shown, lost=_missed(shown.designs)))
+
     def report(progress: Progress) -> None:
-        nonlocal shown, next_at
+        nonlocal next_at
         since = perf_counter()
         send(_line("progress", solved=progress.solved, starts=progress.starts, verified=progress.verified))
         if since < next_at or stop() or not progress.designs:
             return
-        so_far = Result(problem, progress.designs).top(TOP)
-        shown = shown.matched(so_far.candidates)
-        send(_list_line("searching", problem, shown.designs, shown))
+        listed(Result(problem, progress.designs).top(TOP).candidates)
         now = perf_counter()
         next_at = now + (now - since) / SHARE
 
+    if given is not None:
+        listed(())
     result = synthesize(problem, progress=report, stop=stop, time_limit=TIME_LIMIT).top(TOP)
-    if stop():
-        return
-    shown = shown.matched(result.candidates, result)
-    misses = shown.matched(() if shown.designs else result.nearest)
-    shown = replace(shown, next_key=misses.next_key)
-    send(_list_line("found", problem, shown.designs or misses.designs, shown, result))
+    if not stop():
+        send(_found_line(problem, shown, result, given))
+
+
+def _given(job: Job, problem: Problem) -> Candidate | None:
+    """The linkage of a link, judged for its problem."""
+    text = job.options.get("given")
+    return judged_for(problem, linkage_spec_of(text, "the link", job.name)) if text else None
+
+
+def _with(given: Candidate | None, found: Sequence[Candidate]) -> Sequence[Candidate]:
+    """A list with the linkage of a link, to its last digit: in its place where it was found, or last."""
+    if given is None:
+        return found
+    numbers = _numbers(given)
+    there = [given if _alike(numbers, _numbers(each)) else each for each in found]
+    return there if any(each is given for each in there) else [*there, given]
+
+
+def _missed(designs: Mapping[int, Candidate]) -> dict[int, str]:
+    """The defects of those that are not verified."""
+    return {key: _defects(one) for key, one in designs.items() if not one.verdict.ok}
+
+
+def _found_line(problem: Problem, shown: Shown, result: Result, given: Candidate | None) -> Line:
+    """The list of a search that is done, or its closest misses; with the linkage of a link."""
+    listed = _with(given, result.candidates)
+    found = any(each.verdict.ok for each in listed)
+    misses = shown.matched(() if found else _with(given, result.nearest))
+    shown = shown.matched(listed if found else (), result)
+    shown = replace(shown, next_key=max(shown.next_key, misses.next_key))
+    return _list_line(
+        "found",
+        problem,
+        shown.designs or misses.designs,
+        shown,
+        found=found,
+        lost=_missed(shown.designs),
+        headline=headline(result) if result.candidates or not found else ONLY_GIVEN,
+        note=result.note if result.candidates or not found else "",
+    )
 
 
 def _list_line(
@@ -153,55 +198,41 @@ def _list_line(
     problem: Problem,
     designs: Mapping[int, Candidate],
     shown: Shown,
-    result: Result | None = None,
+    *,
+    found: bool = True,
     lost: Mapping[int, str] | None = None,
+    **words: str,
 ) -> Line:
-    """A list as the page draws it; of closest misses where the search found none."""
+    """A list as the page draws it; of closest misses where none is `found`."""
     drawn = {key: one for key, one in designs.items() if moves(one)}
     columns = AT_ONCE if phase == "track" else LISTED
     rows = rows_of(problem, list(drawn.values()), columns)
-    data = search_data(problem, list(drawn.values()), rows, found=result is None or bool(result.candidates))
+    data = search_data(problem, list(drawn.values()), rows, found=found)
     for (key, one), design in zip(drawn.items(), data["designs"], strict=True):
         design |= {"key": key, "misses": _defects(one)}
     return _line(
         "list",
         shown,
         phase=phase,
-        headline="" if result is None else headline(result),
-        note="" if result is None else result.note,
-        asked=[line.strip() for line in summary(problem)][1:],
         lost=[{"key": key, "why": why} for key, why in (lost or {}).items()],
+        **{"headline": "", "note": "", **words},
         **data,
     )
 
 
-def _file(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
-    """A file to save: the problem, or one that `grashof solve` or `grashof export` writes of the list."""
-    from grashof.output.run_files import write_run
-    from grashof.workshop.export import Making, export_files
-    from grashof.workshop.plates import PlateSizes
+def _tell_problem(problem: Problem, send: Callable[[Line], object]) -> None:
+    """The problem as its file and in words."""
+    asked = [line.strip() for line in summary(problem)][1:]
+    send(_line("problem", text=problem_toml(problem), asked=asked))
 
-    problem, wanted = _problem(job), job.options["file"]
-    text = problem_toml(problem)
-    if wanted == "problem":
-        send(_line("file", name=f"{job.name}.toml", type="application/toml", text=text))
-        return
-    shown = Shown.read(job.shown)
+
+def _file(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
+    """A file to save, or text to copy."""
+    from grashof.live.saving import saved
+
+    problem, shown = _problem(job), Shown.read(job.shown)
     there = {key: design for key, design in shown.designs.items() if design.verdict.ok}
-    if not there:
-        raise ProblemError("there is no design to save")
-    result = shown.result or Result(problem, tuple(there.values()))
-    if wanted == "dxf":
-        if (design := there.get(job.options.get("key", 0))) is None:
-            raise ProblemError("choose a design first; DXF is of one of them")
-        result = Result(problem, (design,))
-    with TemporaryDirectory() as folder:
-        write_run(Path(folder), result, {"top": TOP, "made by": "grashof live"}, 0, problem_text=text)
-        name, kind = _SAVED.get(wanted, (f"{result.best.id}.dxf", "image/vnd.dxf"))
-        if wanted == "dxf":
-            export_files(f"{folder}/candidates.json#1", Making(PlateSizes()), {"dxf": Path(folder) / name})
-        content = (Path(folder) / name).read_text(encoding="utf-8")
-    send(_line("file", name=f"{job.name}-{name}", type=kind, text=content))
+    send(_line("file", **asdict(saved(job, problem, there, shown.result))))
 
 
 def _outline(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
@@ -212,12 +243,6 @@ def _outline(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
     send(_line("outline", polylines=[line.tolist() for line in lines]))
 
 
-# Name and type of the files of a run, by "file" of a job.
-_SAVED = {
-    "list": ("candidates.csv", "text/csv"),
-    "designs": ("candidates.json", "application/json"),
-    "report": ("report.html", "text/html"),
-}
 _JOBS: dict[str, Callable[[Job, Callable[[], bool], Callable[[Line], object]], None]] = {
     "track": _track,
     "search": _search,

@@ -2,7 +2,7 @@
 
 interface Window {
   grashof: Readonly<{ state: () => any }>;
-  startLive: (root: HTMLElement, token: any) => any;
+  startLive: (root: HTMLElement, token: any, link?: string) => any;
 }
 
 /** Every event here comes from an element. */

@@ -7,6 +7,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import closing
 from copy import deepcopy
+from pathlib import Path
 from threading import Thread
 from time import monotonic
 from typing import Any
@@ -20,7 +21,10 @@ from grashof import load, synthesize, track
 from grashof.live.requests import beginning
 from grashof.live.server import HEADERS, HOST, Live, application
 from grashof.live.solvers import Solvers
-from grashof.problems import problem_text
+from grashof.output.run_files import write_run
+from grashof.problems import load_linkage_spec, problem_text
+from grashof.problems.files.design_link import SharedDesign, design_link, read_link
+from grashof.problems.files.linkage_writing import linkage_toml, mail_toml
 from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_schema import problem_from
 
@@ -72,9 +76,13 @@ def moved(by: float) -> dict[str, Any]:
     return document
 
 
+def listed(lines: list[dict[str, Any]]) -> dict[str, Any]:
+    """The last list."""
+    return [line for line in lines if line["kind"] == "list"][-1]
+
+
 def linkages(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    lists = [line for line in lines if line["kind"] == "list"]
-    return [design["linkage"] for design in lists[-1]["designs"]]
+    return [design["linkage"] for design in listed(lines)["designs"]]
 
 
 @pytest.mark.slow
@@ -96,14 +104,14 @@ def test_designs_are_followed_as_the_library_follows_them_and_keep_their_keys(cl
         lines = client.ask("track", moved(step), page="following")
         designs = track(designs, problem_from(moved(step), "luggage"))
         assert all(one.verdict.ok for one in designs)
-        assert [design["key"] for design in lines[0]["designs"]] == keys
+        assert [design["key"] for design in listed(lines)["designs"]] == keys
         assert linkages(lines) == [{"mechanism": "four-bar", **one.linkage.stated} for one in designs]
 
 
 @pytest.mark.slow
 def test_pages_have_their_own_designs(client: Client) -> None:
     client.ask("search", page="mine")
-    assert client.ask("track", page="another")[0]["designs"] == []
+    assert listed(client.ask("track", page="another"))["designs"] == []
 
 
 @pytest.mark.slow
@@ -153,6 +161,51 @@ def test_files_are_those_of_the_command_line(client: Client, wanted: str) -> Non
     else:
         assert result.candidates[2].id in file["name"]
         assert text.rstrip().endswith("EOF")
+
+
+def link_of(linkage: str, document: dict[str, Any] = DOCUMENT) -> str:
+    return design_link(SharedDesign("luggage", document, linkage), "http://127.0.0.1/")
+
+
+@pytest.mark.slow
+def test_a_design_is_shared_as_a_link_or_as_the_file_that_show_prints(client: Client, tmp_path: Path) -> None:
+    found = client.ask("search", page="sharing")
+    design = listed(found)["designs"][3]
+    asked = {"page": "sharing", "key": design["key"], "address": "http://127.0.0.1:9/"}
+    (file, _) = client.ask("file", file="linkage", **asked)
+    write_run(tmp_path, synthesize(load("luggage")).top(50), {}, 0)
+    spec = load_linkage_spec(f"{tmp_path}/candidates.json#4")
+    assert file["text"] == mail_toml(spec)
+    (link, _) = client.ask("file", file="link", **asked)
+    assert link["text"].startswith("http://127.0.0.1:9/#design=")
+    assert load_linkage_spec(link["text"]).linkage.stated == spec.linkage.stated
+    begun = client.http.post("/begin", json={"link": link["text"]}, headers=client.headers).json()
+    assert (begun["document"], begun["name"], begun["given"]) == (DOCUMENT, "luggage", file["text"])
+    given = client.ask("search", page="recipient", given=begun["given"])
+    lists = [line for line in given if line["kind"] == "list"]
+    assert [lists[0]["designs"][0]["linkage"]] == [design["linkage"]]  # before any is searched for
+    assert linkages(given) == linkages(found)  # which have it already
+    (alone, _) = client.ask("file", page="nobody", file="link", address="http://127.0.0.1:9/")
+    assert read_link(alone["text"]).linkage == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("least", "found"), [(15, True), (60, False)])
+def test_a_design_of_a_link_that_misses_is_listed_with_its_defects(
+    client: Client, least: float, found: bool
+) -> None:
+    """It is not taken for verified, whether the search finds others or not."""
+    document = DOCUMENT | {"requirements": DOCUMENT["requirements"] | {"transmission_min_deg": least}}
+    linkage = "o2 = [0, 0]\no4 = [4, 0]\nr2 = 1\nr3 = 4\nr4 = 3\ncoupler_point = [2, 1]"
+    lines = client.ask("search", document, page=f"miss {least}", given=linkage)
+    first, last = next(line for line in lines if line["kind"] == "list"), listed(lines)
+    (design,) = first["designs"]
+    assert [each["key"] for each in first["lost"]] == [design["key"]]
+    assert last["found"] is found
+    assert last["designs"][-1]["key"] == design["key"]
+    assert len(last["designs"]) > 1
+    assert design["misses"] == last["designs"][-1]["misses"] != ""
+    assert bool(last["note"]) is not found
 
 
 # ------------------------------------------------------------------------------------------ refusals
@@ -254,6 +307,25 @@ def test_a_problem_is_opened_by_its_text_or_from_the_catalogue(local: Client) ->
     text = problem_text("luggage").replace("3.5", "3.25")
     read = local.http.post("/begin", json={"text": text, "name": "my luggage"}, headers=local.headers).json()
     assert (read["name"], read["document"]["motion"]["poses"][1][0]) == ("my-luggage", 3.25)
+    linkage = linkage_toml(load_linkage_spec("luggage-report"))
+    shared = local.http.post("/begin", json={"link": link_of(linkage)}, headers=local.headers).json()
+    assert (shared["document"], shared["given"]) == (DOCUMENT, linkage)
     wrong = local.http.post("/begin", json={"text": 'kind = "nothing"'}, headers=local.headers)
     assert wrong.status_code == 422
     assert "kind" in wrong.json()["lines"][0]
+
+
+@pytest.mark.parametrize(
+    ("link", "line"),
+    [
+        (link_of("")[:-3], "the link is damaged or cut off"),
+        ("http://127.0.0.1/#design=foreign", "the link is damaged or cut off"),
+        ("http://example.com/#section", "the link has no design of grashof live in its fragment"),
+        (link_of("r2 = 1\nr3 = 2\nr4 = -3\no2 = [0, 0]\no4 = [1, 0]"), "the link: r4 is -3"),
+        (link_of("", {"kind": "dance"}), "the link: kind is 'dance'"),
+        (link_of("", DOCUMENT | {"search": {"effort": 20}}), "search.effort is 20; the live page takes"),
+        (7, "link must be that of a design"),
+    ],
+)
+def test_damaged_and_foreign_links_are_refused_in_a_line(local: Client, link: object, line: str) -> None:
+    assert line in refused(local.http.post("/begin", json={"link": link}, headers=local.headers))

@@ -68,7 +68,7 @@ class Commands {
       this.live.backdrop.showPhoto(picture.src, picture.naturalWidth, picture.naturalHeight);
       this.scalable();
     };
-    picture.onerror = () => this.live.notice(`${file.name} is not a picture that the browser can show`);
+    picture.onerror = () => this.live.warn([`${file.name} is not a picture that the browser can show`]);
     picture.src = URL.createObjectURL(file);
   }
 
@@ -126,7 +126,7 @@ class Commands {
   async ask(what, body, use) {
     const { document, name } = this.live.task;
     const onLine = (line) => {
-      if (line.kind === "error") this.live.notice(line.lines.join("\n"));
+      if (line.kind === "error") this.live.warn(line.lines);
       else if (line.kind !== "done") use(line);
     };
     try {

@@ -163,6 +163,14 @@ class Form {
     closed.checked = Boolean((document.path || {}).closed);
   }
 
+  // The task as its file and in words, as it is valid.
+  state(text, asked) {
+    $("[data-file]", this.root).textContent = text;
+    $("[data-asked]", this.root).replaceChildren(
+      ...asked.map((words) => Object.assign(document.createElement("li"), { textContent: words })),
+    );
+  }
+
   goal() {
     const usual = this.task.kind === "dwell" ? "band_made" : "transmission";
     const wanted = (this.task.document.objective || {}).maximise ?? usual;

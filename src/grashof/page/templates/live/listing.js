@@ -30,15 +30,13 @@ class Listing {
     const following = phase === "track";
     const shown = columns.filter(({ key }) => designs.some(({ figures }) => figures[key] !== null)).slice(0, SHOWN_COLUMNS);
     this.heads(shown);
-    const before = [...this.rows.keys()];
     const wanted = new Set(designs.map(({ key }) => key));
     const why = new Map(lost.map(({ key, why: reason }) => [key, reason]));
     designs.forEach((design, k) => {
       const row = this.rows.get(design.key) || this.made(design.key);
       this.update(row, design, k, shown, phase, found);
     });
-    for (const key of before) {
-      const row = this.rows.get(key);
+    for (const [key, row] of [...this.rows]) {
       row.classList.toggle("lost", why.has(key));
       row.classList.toggle("waiting", following && !wanted.has(key) && !why.has(key));
       if (why.has(key)) this.tellLost(row, why.get(key));

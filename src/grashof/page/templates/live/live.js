@@ -4,12 +4,13 @@ const OTHERS = 10; // designs whose paths are drawn beside the chosen one
 const AGAIN = 2000; // ms after which a server that does not answer is asked again
 
 class Live extends MovingPage {
-  transport; root; version; lost; preferred; transmission; velocity; torque; columns;
+  transport; root; version; lost; preferred; transmission; velocity; torque; columns; given;
 
-  constructor(root, transport) {
+  constructor(root, transport, link) {
     super({}, { root });
     Object.assign(this, { root, transport, designs: [], chosen: null, preferred: null, version: 0, listed: null, busy: null, lost: [] });
     Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });
+    Object.assign(this, { given: null, refusedAt: null });
     this.task = new Task({ onChange: (what) => this.changed(what) });
     this.stage.beside = () => this.paths();
     this.handles = new Handles(this.stage, this.task, { onMode: (mode) => this.showMode(mode) });
@@ -25,18 +26,21 @@ class Live extends MovingPage {
       this[name] = new Curves($(`#${name}`, root), { onPick: turnTo });
     }
     this.comparison = null;
-    new Commands(this);
-    this.open({});
+    new Sharing(this, new Commands(this));
+    this.open(link ? { link } : {});
   }
 
-  // Begins with a task: that of the server, one of the catalogue, or a file's text.
+  // Begins with a task: that of the server, a link with its design, one of the catalogue, or a file's text.
   async open(wanted) {
     try {
-      const { document, name, catalogue } = await this.transport.begin(wanted);
+      const { document, name, catalogue, given = null } = await this.transport.begin(wanted);
       this.forget();
       this.catalogue(catalogue, name);
+      this.given = given;
       this.task.open(document, name);
     } catch (error) {
+      // What cannot be opened leaves the page as it is, or with the task of the server.
+      if (error.lines && !this.task.kind && Object.keys(wanted).length) await this.open({});
       this.failed(error, () => this.open(wanted));
     }
   }
@@ -45,11 +49,12 @@ class Live extends MovingPage {
   forget() {
     this.player.pause();
     Object.assign(this, { designs: [], chosen: null, preferred: null, followed: null });
-    Object.assign(this, { lost: [], compared: [], listed: null });
+    Object.assign(this, { lost: [], compared: [], listed: null, asked: null });
     Object.assign(this.stage, { view: null, design: null, together: [] });
     this.listing.clear();
     this.showComparison();
     this.notice("");
+    this.warn([]);
   }
 
   catalogue(names, name) {
@@ -73,6 +78,7 @@ class Live extends MovingPage {
     const document = JSON.stringify(this.task.document);
     if (document === this.asked) return;
     this.asked = document;
+    if (!opened) this.given = null;
     this.version += 1;
     this.trackDue = this.designs.length > 0 && !opened;
     this.searchDue = false;
@@ -94,7 +100,7 @@ class Live extends MovingPage {
       this.run("track", { keys });
     } else if (this.searchDue) {
       this.searchDue = false;
-      this.run("search", {});
+      this.run("search", this.given === null ? {} : { given: this.given });
     }
   }
 
@@ -128,8 +134,16 @@ class Live extends MovingPage {
       const solved = line.starts === null ? "" : `${line.solved} of ${line.starts} starts, `;
       this.tell(`searching: ${solved}${line.verified} designs`);
     }
+    else if (line.kind === "problem") this.stated(line, version);
     else if (line.kind === "done") this.took = line.seconds;
     else if (line.kind === "list") this.list(line, version);
+  }
+
+  // The task is valid: its file, and what it asks for in words.
+  stated({ text, asked }, version) {
+    if (version !== this.version) return;
+    if (version !== this.refusedAt) this.warn([]);
+    this.form.state(text, asked);
   }
 
   list(line, version) {
@@ -151,9 +165,6 @@ class Live extends MovingPage {
     this.stage.scene = sceneOf(this.task, this.published);
     this.listing.show({ designs, columns, lost, phase, found });
     this.notice(note ? `${note[0].toUpperCase()}${note.slice(1)}.` : "");
-    $("[data-asked]", this.root).replaceChildren(
-      ...line.asked.map((words) => Object.assign(document.createElement("li"), { textContent: words })),
-    );
     this.headline(line);
     // A design that a search has not found yet may come back until it is done.
     const kept = [this.preferred, this.chosen].find((key) => this.has(key));
@@ -283,9 +294,17 @@ class Live extends MovingPage {
     node.hidden = !words;
   }
 
+  // Lines of an error, until another task is valid.
+  warn(lines) {
+    const node = $("[data-warning]", this.root);
+    this.refusedAt = lines.length ? this.version : null;
+    node.textContent = lines.join("\n");
+    node.hidden = !lines.length;
+  }
+
   refused(lines) {
-    this.notice(lines.join("\n"));
-    this.tell("not a task");
+    this.warn(lines);
+    this.tell("refused");
   }
 
   // A refusal is shown; a request without an answer is sent again.
@@ -340,8 +359,8 @@ function sceneOf(task, published) {
   };
 }
 
-function startLive(root, token) {
-  const live = new Live(root, typeof token === "string" ? new HttpTransport(token) : token);
+function startLive(root, token, link = "") {
+  const live = new Live(root, typeof token === "string" ? new HttpTransport(token) : token, link);
   window.grashof = Object.freeze({ state: () => live.state() });
   return live;
 }

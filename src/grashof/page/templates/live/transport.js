@@ -6,6 +6,11 @@ class HttpTransport {
     Object.assign(this, { token, page: crypto.randomUUID() });
   }
 
+  // Of links to this page.
+  get address() {
+    return `${window.location.origin}/`;
+  }
+
   async post(path, body, signal) {
     const headers = { "Content-Type": "application/json", "Grashof-Token": this.token };
     const answer = await fetch(path, { method: "POST", headers, body: JSON.stringify(body), signal });
