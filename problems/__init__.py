@@ -25,8 +25,9 @@ from grashof.problems.values.linkages.linkage import Linkage
 from grashof.problems.values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from grashof.problems.values.linkages.six_bar import SixBar
 from grashof.problems.values.region import Region
+from grashof.problems.values.requirements.modes import Rotatability, TransmissionOver
 from grashof.problems.values.requirements.objective import Objective
-from grashof.problems.values.requirements.requirements import Requirements, Rotatability, TransmissionOver
+from grashof.problems.values.requirements.requirements import Requirements
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 from grashof.problems.values.specs.problem import Problem, Search

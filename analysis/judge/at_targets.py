@@ -14,6 +14,7 @@ from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.units import Unit
 
@@ -57,6 +58,10 @@ def _figures(
             continue
         for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
             yield f"{name}.{axis}", value, side, Unit.LENGTH
+    for name, allowed in limits.named.get("distances", {}).items():
+        one, other = (getattr(linkage if end in ("o2", "o4") else state, end) for end in ends_of(name))
+        away = (one if one.ndim == 1 else one[k]) - (other if other.ndim == 1 else other[k])
+        yield f"the distance {name}", float(np.hypot(*away)), allowed, Unit.LENGTH
     if limits.past_deg is not None:
         low, high = np.radians(limits.past_deg).tolist()
         past = past_toggle(linkage, verdict, k)

@@ -49,8 +49,8 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -
             build.bound(unknown, _less(allowed, ahead), gives=(name, part.name))
         elif leaf:
             build.bound(value, _inset(allowed), gives=(name, part.name))
-        if LIMITS[name].kind is Kind.RATIOS and build.slack is None:  # a single row, as it may be fixed
-            build.row(value, limits=_ratio(name, part))
+        if LIMITS[name].kind is Kind.NAMED and build.slack is None:  # a single row, as it may be fixed
+            build.row(value, limits=_named(name, part))
         elif leaf or angle:
             build.require_if_relaxed((name, part.name), *_rows(build, design, part, value, allowed))
         else:
@@ -69,13 +69,17 @@ def _range(name: str, part: Part) -> Fill:
     return limits
 
 
-def _ratio(name: str, part: Part) -> Fill:
-    """Limits of a ratio, of which those without limits are free."""
+def _named(name: str, part: Part) -> Fill:
+    """Limits of a number by its name, free without any; those of distances are squared."""
 
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        low, high = range_of(scaled.wanted, name, part)
-        more = min(start.terms.tightened_by(name), (high - low) / (high + low) if high < np.inf else np.inf)
-        return low * (1 + more), high * (1 - more)
+        (low, high), more = range_of(scaled.wanted, name, part), start.terms.tightened_by(name)
+        if LIMITS[name].quantity.unit is Unit.RATIO:
+            more = min(more, (high - low) / (high + low) if high < np.inf else np.inf)
+            return low * (1 + more), high * (1 - more)
+        more = min(more, (high - low) / 2)
+        low, high = low + more, high - more
+        return (low**2 if low > 0 else -np.inf, high**2) if part.squared else (low, high)
 
     return limits
 
@@ -107,7 +111,7 @@ def _rows(build: Builder, design: Symbols, part: Part, value: ca.SX, allowed: Fi
     """Rows that are not negative where a value lies within its limits."""
     if part.per is not None:
         return [part.per(design) - value / build.parameter(lambda scaled, start: allowed(scaled, start)[1])]
-    squared: Fill = lambda scaled, start: np.square(inset(allowed(scaled, start)))  # noqa: E731
+    squared: Fill = lambda scaled, start: np.square(np.maximum(inset(allowed(scaled, start)), 0.0))  # noqa: E731
     low, high = ca.vertsplit(build.parameter(squared if part.squared else allowed, 2))
     return [value - low, high - value]
 

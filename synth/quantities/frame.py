@@ -9,6 +9,7 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.quantities import Kind, Limit
 
 
@@ -50,6 +51,8 @@ class Frame:
         power = limit.quantity.unit.lengths
         if not power:
             return value
+        if isinstance(value, NamedLimits):
+            return value.over(self.scale**power)
         return (
             tuple(each / self.scale**power for each in value)
             if isinstance(value, tuple)

@@ -341,7 +341,7 @@ class Kind(Enum):
     INSIDE = auto()  # a box or a region in the plane
     ON_BODY = auto()  # one in the body's frame
     WORD = auto()  # one of several words, each allowing a range
-    RATIOS = auto()  # [lo, hi] of each of some ratios of links
+    NAMED = auto()  # [lo, hi] of each of some numbers by name, as ratios of links
 
     @property
     def is_angle(self) -> bool:
@@ -367,11 +367,11 @@ class Limit:
     def ranges(self, value: Any) -> dict[str, Limits]:
         """The ranges that a value of the field allows, angles in rad.
 
-        By the axis of a box, also that around a region, or the name of a ratio; else by "".
+        By the axis of a box, also that around a region, or by the name of a ratio or distance; else by "".
         """
         if self.kind in (Kind.INSIDE, Kind.ON_BODY):
             return {"x": value.x, "y": value.y}
-        if self.kind is Kind.RATIOS:
+        if self.kind is Kind.NAMED:
             return dict(value)
         if self.kind is Kind.WORD:
             return {"": self.words[value]}

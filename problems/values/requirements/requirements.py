@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from enum import StrEnum
 from functools import partial
 from typing import Any
 
@@ -18,6 +17,8 @@ from grashof.problems.values.region import Region, regions
 from grashof.problems.values.requirements import requirement_checks as check
 from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
 from grashof.problems.values.requirements.link_ratios import LinkRatios
+from grashof.problems.values.requirements.modes import Rotatability, TransmissionOver
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
     OUTPUTS,
@@ -34,23 +35,6 @@ from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly, check_fields
-
-
-class Rotatability(StrEnum):
-    """The rotation that the driver must be capable of."""
-
-    FULL_CRANK = "full-crank"
-    CRANK_ROCKER = "crank-rocker"
-    DOUBLE_CRANK = "double-crank"
-    ANY = "any"
-
-
-class TransmissionOver(StrEnum):
-    """The motion over which the transmission angle is judged."""
-
-    TASK = "task"
-    CYCLE = "cycle"
-
 
 _SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
 _STROKES = "time of the slow stroke of link 4 over that of the quick one"
@@ -102,6 +86,9 @@ class Requirements(ReadOnly):
         Where this ground pivot may lie; D is that of link 6, of a Watt II or Stephenson III.
     a, b : Box or Region, optional
         Where this moving pivot may be at every target.
+    distances : mapping of str to float or tuple of float, optional
+        Distances at every target, such as ``{"a-o4": (2, 3)}``: a number, or (lo, hi), of a-o4, b-o2, a-p,
+        b-p, o2-p or o4-p.
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
     slide_angle_deg : float or tuple of float, deg, optional
@@ -187,14 +174,17 @@ class Requirements(ReadOnly):
         default=20.0,
         allowed=(1.0, 1e6),
     )
-    link_ratios: LinkRatios | None = limit(
-        Quantity("link_ratios", "ratio of two links", Unit.RATIO, listed=False), Kind.RATIOS
+    link_ratios: Mapping[str, float | Limits] | None = limit(
+        Quantity("link_ratios", "ratio of two links", Unit.RATIO, listed=False), Kind.NAMED
     )
     o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
     o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
     d: Box | None = limit(place_of("d", Scope.DESIGN), Kind.INSIDE)
     a: Box | None = limit(place_of("a", Scope.TARGETS), Kind.INSIDE)
     b: Box | None = limit(place_of("b", Scope.TARGETS), Kind.INSIDE)
+    distances: Mapping[str, float | Limits] | None = limit(
+        Quantity("distances", "distance of two points", Unit.LENGTH, Scope.TARGETS, listed=False), Kind.NAMED
+    )
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
         Kind.DIRECTION,
@@ -332,6 +322,17 @@ class Requirements(ReadOnly):
         return {
             name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
         }
+
+    @property
+    def named(self) -> dict[str, NamedLimits]:
+        """The limits by name, such as ratios of links, by field."""
+        every = {name: getattr(self, name) for name in LIMITS}
+        return {name: each for name, each in every.items() if isinstance(each, NamedLimits)}
+
+    @property
+    def ratios(self) -> LinkRatios:
+        """Limits of ratios of links; empty without any."""
+        return LinkRatios(tuple(self.ranges("link_ratios").items()))
 
     @property
     def regions(self) -> dict[str, Region]:

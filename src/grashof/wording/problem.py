@@ -137,6 +137,8 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
         sides = {} if box is None else {"x": box.x, "y": box.y}
         texts = {axis: Unit.LENGTH.range_text(side) for axis, side in sides.items()}
         said += [f"{name}.{axis} {text}{unit}" for axis, text in texts.items() if text]
+    for name, allowed in limits.named.get("distances", {}).items():
+        said.append(f"distance {name} {Unit.LENGTH.range_text(allowed)}{unit}")
     if limits.past_deg is not None:
         said.append("driver and coupler {:g} to {:g} deg past toggle".format(*limits.past_deg))
     if limits.transmission_min_deg is not None:

@@ -80,6 +80,7 @@ def figures(theta2: float) -> dict[str, float]:
     mu = abs(np.angle((b - a) / (b - (4 + 1j))))
     found = {
         "instant_centre": centre.real,
+        "distances": abs(b),
         "a": a.real,
         "b": b.imag,
         "transmission_min_deg": np.degrees(min(mu, np.pi - mu)),
@@ -98,13 +99,15 @@ def limits(name: str, value: float, target: int, *, kept: bool) -> TargetLimits:
         "b": Box(y=(value - by, np.inf)),
         "instant_centre": Box(x=(value - by, np.inf)),
         "past_deg": (value - 5, value + by),
+        "distances": {"b-o2": (0, value + by)},
     }.get(name, value - by)
     return TargetLimits(targets=[target], **{name: given})
 
 
 @pytest.mark.parametrize("kept", [True, False])
 @pytest.mark.parametrize(
-    "name", ["a", "b", "instant_centre", "past_deg", "transmission_min_deg", "mechanical_advantage_min"]
+    "name",
+    ["a", "b", "instant_centre", "distances", "past_deg", "transmission_min_deg", "mechanical_advantage_min"],
 )
 def test_judge_and_search_see_what_is_missed(name: str, kept: bool) -> None:
     line = in_line()

@@ -80,7 +80,11 @@ closed = true
 [requirements]
 size = [0, 9]
 link_ratios = {{ "r4/r2" = 1, "r3/r2" = [2, 2.5] }}
-at = [{{ targets = [1, 2], a = [1, 2], b = {{ x = [0, 1] }}, transmission_min_deg = 30 }}]
+distances = {{ a-o4 = [1, 9], "p-b" = 2 }}
+at = [
+    {{ targets = [3], distances = {{ "b-o2" = 3 }} }},
+    {{ targets = [1, 2], a = [1, 2], b = {{ x = [0, 1] }}, transmission_min_deg = 30 }},
+]
 omega4_max = [0, 9]
 point_speed_max = [0, 9]
 point_acceleration_max = [0, 9]
