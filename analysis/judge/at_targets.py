@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
+from grashof.analysis.judge.missed_limits import lifted
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
@@ -66,6 +67,13 @@ def _figures(
         low, high = np.radians(limits.past_deg).tolist()
         past = past_toggle(linkage, verdict, k)
         yield "driver and coupler past toggle in deg", past, (low, high), Unit.ANGLE
+    if limits.coupler_angle_deg is not None:
+        low, high = np.radians(limits.coupler_angle_deg).tolist()
+        (theta3,) = lifted(state.theta3[[k]], (low, high)).tolist()
+        yield "the direction of the coupler in deg", theta3, (low, high), Unit.ANGLE
+    if limits.coupler_rate is not None:
+        moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+        yield "the rate of the coupler", float(moving.omega3), limits.coupler_rate, Unit.RATIO
     if limits.transmission_min_deg is not None:
         mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))

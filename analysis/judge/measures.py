@@ -12,6 +12,7 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
+from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motion
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
@@ -22,11 +23,12 @@ from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_
 from grashof.problems import Cylinder, Linkage, Problem
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.distances import PAIRS, ends_of
 from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Needs
-from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.tasks.tandem_task import LINKS
 
+_OF_COUPLER = tuple(f"{name}_{end}" for name in ("angle", "rate") for end in ("min", "max"))
 _RATES = tuple(f"rate_{name}" for name in ("start", "end", "min", "max"))  # of cylinders
 
 
@@ -104,6 +106,11 @@ class Values(Mapping[str, float]):
     def cylinder(self) -> CylinderFigures | None:
         """Figures of the cylinder that drives it; None without one."""
         return figures_of(self.linkage, self.problem.task, self.verdict)
+
+    @cached_property
+    def coupler(self) -> CouplerMotion:
+        """Extremes of its direction and rate over the task motion."""
+        return coupler_motion(self.linkage, self.problem.task, self.verdict)
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
@@ -266,6 +273,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "time_ratio": lambda values: float(values.stroke.time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": lambda values: values["mechanical_advantage"],
+    **{f"coupler_{name}": attrgetter(f"coupler.{name}") for name in _OF_COUPLER},
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},
@@ -331,6 +339,11 @@ def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
     return {"x": np.array([place.real]), "y": np.array([place.imag])}
 
 
+def _extremes(key: str, values: Values) -> dict[str, FloatArray]:
+    """The least and the greatest value of a quantity over the task motion."""
+    return {"": np.array([values[f"{key}_{end}"] for end in ("min", "max")])}
+
+
 def _grounds_d(linkage: Linkage) -> bool:
     """Whether D is a pivot of the ground."""
     return "d" in linkage.mechanism.ground
@@ -350,5 +363,7 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "distances": _distances,
     "a_on_body": partial(_on_body, True),
     "b_on_body": partial(_on_body, False),
-    "cylinder_rate": lambda values: {"": np.array([values[f"cylinder_{name}"] for name in _RATES[2:]])},
+    "cylinder_rate": partial(_extremes, "cylinder_rate"),
+    "coupler_angle": partial(_extremes, "coupler_angle"),
+    "coupler_rate": partial(_extremes, "coupler_rate"),
 }

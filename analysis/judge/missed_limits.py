@@ -10,8 +10,9 @@ from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, ProblemError, Requirements
-from grashof.problems.values.arrays import Limits, turned_beyond
-from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
+from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
+from grashof.problems.values.requirements.quantities import Needs, Quantity, Scope
 from grashof.problems.values.units import Unit
 
 # Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
@@ -46,11 +47,23 @@ def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
             if part in limited or not {part, ""} & set(ranges):
                 continue
             allowed = ranges[part if part in ranges else ""]
+            if limit.kind is Kind.HEADING:
+                numbers = lifted(numbers, allowed)
             for value in np.unique([numbers.min(), numbers.max()]).tolist():
                 miss = _miss(value, allowed, limit, values.problem)
                 if miss > SLACK:
                     found = value * quantity.unit.shown
                     yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
+
+
+def lifted(angles: FloatArray, allowed: Limits) -> FloatArray:
+    """Angles of a motion moved by whole turns to be nearest to the middle of a range.
+
+    >>> np.degrees(lifted(np.radians([170.0, 200.0]), (-np.pi, -np.pi / 2))).round(6).tolist()
+    [-190.0, -160.0]
+    """
+    turns = np.round((np.mean(allowed) - (angles.min() + angles.max()) / 2) / TURN)
+    return np.asarray(angles + TURN * turns)
 
 
 def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:

@@ -23,9 +23,9 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
 from grashof.problems.values.region import Region, place
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -116,6 +116,7 @@ Direction = Annotated[
 _BY_KIND = {
     Kind.DIRECTION: Direction,
     Kind.BETWEEN: Pair,
+    Kind.HEADING: Pair,
     Kind.INSIDE: Place,
     Kind.ON_BODY: Place,
     Kind.WORD: str,
@@ -124,7 +125,10 @@ _BY_KIND = {
 
 
 _AT_TARGETS = {"targets": list[int], **dict.fromkeys(("a", "b", "instant_centre"), (Place | None, None))}
-_OF_TARGETS = {"past_deg": (Pair | None, None), "distances": (dict[str, Direction] | None, None)}
+_OF_TARGETS = {
+    **dict.fromkeys(("past_deg", "coupler_angle_deg", "coupler_rate"), (Pair | None, None)),
+    "distances": (dict[str, Direction] | None, None),
+}
 
 
 @tables.keys_of(TargetLimits, {**_AT_TARGETS, **_OF_TARGETS})

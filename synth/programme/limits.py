@@ -8,8 +8,9 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.requirements.quantities import Kind
-from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
+from grashof.problems.values.requirements.limit_kinds import Kind
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
@@ -21,9 +22,13 @@ from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
 from grashof.synth.quantities.along_motion import (
     AGREES,
     ALONG,
+    BOTH_SIDES,
     INVERSE,
     MOST_PEAKS,
+    allowed_along,
     magnitudes,
+    middle_of,
+    unit_along,
     value_of,
 )
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
@@ -165,13 +170,16 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) 
     ground = form.kind.dyad.ground(Fixed(form, x))
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
+    middle = (
+        build.parameter(lambda scaled, _: middle_of(scaled.wanted, key)) if key in BOTH_SIDES else ca.SX(0)
+    )
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.terms.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
         driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
         at = form.kind.instant(vector(x.o2), ground, lengths, arm, x.assembly, driver)
-        for value in ALONG[key](at, form.loading):
+        for value in ALONG[key](at, form.loading, middle):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / one).square)
             else:
@@ -194,12 +202,10 @@ def _most(form: Form, key: str) -> Fill:
     """Limits of a peak, in units of that at the start."""
 
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        fields = [name for name, limit in scaled.wanted.limited.items() if limit.quantity.key == key]
-        side = 0 if key in INVERSE else 1
-        most = min((value_of(key, scaled.wanted.ranges(name)[""][side]) for name in fields), default=np.inf)
-        return 0.0, most / (scaled.scale(QUANTITIES[key]) * peak_unit(form, scaled, start, key)) * (
-            1 - AGREES
-        )
+        low, most = allowed_along(scaled.wanted, key)
+        if key in INVERSE:
+            most = value_of(key, low) if low > 0 else np.inf
+        return 0.0, most / (unit_along(scaled, key) * peak_unit(form, scaled, start, key)) * (1 - AGREES)
 
     return limits
 

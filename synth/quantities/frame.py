@@ -9,8 +9,8 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
 from grashof.problems.values.requirements.named_limits import NamedLimits
-from grashof.problems.values.requirements.quantities import Kind, Limit
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, Design
 from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkages.mechanisms import INVERTED, SLIDER_CRANK
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -38,7 +39,8 @@ class AtTarget:
     def __call__(self, design: Design) -> Any:
         """Excess over the limits: a length, or without a unit."""
         if self.name in _EXCESS:
-            return [_EXCESS[self.name](self, design)]
+            excess = _EXCESS[self.name](self, design)
+            return excess if isinstance(excess, list) else [excess]
         return [over for value, limits in self.numbers(design) for over in _beyond(value, *limits)]
 
     def numbers(self, design: Design) -> list[tuple[Any, Limits]]:
@@ -76,6 +78,23 @@ class AtTarget:
         middle, width = low + high, high - low - INSIDE  # twice the middle of the range, and its width
         return float(np.cos(width)) - cos_twice * float(np.cos(middle)) - sin_twice * float(np.sin(middle))
 
+    def heading(self, design: Design) -> Any:
+        """cos(half the range) - cos(direction - middle)."""
+        low, high = np.radians(self.limits.coupler_angle_deg or (0.0, 0.0)).tolist()
+        coupler = _from(design.a[self.k], design.b[self.k])
+        middle, half = (low + high) / 2, min((high - low) / 2, np.pi) - INSIDE
+        ahead = (coupler[0] * float(np.cos(middle)) + coupler[1] * float(np.sin(middle))) / _square(
+            coupler
+        ) ** 0.5
+        return float(np.cos(half)) - ahead
+
+    def rate(self, design: Design) -> list[Any]:
+        """By the point of the coupler whose velocity across a line is zero: see `_held`."""
+        driver, (arm, across) = _from(design.o2, design.a[self.k]), _held(design, self.k)
+        low, high = self.limits.coupler_rate or (0.0, 0.0)
+        rate = -_cross(driver, across) / _cross(arm, across)
+        return [low + INSIDE - rate, rate - high + INSIDE]
+
     def transmission(self, design: Design) -> Any:
         """By the square of the sine."""
         coupler, output = _links(design, self.k)[1:]
@@ -92,6 +111,8 @@ class AtTarget:
 
 _EXCESS: dict[str, Any] = {
     "past_deg": AtTarget.past,
+    "coupler_angle_deg": AtTarget.heading,
+    "coupler_rate": AtTarget.rate,
     "transmission_min_deg": AtTarget.transmission,
     "mechanical_advantage_min": AtTarget.advantage,
 }
@@ -133,6 +154,21 @@ def _links(design: Design, k: int) -> tuple[Any, Any, Any]:
     a, b = design.a[k], design.b[k]
     o4 = b if design.o4 is None else design.o4
     return _from(design.o2, a), _from(a, b), _from(o4, b)
+
+
+def _held(design: Design, k: int) -> tuple[Any, Any]:
+    """From A to a point of link 3, and the line across which that has no velocity.
+
+    B, which moves square to O4B, or along a slide; of a rod that slides in a block the point at O4, which
+    moves along the rod.
+    """
+    a, b = design.a[k], design.b[k]
+    if design.mechanism == INVERTED:
+        rod = _from(a, b)
+        return _from(a, design.o4), (-rod[1], rod[0])
+    if design.mechanism == SLIDER_CRANK:
+        return _from(a, b), (-np.sin(design.slide_angle), np.cos(design.slide_angle))
+    return _from(a, b), _from(design.o4, b)
 
 
 def _centre(design: Design, k: int) -> tuple[Any, Any]:

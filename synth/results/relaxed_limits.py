@@ -13,7 +13,7 @@ from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, FourBar, Problem, Region, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits, turned_beyond, turned_from
 from grashof.problems.values.errors import shown_key
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH

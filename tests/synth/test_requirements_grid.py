@@ -25,7 +25,7 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.distances import PAIRS
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
@@ -126,6 +126,11 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
         least = float(np.median(low))
         return {part: (least, 1e6)}, least - low
     low, high = of.ends(name).T
+    if limit.kind is Kind.HEADING:
+        most, wide = between_two(high), np.radians(200.0)  # fits of the same angles are much alike
+        turns = 2 * np.pi * np.round((most - wide / 2 - (low + high) / 2) / (2 * np.pi))
+        beyond = np.maximum(most - wide - low - turns, high + turns - most)
+        return (float(np.degrees(most - wide)), float(np.degrees(most))), beyond
     if limit.kind is Kind.WORD:
         return "ccw", -low
     if limit.kind.is_angle:
@@ -140,7 +145,15 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
     if limit.quantity.better > 0:
         least = float(np.median(low))
         return (least * shown, limit.allowed[1]), least - low
-    return (max(limit.allowed[0], 0.0), most * shown), high - most
+    least = limit.allowed[0] if name == "coupler_rate" else max(limit.allowed[0], 0.0)
+    return (least, most * shown), high - most
+
+
+def between_two(values: FloatArray) -> float:
+    """The middle of the widest gap between values about the median."""
+    some = np.sort(values)[len(values) // 4 : -(len(values) // 4)]
+    k = int(np.argmax(np.diff(some)))
+    return float(some[k : k + 2].mean())
 
 
 def with_field(of: Pool, name: str, value: Any) -> Problem:

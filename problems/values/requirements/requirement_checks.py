@@ -12,9 +12,9 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
 from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
 from grashof.problems.values.requirements.link_ratios import LinkRatios
 from grashof.problems.values.requirements.named_limits import NamedLimits
-from grashof.problems.values.requirements.quantities import Kind, Limit
 from grashof.problems.values.requirements.target_limits import TargetLimits
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
@@ -32,8 +32,8 @@ def limits(limited: Limit, value: Any, where: str) -> Box | NamedLimits | Limits
     if limited.kind is Kind.NAMED:
         return NAMED[limited.quantity.key].checked(value, where)
     low, high = limited.allowed
-    if limited.kind is Kind.BETWEEN:
-        return checks.limits(value, where, least=low, most=high)
+    if limited.kind in (Kind.BETWEEN, Kind.HEADING):
+        return checks.apart(value, where, limited.narrowest, least=low, most=high)
     if limited.kind is Kind.WORD:
         return checks.one_of(value, where, limited.words)
     if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):

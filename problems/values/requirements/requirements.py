@@ -15,7 +15,15 @@ from grashof.problems.values.checks import GREATEST, some_of, true_or_false, wit
 from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.region import Region, regions
 from grashof.problems.values.requirements import requirement_checks as check
-from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
+from grashof.problems.values.requirements.limiting import (
+    between,
+    coupler,
+    limit,
+    on_body,
+    place_of,
+    structural_error,
+)
 from grashof.problems.values.requirements.link_ratios import LinkRatios
 from grashof.problems.values.requirements.modes import Rotatability, TransmissionOver
 from grashof.problems.values.requirements.named_limits import NamedLimits
@@ -25,9 +33,6 @@ from grashof.problems.values.requirements.quantities import (
     SINGLE,
     SLIDING,
     TRAVEL_ERRORS,
-    Kind,
-    Limit,
-    Needs,
     Quantity,
     Scope,
 )
@@ -40,7 +45,6 @@ _SWING = "of link 4 between its limit positions, over the task where the driver 
 _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _TARGETS = "from the first target to the last"
-_ADVANTAGE = "mechanical advantage"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +120,7 @@ class Requirements(ReadOnly):
     structural_error_rms_deg : tuple of float, deg, optional
         (lo, hi) for its root mean square.
     structural_error_max, structural_error_rms : tuple of float, optional
-        (lo, hi) for the same of a function whose output is the travel of a slide.
+        (lo, hi) for the same where the output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; undefined for a driver that does not turn fully.
@@ -128,6 +132,10 @@ class Requirements(ReadOnly):
         (lo, hi) for its greatest force.
     cylinder_rate : tuple of float, length, optional
         (lo, hi) for the change of its length for a radian of link 4, over the task motion.
+    coupler_angle_deg : tuple of float, deg, optional
+        (lo, hi) for the direction A->B over the task motion; 360 deg more is the same.
+    coupler_rate : tuple of float, optional
+        (lo, hi) for the derivative of this direction by the driver angle, over the task motion.
     a_on_body, b_on_body : Box or Region, optional
         Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
@@ -165,8 +173,7 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
-        usual=(0.0, 30.0),
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False), usual=(0.0, 30.0)
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
@@ -216,8 +223,7 @@ class Requirements(ReadOnly):
     )
     output_swing_deg: Limits | None = between(
         Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=OUTPUTS),
-        0.0,
-        360.0,
+        high=360.0,
     )
     stroke: Limits | None = between(
         Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=SLIDING)
@@ -228,7 +234,15 @@ class Requirements(ReadOnly):
         1e6,
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Scope.TASK, +1, listed=False, kinds=OUTPUTS),
+        Quantity(
+            "mechanical_advantage",
+            "mechanical advantage",
+            Unit.RATIO,
+            Scope.TASK,
+            +1,
+            listed=False,
+            kinds=OUTPUTS,
+        ),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -239,6 +253,8 @@ class Requirements(ReadOnly):
     structural_error_rms_deg: Limits | None = between(structural_error("rms"), 0.0, 360.0)
     structural_error_max: Limits | None = between(structural_error("max", TRAVEL_ERRORS))
     structural_error_rms: Limits | None = between(structural_error("rms", TRAVEL_ERRORS))
+    coupler_angle_deg: Limits | None = coupler("angle")
+    coupler_rate: Limits | None = coupler("rate")
     a_on_body: Box | None = limit(on_body("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(on_body("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
@@ -381,20 +397,4 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "keep_out": check.areas,
     "at": check.at_targets,
     "keep_out_for": partial(some_of, words=check.MAY_KEEP_OUT, wanted=check.KEPT_OUT),
-}
-
-_DERIVED = (
-    Quantity(
-        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=OUTPUTS,
-        about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
-    ),
-    Quantity(
-        "structural_error_at", "worst at", Unit.ANGLE, Scope.TASK, needs=Needs.OUTPUTS,
-        about="driver rotation from the first pair to the greatest structural error",
-        full="driver rotation to the greatest structural error",
-    ),
-)  # fmt: skip
-# All quantities of a design, by key; those that are listed in the order of the columns.
-QUANTITIES = MEASURED | {
-    each.key: each for each in (*(limited.quantity for limited in LIMITS.values()), *_DERIVED)
 }

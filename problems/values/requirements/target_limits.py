@@ -13,6 +13,12 @@ from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import not_had
 from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import (
+    HEADINGS,
+    NARROW_HEADING,
+    NARROW_RATE,
+    RATES,
+)
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import check_fields
@@ -38,6 +44,10 @@ class TargetLimits:
         Angle of driver and coupler past toggle there (O2, A and B in line), (lo, hi), from -45 to 45, as in a
         clamp or brace. Positive where the motion from the first target, of the first one that back from the
         last, passes the toggle position.
+    coupler_angle_deg : tuple of float, deg, optional
+        Direction A->B there, (lo, hi).
+    coupler_rate : tuple of float, optional
+        Derivative of this direction by the driver angle there, (lo, hi).
     transmission_min_deg : float, deg, optional
         Least min(mu, pi - mu) there.
     mechanical_advantage_min : float, optional
@@ -60,6 +70,8 @@ class TargetLimits:
     instant_centre: Box | None = None
     distances: Mapping[str, float | Limits] | None = None
     past_deg: Limits | None = None
+    coupler_angle_deg: Limits | None = None
+    coupler_rate: Limits | None = None
     transmission_min_deg: float | None = None
     mechanical_advantage_min: float | None = None
 
@@ -128,13 +140,11 @@ def _box(value: Any, where: str) -> Box | None:
     return value
 
 
-def _past(value: Any, where: str) -> Limits | None:
-    if value is None:
-        return None
-    low, high = checks.limits(value, where, least=-FARTHEST, most=FARTHEST)
-    if high - low < NARROWEST:
-        raise wrong_value(where, [low, high], f"[lo, hi] at least {NARROWEST:g} deg apart")
-    return low, high
+def _between(low: float, high: float, narrowest: float) -> Callable[[Any, str], Limits | None]:
+    def check(value: Any, where: str) -> Limits | None:
+        return None if value is None else checks.apart(value, where, narrowest, least=low, most=high)
+
+    return check
 
 
 def _number(low: float, high: float) -> Callable[[Any, str], float | None]:
@@ -147,10 +157,12 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "b": _box,
     "instant_centre": _box,
     "distances": lambda value, where: None if value is None else Distances.checked(value, where),
-    "past_deg": _past,
+    "past_deg": _between(-FARTHEST, FARTHEST, NARROWEST),
+    "coupler_angle_deg": _between(*HEADINGS, NARROW_HEADING),
+    "coupler_rate": _between(*RATES, NARROW_RATE),
     "transmission_min_deg": _number(0.0, 90.0),
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name != "targets")
 # Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
-_NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}}
+_NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}, "coupler_angle_deg": {"a"}, "coupler_rate": {"a"}}

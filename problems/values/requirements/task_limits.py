@@ -11,6 +11,7 @@ from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import LENGTHS, joined, not_had
 from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.link_ratios import contradictions
 from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.quantities import (
@@ -18,7 +19,6 @@ from grashof.problems.values.requirements.quantities import (
     SLIDING,
     TRAVELLING,
     TURNING,
-    Kind,
     Quantity,
 )
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements

@@ -22,6 +22,7 @@ from grashof.problems.values.linkages.mechanisms import (
     spelt_out,
 )
 from grashof.problems.values.requirements import task_limits
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
@@ -32,11 +33,7 @@ from grashof.problems.values.requirements.quantities import (
     Needs,
     Quantity,
 )
-from grashof.problems.values.requirements.requirements import (
-    LIMITS,
-    QUANTITIES,
-    Requirements,
-)
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.tasks.task import Task
