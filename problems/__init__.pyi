@@ -23,8 +23,9 @@ from .values.linkages.linkage import Linkage
 from .values.linkages.one_loop import FourBar, InvertedSliderCrank, SliderCrank
 from .values.linkages.six_bar import SixBar
 from .values.region import Region
+from .values.requirements.modes import Rotatability, TransmissionOver
 from .values.requirements.objective import Objective
-from .values.requirements.requirements import Requirements, Rotatability, TransmissionOver
+from .values.requirements.requirements import Requirements
 from .values.requirements.target_limits import TargetLimits
 from .values.specs.linkage_spec import LinkageSpec
 from .values.specs.problem import Problem, Search

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from grashof.analysis.four_bar.instant_centres import instant_centres
+from grashof.analysis.judge.missed_limits import lifted
 from grashof.analysis.judge.regions import distances, slack_of
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.kinematics import solve_kinematics
@@ -14,6 +15,7 @@ from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.transmission import transmission_angle
 from grashof.problems import Linkage, Region, Requirements, Task
 from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.units import Unit
 
@@ -57,10 +59,21 @@ def _figures(
             continue
         for axis, side, value in zip("xy", (box.x, box.y), place.tolist(), strict=True):
             yield f"{name}.{axis}", value, side, Unit.LENGTH
+    for name, allowed in limits.named.get("distances", {}).items():
+        one, other = (getattr(linkage if end in ("o2", "o4") else state, end) for end in ends_of(name))
+        away = (one if one.ndim == 1 else one[k]) - (other if other.ndim == 1 else other[k])
+        yield f"the distance {name}", float(np.hypot(*away)), allowed, Unit.LENGTH
     if limits.past_deg is not None:
         low, high = np.radians(limits.past_deg).tolist()
         past = past_toggle(linkage, verdict, k)
         yield "driver and coupler past toggle in deg", past, (low, high), Unit.ANGLE
+    if limits.coupler_angle_deg is not None:
+        low, high = np.radians(limits.coupler_angle_deg).tolist()
+        (theta3,) = lifted(state.theta3[[k]], (low, high)).tolist()
+        yield "the direction of the coupler in deg", theta3, (low, high), Unit.ANGLE
+    if limits.coupler_rate is not None:
+        moving = solve_kinematics(linkage.changed(assembly=verdict.assembly[k]), verdict.theta2[k], 1.0, 0.0)
+        yield "the rate of the coupler", float(moving.omega3), limits.coupler_rate, Unit.RATIO
     if limits.transmission_min_deg is not None:
         mu = float(transmission_angle(linkage, verdict.theta2[k]))
         least = float(np.radians(limits.transmission_min_deg))

@@ -1,4 +1,4 @@
-"""The value of every quantity of a judged linkage, by the judge's own means, and the check of its limits."""
+"""The value of every quantity of a judged linkage, by the judge's own means."""
 
 from __future__ import annotations
 
@@ -12,25 +12,23 @@ import numpy as np
 
 from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
+from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motion
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
-from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.tolerance import robustness
-from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
+from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_stroke
-from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
-from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
+from grashof.problems import Cylinder, Linkage, Problem
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Limit, Needs, Quantity, Scope
-from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
+from grashof.problems.values.requirements.distances import PAIRS, ends_of
+from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Needs
 from grashof.problems.values.tasks.tandem_task import LINKS
-from grashof.problems.values.units import Unit
 
-# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
-SLACK = 1e-9
-_OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
+_OF_COUPLER = tuple(f"{name}_{end}" for name in ("angle", "rate") for end in ("min", "max"))
 _RATES = tuple(f"rate_{name}" for name in ("start", "end", "min", "max"))  # of cylinders
 
 
@@ -108,6 +106,11 @@ class Values(Mapping[str, float]):
     def cylinder(self) -> CylinderFigures | None:
         """Figures of the cylinder that drives it; None without one."""
         return figures_of(self.linkage, self.problem.task, self.verdict)
+
+    @cached_property
+    def coupler(self) -> CouplerMotion:
+        """Extremes of its direction and rate over the task motion."""
+        return coupler_motion(self.linkage, self.problem.task, self.verdict)
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
@@ -270,6 +273,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "time_ratio": lambda values: float(values.stroke.time_ratio),
     "mechanical_advantage": lambda values: _omega2(values) / values["omega4_max"],
     "mechanical_advantage_min": lambda values: values["mechanical_advantage"],
+    **{f"coupler_{name}": attrgetter(f"coupler.{name}") for name in _OF_COUPLER},
     "hausdorff": lambda values: values.curve_distances[0],
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},
@@ -298,6 +302,19 @@ def _ratios(values: Values) -> dict[str, FloatArray]:
     return {f"{one}/{other}": length / under for (one, length), (other, under) in every}
 
 
+def _distances(values: Values) -> dict[str, FloatArray]:
+    """Between points of the first loop, and of P from them, at every target."""
+    state, ground = values.at_targets, values.linkage.mechanism.ground
+    places = {name: getattr(state, name) for name in ("a", "b", "p")}
+    places |= {name: np.asarray(getattr(values.linkage, name)) for name in ("o2", "o4") if name in ground}
+    pairs = ((name, ends_of(name)) for name in PAIRS)
+    return {
+        name: np.linalg.norm(places[one] - places[other], axis=-1)
+        for name, (one, other) in pairs
+        if {one, other} <= set(places)
+    }
+
+
 def _arms(values: Values) -> dict[str, FloatArray]:
     """From P to the joints of the link that carries it."""
     arm, kind = complex(*values.linkage.coupler_point), values.linkage.mechanism
@@ -322,6 +339,11 @@ def _on_body(of_a: bool, values: Values) -> dict[str, FloatArray]:
     return {"x": np.array([place.real]), "y": np.array([place.imag])}
 
 
+def _extremes(key: str, values: Values) -> dict[str, FloatArray]:
+    """The least and the greatest value of a quantity over the task motion."""
+    return {"": np.array([values[f"{key}_{end}"] for end in ("min", "max")])}
+
+
 def _grounds_d(linkage: Linkage) -> bool:
     """Whether D is a pivot of the ground."""
     return "d" in linkage.mechanism.ground
@@ -338,63 +360,10 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "d": lambda values: _place("linkage.d", values) if _grounds_d(values.linkage) else dict(_NOWHERE),
     "a": partial(_place, "at_targets.a"),
     "b": partial(_place, "at_targets.b"),
+    "distances": _distances,
     "a_on_body": partial(_on_body, True),
     "b_on_body": partial(_on_body, False),
-    "cylinder_rate": lambda values: {"": np.array([values[f"cylinder_{name}"] for name in _RATES[2:]])},
+    "cylinder_rate": partial(_extremes, "cylinder_rate"),
+    "coupler_angle": partial(_extremes, "coupler_angle"),
+    "coupler_rate": partial(_extremes, "coupler_rate"),
 }
-
-
-def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
-    """A defect for every limit of resolved requirements missed, in order of fields.
-
-    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
-    """
-    limited, verdict = wanted.limited, values.verdict  # another defect says that no motion joins the targets
-    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
-    for name, limit in limited.items():
-        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
-            continue
-        if limit.quantity.key in values.problem.task.without:  # a default
-            continue
-        if not values.problem.states(limit.quantity.needs):
-            raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
-        if limit.quantity.over is Scope.TASK and not joined:
-            continue
-        if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
-            continue  # that there is none is a defect by itself
-        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
-        if (region := wanted.regions.get(name)) is not None:
-            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
-            continue
-        for part, numbers in values.parts(quantity.key).items():
-            # r1 has limits of its own besides link_length, a ratio may have none
-            if part in limited or not {part, ""} & set(ranges):
-                continue
-            allowed = ranges[part if part in ranges else ""]
-            for value in np.unique([numbers.min(), numbers.max()]).tolist():
-                miss = _miss(value, allowed, limit, values.problem)
-                if miss > SLACK:
-                    found = value * quantity.unit.shown
-                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
-
-
-def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
-    """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
-    low, high = allowed
-    if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
-        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
-    if limit.kind.is_angle:
-        return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
-    miss = max(low - value, value - high)
-    if limit.quantity.unit is Unit.ANGLE:
-        return miss
-    if limit.quantity.unit is Unit.RATIO:
-        return miss / (abs(high if value > high else low) or 1.0)
-    return miss / problem.scale(limit.quantity)
-
-
-def _what(quantity: Quantity, part: str) -> str:
-    if part in ("x", "y"):
-        return f"{quantity.key}.{part}"
-    deg = " in deg" if quantity.unit is Unit.ANGLE else ""
-    return part or (quantity.key if quantity.words == quantity.key else f"the {quantity.words}{deg}")

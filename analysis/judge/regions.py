@@ -9,7 +9,8 @@ import numpy as np
 from grashof.analysis.judge.verdict import Defect
 from grashof.problems import Problem, Region
 from grashof.problems.values.arrays import FloatArray
-from grashof.problems.values.requirements.quantities import Limit, Scope
+from grashof.problems.values.requirements.limit_kinds import Limit
+from grashof.problems.values.requirements.quantities import Scope
 
 # Sizes, up to which a joint counts as inside a polygon, and as on a segment.
 INSIDE, ON = 1e-9, 1e-6

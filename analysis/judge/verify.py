@@ -12,8 +12,9 @@ from grashof.analysis.judge.at_targets import missed_at_targets
 from grashof.analysis.judge.cylinder_drive import cylinder_defects, cylinder_travel
 from grashof.analysis.judge.design import Constraint, Design, greatest, name_of
 from grashof.analysis.judge.how_met import HOW_MET
-from grashof.analysis.judge.measures import SLACK, Values, missed
+from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMotion
+from grashof.analysis.judge.missed_limits import SLACK, missed
 from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.extremes import diagonal, reach_box

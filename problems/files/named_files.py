@@ -18,7 +18,7 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, located_in, noted, refuse, whole_number
 from grashof.problems.values.dynamics.dynamics_spec import METRES
 from grashof.problems.values.errors import ProblemError, listing, shown
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.specs.problem import MOST_TARGETS
 

@@ -23,10 +23,11 @@ from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
 from grashof.problems.values.region import Region, place
+from grashof.problems.values.requirements.limit_kinds import Kind
+from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
-from grashof.problems.values.requirements.quantities import Kind
 from grashof.problems.values.requirements.requirement_checks import KEPT_OUT
-from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.specs.problem import NO_OBJECTIVE, Problem, Search
 from grashof.problems.values.tasks.task import Task
@@ -115,17 +116,22 @@ Direction = Annotated[
 _BY_KIND = {
     Kind.DIRECTION: Direction,
     Kind.BETWEEN: Pair,
+    Kind.HEADING: Pair,
     Kind.INSIDE: Place,
     Kind.ON_BODY: Place,
     Kind.WORD: str,
-    Kind.RATIOS: dict[str, Direction],
+    Kind.NAMED: dict[str, Direction],
 }
 
 
 _AT_TARGETS = {"targets": list[int], **dict.fromkeys(("a", "b", "instant_centre"), (Place | None, None))}
+_OF_TARGETS = {
+    **dict.fromkeys(("past_deg", "coupler_angle_deg", "coupler_rate"), (Pair | None, None)),
+    "distances": (dict[str, Direction] | None, None),
+}
 
 
-@tables.keys_of(TargetLimits, {**_AT_TARGETS, "past_deg": (Pair | None, None)})
+@tables.keys_of(TargetLimits, {**_AT_TARGETS, **_OF_TARGETS})
 class TargetTable(tables.SpecTable):
     beside = MappingProxyType({"*": {"targets": [1], "transmission_min_deg": 1.0}})
 

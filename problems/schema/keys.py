@@ -27,9 +27,11 @@ from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.problems.values.linkages.six_bar import SixBar
+from grashof.problems.values.requirements.limit_kinds import Limit
+from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS
-from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity
-from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
+from grashof.problems.values.requirements.quantities import Needs, Quantity
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 from grashof.problems.values.specs.problem import Problem
 

@@ -16,12 +16,14 @@ from grashof.problems.files.problem_schema import (
     ObjectiveTable,
     ProblemFile,
     RequirementsTable,
+    TargetTable,
 )
 from grashof.problems.files.tables import Table, numbers, tables_of
 from grashof.problems.files.task_schema import TASKS, MotionTable
 from grashof.problems.values.linkages.cylinder import CARRIERS
 from grashof.problems.values.linkages.mechanism import WORDS
 from grashof.problems.values.linkages.mechanisms import SIX_BAR
+from grashof.problems.values.requirements.distances import EITHER_WAY
 from grashof.problems.values.requirements.link_ratios import PAIR
 from grashof.problems.values.requirements.objective import GOALS
 from grashof.problems.values.requirements.requirement_checks import MAY_KEEP_OUT
@@ -32,6 +34,15 @@ Shape = dict[str, Any]
 
 def _some_of(words: Any) -> Shape:
     return {"type": "array", "items": {"enum": list(words)}}
+
+
+def _limits_by_name(pattern: str) -> Shape:
+    return {
+        "type": "object",
+        "propertyNames": {"pattern": f"^{pattern}$"},
+        "additionalProperties": {"anyOf": [{"type": "number"}, numbers(2)]},
+        "minProperties": 1,
+    }
 
 
 def _pose() -> Shape:
@@ -56,11 +67,10 @@ _BY_HAND: Mapping[tuple[type[Table], str], Shape] = MappingProxyType(
         (CylinderTable, "on"): _some_of(CARRIERS),
         (ObjectiveTable, "maximise"): {"anyOf": [{"enum": [*GOALS]}, {"$ref": "#/$defs/WeightsTable"}]},
         (RequirementsTable, "keep_out_for"): _some_of(MAY_KEEP_OUT),
-        (RequirementsTable, "link_ratios"): {
-            "type": "object",
-            "propertyNames": {"pattern": f"^{PAIR.pattern}$"},
-            "additionalProperties": {"anyOf": [{"type": "number"}, numbers(2)]},
-            "minProperties": 1,
+        (RequirementsTable, "link_ratios"): _limits_by_name(PAIR.pattern),
+        **{
+            (table, "distances"): _limits_by_name(f"({'|'.join(EITHER_WAY)})")
+            for table in (RequirementsTable, TargetTable)
         },
         (MotorTable, "profile"): {"type": "string"},
         (DyadTable, "assembly"): _SIGN,

@@ -263,6 +263,16 @@ def limits(values: Limits, where: str, *, least: float = -np.inf, most: float = 
     return low, high
 
 
+def apart(
+    values: Limits, where: str, narrowest: float, *, least: float = -np.inf, most: float = GREATEST
+) -> Limits:
+    """Limits likewise, refused where they are closer to each other than `narrowest`."""
+    low, high = limits(values, where, least=least, most=most)
+    if high - low < narrowest:
+        raise wrong_value(where, [low, high], f"[lo, hi] at least {narrowest:g} apart")
+    return low, high
+
+
 def rising_rows(
     values: object, columns: int, means: str, rising: Sequence[str], *, least: str = "two", turn: bool = False
 ) -> Rows:

@@ -152,7 +152,7 @@ def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
         within(lengths[:, number : number + 1], limits)
     ratio = lengths.max(axis=1) / lengths.min(axis=1)
     rows.append(np.log(ratio / wanted.link_ratio_max)[:, None] + INSIDE)
-    for name, limits in (wanted.link_ratios or {}).items():
+    for name, limits in wanted.ranges("link_ratios").items():
         one, other = (getattr(at, link) for link in name.split("/"))
         for side, limit in zip((-1, 1), limits, strict=True):
             rows.append(side * np.log(one / other / limit) + INSIDE * (limits[0] < limits[1]))

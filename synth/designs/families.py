@@ -12,7 +12,7 @@ from grashof.problems import FourBar, Objective, Problem, Task
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.linkages.linkage import by_kind
 from grashof.problems.values.linkages.mechanism import Mechanism
-from grashof.problems.values.requirements.requirements import Rotatability, TransmissionOver
+from grashof.problems.values.requirements.modes import Rotatability, TransmissionOver
 from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import ranked

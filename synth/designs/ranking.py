@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from grashof.analysis.judge.measures import SLACK
+from grashof.analysis.judge.missed_limits import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity
-from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.specs.problem import SMALLEST
 from grashof.synth.designs.candidate import Candidate, same_error
 from grashof.synth.theory.distinct import DISTINCT, origin_of, pick_apart, signature, signatures

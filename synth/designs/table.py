@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from grashof.analysis.judge.measures import find_peaks
 from grashof.analysis.judge.over_task import OverTask
 from grashof.problems import Problem
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity
-from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.ranking import pareto_goals, pareto_optimal

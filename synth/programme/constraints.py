@@ -21,6 +21,7 @@ from grashof.synth.programme.unknowns import FAR, INSET, SecondUnknowns, Unknown
 from grashof.synth.programme.user_functions import magnitude_at, on_symbols
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.target_constraints import AtTarget
 
 OWN_INSET = 1e-8  # by which the user's constraints are tightened, so that the polished design keeps them
 MOST_ZONE = 0.5  # sizes, rad: greater ones lead the solver astray
@@ -302,7 +303,13 @@ def require_own(
 ) -> None:
     """The user's own constraints, on the symbols of the design in the problem's unit."""
     for constraint in constraints:
-        value = on_symbols(constraint, symbolic_design(build, form, x, places))
+        design = symbolic_design(build, form, x, places)
+        if isinstance(constraint, AtTarget) and build.slack is None:
+            size = build.parameter(lambda scaled, _: scaled.frame.scale)
+            build.zero(*(each / size for each in on_symbols(constraint.fixed, design)))
+            value = on_symbols(constraint.free, design)
+        else:
+            value = on_symbols(constraint, design)
         for one in value if isinstance(value, (list, tuple)) else [value]:
             build.require((getattr(constraint, "group", "constraints"),), -ca.vec(ca.SX(one)) - OWN_INSET)
 

@@ -8,8 +8,9 @@ import casadi as ca
 import numpy as np
 
 from grashof.problems.values.arrays import TURN, FloatArray, Limits
-from grashof.problems.values.requirements.quantities import Kind
-from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
+from grashof.problems.values.requirements.limit_kinds import Kind
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
@@ -21,9 +22,13 @@ from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
 from grashof.synth.quantities.along_motion import (
     AGREES,
     ALONG,
+    BOTH_SIDES,
     INVERSE,
     MOST_PEAKS,
+    allowed_along,
     magnitudes,
+    middle_of,
+    unit_along,
     value_of,
 )
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
@@ -49,8 +54,8 @@ def require_limits(build: Builder, form: Form, x: Unknowns, places: Positions) -
             build.bound(unknown, _less(allowed, ahead), gives=(name, part.name))
         elif leaf:
             build.bound(value, _inset(allowed), gives=(name, part.name))
-        if LIMITS[name].kind is Kind.RATIOS and build.slack is None:  # a single row, as it may be fixed
-            build.row(value, limits=_ratio(name, part))
+        if LIMITS[name].kind is Kind.NAMED and build.slack is None:  # a single row, as it may be fixed
+            build.row(value, limits=_named(name, part))
         elif leaf or angle:
             build.require_if_relaxed((name, part.name), *_rows(build, design, part, value, allowed))
         else:
@@ -69,13 +74,17 @@ def _range(name: str, part: Part) -> Fill:
     return limits
 
 
-def _ratio(name: str, part: Part) -> Fill:
-    """Limits of a ratio, of which those without limits are free."""
+def _named(name: str, part: Part) -> Fill:
+    """Limits of a number by its name, free without any; those of distances are squared."""
 
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        low, high = range_of(scaled.wanted, name, part)
-        more = min(start.terms.tightened_by(name), (high - low) / (high + low) if high < np.inf else np.inf)
-        return low * (1 + more), high * (1 - more)
+        (low, high), more = range_of(scaled.wanted, name, part), start.terms.tightened_by(name)
+        if LIMITS[name].quantity.unit is Unit.RATIO:
+            more = min(more, (high - low) / (high + low) if high < np.inf else np.inf)
+            return low * (1 + more), high * (1 - more)
+        more = min(more, (high - low) / 2)
+        low, high = low + more, high - more
+        return (low**2 if low > 0 else -np.inf, high**2) if part.squared else (low, high)
 
     return limits
 
@@ -107,7 +116,7 @@ def _rows(build: Builder, design: Symbols, part: Part, value: ca.SX, allowed: Fi
     """Rows that are not negative where a value lies within its limits."""
     if part.per is not None:
         return [part.per(design) - value / build.parameter(lambda scaled, start: allowed(scaled, start)[1])]
-    squared: Fill = lambda scaled, start: np.square(inset(allowed(scaled, start)))  # noqa: E731
+    squared: Fill = lambda scaled, start: np.square(np.maximum(inset(allowed(scaled, start)), 0.0))  # noqa: E731
     low, high = ca.vertsplit(build.parameter(squared if part.squared else allowed, 2))
     return [value - low, high - value]
 
@@ -161,13 +170,16 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) 
     ground = form.kind.dyad.ground(Fixed(form, x))
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
+    middle = (
+        build.parameter(lambda scaled, _: middle_of(scaled.wanted, key)) if key in BOTH_SIDES else ca.SX(0)
+    )
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.terms.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
     last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
     for share in (*np.linspace(0, 1, form.grid), *added):
         driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
         at = form.kind.instant(vector(x.o2), ground, lengths, arm, x.assembly, driver)
-        for value in ALONG[key](at, form.loading):
+        for value in ALONG[key](at, form.loading, middle):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / one).square)
             else:
@@ -190,12 +202,10 @@ def _most(form: Form, key: str) -> Fill:
     """Limits of a peak, in units of that at the start."""
 
     def limits(scaled: ScaledProblem, start: Start) -> Limits:
-        fields = [name for name, limit in scaled.wanted.limited.items() if limit.quantity.key == key]
-        side = 0 if key in INVERSE else 1
-        most = min((value_of(key, scaled.wanted.ranges(name)[""][side]) for name in fields), default=np.inf)
-        return 0.0, most / (scaled.scale(QUANTITIES[key]) * peak_unit(form, scaled, start, key)) * (
-            1 - AGREES
-        )
+        low, most = allowed_along(scaled.wanted, key)
+        if key in INVERSE:
+            most = value_of(key, low) if low > 0 else np.inf
+        return 0.0, most / (unit_along(scaled, key) * peak_unit(form, scaled, start, key)) * (1 - AGREES)
 
     return limits
 

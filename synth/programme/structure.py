@@ -9,8 +9,9 @@ import numpy as np
 from grashof.problems import Rotatability, TransmissionOver
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.linkages.mechanism import Mechanism
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Needs, Scope
-from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
 from grashof.synth.quantities.driver_motion import drive_of

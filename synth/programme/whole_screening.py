@@ -10,7 +10,14 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dyad import coupler_of
 from grashof.synth.programme.user_functions import FAR, own_violations
-from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.quantities.along_motion import (
+    ALONG,
+    SCREENED,
+    allowed_along,
+    magnitudes,
+    unit_along,
+    value_of,
+)
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, inside, points_kept_out
@@ -52,10 +59,10 @@ def _sizes(linkages: Screened, ground: int) -> FloatArray:
 def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     """Excess of the greatest magnitude over its limit, as a share of it; (n,)."""
     quantity = LIMITS[name].quantity
-    low, high = scaled.problem.requirements.ranges(name)[""]
+    low, high = allowed_along(scaled.wanted, quantity.key)
     ways = linkages.theta2, linkages.direction, linkages.assembly
     peak = magnitudes(scaled, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
-    value = value_of(quantity.key, peak) * scaled.problem.scale(quantity)
+    value = value_of(quantity.key, peak) * unit_along(scaled, quantity.key)
     share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
     amount: FloatArray = np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
     return amount

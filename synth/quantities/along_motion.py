@@ -10,7 +10,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.problems import Requirements
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, Limits
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth.loop.instant import Instant
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.drive_torque import drive_torque, joint_forces
@@ -25,19 +27,31 @@ MOST_PEAKS = 4  # that are reported at once
 
 
 # Quantities bounded over the task motion, by their keys, in `Problem.scale`: the magnitude of scalars and
-# vectors, the greatest of several.
-Along: TypeAlias = Callable[[Instant, Loading | None], list[Any]]
+# vectors, the greatest of several. Of quantities with limits on both sides their distance from the middle.
+Along: TypeAlias = Callable[[Instant, Loading | None, Any], list[Any]]
 ALONG: dict[str, Along] = {
-    "mechanical_advantage": lambda at, _: [at.rates.speed4],
-    "omega4_max": lambda at, _: [at.driver.pace * at.rates.speed4],
-    "point_speed_max": lambda at, _: [at.velocity(3, at.point)],
-    "point_acceleration_max": lambda at, _: [at.acceleration(3, at.point)],
-    "output_acceleration_max": lambda at, _: [at.turned(4)],
-    "torque_peak": lambda at, loading: drive_torque(at, loading or NOTHING),
-    "joint_force_peak": lambda at, loading: joint_forces(at, loading or NOTHING),
+    "mechanical_advantage": lambda at, *_: [at.rates.speed4],
+    "omega4_max": lambda at, *_: [at.driver.pace * at.rates.speed4],
+    "point_speed_max": lambda at, *_: [at.velocity(3, at.point)],
+    "point_acceleration_max": lambda at, *_: [at.acceleration(3, at.point)],
+    "output_acceleration_max": lambda at, *_: [at.turned(4)],
+    "coupler_angle": lambda at, _, middle: [_beside(at, middle)],
+    "coupler_rate": lambda at, _, middle: [np.arctan(at.rates.speed3) - middle],
+    "torque_peak": lambda at, loading, _: drive_torque(at, loading or NOTHING),
+    "joint_force_peak": lambda at, loading, _: joint_forces(at, loading or NOTHING),
 }
 
 
+def _beside(at: Instant, middle: Any) -> Any:
+    """Angle of the coupler from a direction."""
+    return Vector(np.cos(middle), np.sin(middle)).angle_to(at.coupler)
+
+
+# Those limited on both sides, with the limits of what stands for them: a rate may be without one.
+BOTH_SIDES: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "coupler_angle": lambda limits: limits,
+    "coupler_rate": np.arctan,
+}
 # Those whose value is one over the greatest magnitude.
 INVERSE = frozenset({"mechanical_advantage"})
 
@@ -45,6 +59,31 @@ INVERSE = frozenset({"mechanical_advantage"})
 def value_of(key: str, peak: Any) -> Any:
     """The value of a quantity whose greatest magnitude is known, and vice versa."""
     return 1 / peak if key in INVERSE else peak
+
+
+def middle_of(wanted: Requirements, key: str) -> float:
+    """The middle between the limits of a quantity that is limited on both sides."""
+    return float(np.mean(_sides(wanted, key))) if key in BOTH_SIDES else 0.0
+
+
+def allowed_along(wanted: Requirements, key: str) -> Limits:
+    """Limits of a quantity of `ALONG`, or of its distance from the middle."""
+    if key in BOTH_SIDES:
+        low, high = _sides(wanted, key)
+        return 0.0, min((high - low) / 2, np.pi)
+    every = [wanted.ranges(name)[""] for name, limit in wanted.limited.items() if limit.quantity.key == key]
+    return every[0] if every else (-np.inf, np.inf)
+
+
+def unit_along(scaled: ScaledProblem, key: str) -> float:
+    """The unit of the magnitudes of a quantity."""
+    return 1.0 if key in BOTH_SIDES else scaled.scale(QUANTITIES[key])
+
+
+def _sides(wanted: Requirements, key: str) -> list[float]:
+    (name,) = (name for name, limit in wanted.limited.items() if limit.quantity.key == key)
+    sides: list[float] = BOTH_SIDES[key](np.array(wanted.ranges(name)[""])).tolist()
+    return sides
 
 
 def magnitudes(
@@ -72,7 +111,7 @@ def magnitudes(
         driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
         base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
         at = kind.instant(base, along, lengths, point, assembly[:, None], driver)
-        values = ALONG[key](at, Loading.of(problem))
+        values = ALONG[key](at, Loading.of(problem), middle_of(problem.requirements, key))
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
     return greatest

@@ -7,7 +7,7 @@ symbols a row or a bound of the programme. The judge's measure of the same key s
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial, reduce
 from itertools import permutations
 from operator import attrgetter
@@ -42,6 +42,14 @@ class View(PlacedLoop):
     turns: Any  # 1 where the driver turns fully, else 0
     output_travel: Any  # of the slide from the first target to the last
 
+    @property
+    def p(self) -> Vector:
+        """P at the targets, where it is on a coupler with two pins."""
+        coupler, bar = self.b - self.a, self.ap - self.bp
+        along, across = bar.dot(self.ap), bar.cross(self.ap)
+        place: Vector = self.a + (along * coupler + across * coupler.left) / bar.square
+        return place
+
 
 @dataclass(frozen=True, slots=True)
 class Part:
@@ -64,6 +72,16 @@ def _place(name: str, dyad: int | None) -> tuple[Part, ...]:
     return tuple(Part(f"{name}.{axis}", attrgetter(f"{name}.{axis}"), axis, dyad) for axis in "xy")
 
 
+def _apart(*pairs: str) -> tuple[Part, ...]:
+    """Distances of two points at the targets."""
+
+    def square(pair: str, d: View) -> Any:
+        one, other = pair.split("-")
+        return (getattr(d, one) - getattr(d, other)).square
+
+    return tuple(Part(f"distances.{pair}", partial(square, pair), pair, squared=True) for pair in pairs)
+
+
 def _bracket(name: str) -> tuple[Part, ...]:
     """A or B in the frame of the body."""
 
@@ -81,6 +99,8 @@ _LINKS = _R1, _R2, _R3, _R4 = (
     Part("r4", lambda d: d.r4, dyad=4),
 )
 _ARM = Part("A-P", lambda d: d.ap.square, dyad=2, squared=True)
+_AP = replace(_ARM, name="distances.a-p", axis="a-p")
+_BP = Part("distances.b-p", lambda d: d.bp.square, "b-p", squared=True)
 _OFFSET = Part("offset", lambda d: d.offset)
 
 
@@ -172,6 +192,7 @@ FORMULAS: Formulas = {
     "o4": _place("o4", 4),
     "a": _place("a", 2),
     "b": _place("b", 4),
+    "distances": (*_apart("a-o4", "b-o2", "o2-p", "o4-p"), _AP, replace(_BP, dyad=4)),
     "a_on_body": _bracket("a"),
     "b_on_body": _bracket("b"),
     "ground_angle": (Part("theta1", lambda d: d.theta1),),
@@ -191,6 +212,7 @@ SLIDER_CRANK: Formulas = {
     **_SHARED,
     "b_on_body": FORMULAS["b_on_body"],
     "b": _place("b", None),
+    "distances": (*_apart("b-o2", "o2-p"), _AP, _BP),
     "offset": (_OFFSET,),
     "slide_angle": (Part("slide angle", lambda d: d.theta1 - np.pi / 2),),
     "stroke": (Part("stroke", _stroke),),
@@ -202,6 +224,7 @@ INVERTED: Formulas = {
     **_SHARED,
     "ground_angle": FORMULAS["ground_angle"],
     "o4": _place("o4", None),
+    "distances": (*_apart("a-o4"), _AP),
     "offset": (_OFFSET,),
     "output_swing": (Part("output swing", lambda d: _swing(d, _block_angle(d))),),
     "time_ratio": (Part("time ratio", lambda d: (1 - d.double_crank) * _ratio_of(_block_angle(d))),),
@@ -218,6 +241,7 @@ def of_six_bars(lengths: Sequence[str]) -> Formulas:
     return {
         **_lengths(extreme(np.maximum), extreme(np.minimum), *links),
         "coupler_arms": FORMULAS["coupler_arms"],
+        "distances": _apart("a-o4", "b-o2"),
         **{
             key: FORMULAS[key]
             for key in (

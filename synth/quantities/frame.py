@@ -9,7 +9,8 @@ import numpy as np
 
 from grashof.problems import Box, Requirements, Task
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.requirements.quantities import Kind, Limit
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
+from grashof.problems.values.requirements.named_limits import NamedLimits
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,8 @@ class Frame:
         power = limit.quantity.unit.lengths
         if not power:
             return value
+        if isinstance(value, NamedLimits):
+            return value.over(self.scale**power)
         return (
             tuple(each / self.scale**power for each in value)
             if isinstance(value, tuple)

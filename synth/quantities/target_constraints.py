@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, ClassVar
@@ -11,10 +12,14 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, Design
 from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import Limits
+from grashof.problems.values.linkages.mechanisms import INVERTED, SLIDER_CRANK
+from grashof.problems.values.requirements.distances import ends_of
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.synth.quantities.regions import hull_rows
 
 INSIDE = 1e-6  # rad, or share: by which angles and ratios are kept inside their limits
+ROUNDING = 1e-10  # share
 FLAT = 1e-4  # sine of a rotation between two targets below which its sense is not certain
 
 
@@ -33,14 +38,34 @@ class AtTarget:
 
     def __call__(self, design: Design) -> Any:
         """Excess over the limits: a length, or without a unit."""
-        box = getattr(self.limits, self.name)
-        if isinstance(box, Box):
-            centre = self.name == "instant_centre"
-            place = _centre(design, self.k) if centre else getattr(design, self.name)[self.k]
-            sides = zip((place[0], place[1]), (box.x, box.y), strict=True)
-            inside = [over for value, side in sides for over in _beyond(value, *side)]
-            return inside + [over for row in _hull(box) for over in _beyond(_along(place, row[0]), *row[1])]
-        return [_EXCESS[self.name](self, design)]
+        if self.name in _EXCESS:
+            excess = _EXCESS[self.name](self, design)
+            return excess if isinstance(excess, list) else [excess]
+        return [over for value, limits in self.numbers(design) for over in _beyond(value, *limits)]
+
+    def numbers(self, design: Design) -> list[tuple[Any, Limits]]:
+        """Numbers that have limits, lengths; none of limits of other kinds."""
+        limited = getattr(self.limits, self.name)
+        if isinstance(limited, NamedLimits):
+            apart = ((_distance(design, ends_of(name), self.k), limits) for name, limits in limited.items())
+            return list(apart)
+        if not isinstance(limited, Box):
+            return []
+        centre = self.name == "instant_centre"
+        place = _centre(design, self.k) if centre else getattr(design, self.name)[self.k]
+        sides = [(place[0], limited.x), (place[1], limited.y)]
+        return sides + [(_along(place, row[0]), row[1]) for row in _hull(limited)]
+
+    def fixed(self, design: Design) -> list[Any]:
+        """Numbers that are fixed, less what they must be."""
+        return [value - low for value, (low, high) in self.numbers(design) if low == high]
+
+    def free(self, design: Design) -> list[Any]:
+        """Excess over the other limits."""
+        if self.name in _EXCESS:
+            return self(design)  # type: ignore[no-any-return]
+        numbers = ((value, limits) for value, limits in self.numbers(design) if limits[0] < limits[1])
+        return [over for value, limits in numbers for over in _beyond(value, *limits)]
 
     def past(self, design: Design) -> Any:
         """cos(high - low) - cos(2 past - low - high), not positive inside the range: both lines count."""
@@ -52,6 +77,23 @@ class AtTarget:
         cos_twice, sin_twice = cos**2 - sin**2, -2 * sense * sin * cos  # of twice the angle past toggle
         middle, width = low + high, high - low - INSIDE  # twice the middle of the range, and its width
         return float(np.cos(width)) - cos_twice * float(np.cos(middle)) - sin_twice * float(np.sin(middle))
+
+    def heading(self, design: Design) -> Any:
+        """cos(half the range) - cos(direction - middle)."""
+        low, high = np.radians(self.limits.coupler_angle_deg or (0.0, 0.0)).tolist()
+        coupler = _from(design.a[self.k], design.b[self.k])
+        middle, half = (low + high) / 2, min((high - low) / 2, np.pi) - INSIDE
+        ahead = (coupler[0] * float(np.cos(middle)) + coupler[1] * float(np.sin(middle))) / _square(
+            coupler
+        ) ** 0.5
+        return float(np.cos(half)) - ahead
+
+    def rate(self, design: Design) -> list[Any]:
+        """By the point of the coupler whose velocity across a line is zero: see `_held`."""
+        driver, (arm, across) = _from(design.o2, design.a[self.k]), _held(design, self.k)
+        low, high = self.limits.coupler_rate or (0.0, 0.0)
+        rate = -_cross(driver, across) / _cross(arm, across)
+        return [low + INSIDE - rate, rate - high + INSIDE]
 
     def transmission(self, design: Design) -> Any:
         """By the square of the sine."""
@@ -69,6 +111,8 @@ class AtTarget:
 
 _EXCESS: dict[str, Any] = {
     "past_deg": AtTarget.past,
+    "coupler_angle_deg": AtTarget.heading,
+    "coupler_rate": AtTarget.rate,
     "transmission_min_deg": AtTarget.transmission,
     "mechanical_advantage_min": AtTarget.advantage,
 }
@@ -84,7 +128,9 @@ def target_constraints(problem: Problem) -> tuple[Constraint, ...]:
 
 
 def _beyond(value: Any, low: float, high: float) -> list[Any]:
-    """Excess over the sides that are there."""
+    """Excess over the sides that are there; beyond rounding, of a number that is fixed."""
+    if low == high:
+        low, high = low - ROUNDING * max(1.0, abs(low)), high + ROUNDING * max(1.0, abs(high))
     return [low - value] * bool(np.isfinite(low)) + [value - high] * bool(np.isfinite(high))
 
 
@@ -97,11 +143,32 @@ def _along(place: Any, normal: complex) -> Any:
     return normal.real * place[0] + normal.imag * place[1]
 
 
+def _distance(design: Design, ends: Sequence[str], k: int) -> Any:
+    """Distance of two points at a target."""
+    one, other = (getattr(design, end) if end in ("o2", "o4") else getattr(design, end)[k] for end in ends)
+    return _square(_from(one, other)) ** 0.5
+
+
 def _links(design: Design, k: int) -> tuple[Any, Any, Any]:
     """Vectors O2-A, A-B and O4-B at a target."""
     a, b = design.a[k], design.b[k]
     o4 = b if design.o4 is None else design.o4
     return _from(design.o2, a), _from(a, b), _from(o4, b)
+
+
+def _held(design: Design, k: int) -> tuple[Any, Any]:
+    """From A to a point of link 3, and the line across which that has no velocity.
+
+    B, which moves square to O4B, or along a slide; of a rod that slides in a block the point at O4, which
+    moves along the rod.
+    """
+    a, b = design.a[k], design.b[k]
+    if design.mechanism == INVERTED:
+        rod = _from(a, b)
+        return _from(a, design.o4), (-rod[1], rod[0])
+    if design.mechanism == SLIDER_CRANK:
+        return _from(a, b), (-np.sin(design.slide_angle), np.cos(design.slide_angle))
+    return _from(a, b), _from(design.o4, b)
 
 
 def _centre(design: Design, k: int) -> tuple[Any, Any]:

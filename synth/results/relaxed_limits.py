@@ -12,7 +12,8 @@ from grashof.analysis import Defect, verify
 from grashof.analysis.judge.design import Constraint, Design, name_of
 from grashof.problems import Box, FourBar, Problem, Region, Requirements, Rotatability
 from grashof.problems.values.arrays import Limits, turned_beyond, turned_from
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.errors import shown_key
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.programme.start import UNSMOOTH
@@ -149,8 +150,8 @@ def _changes(
         yield {key: None}, f"{key} anywhere instead of in its region, such as {max(found):.3g} outside"
     elif kind in (Kind.INSIDE, Kind.ON_BODY):
         yield _box_enlarged(key, asked or Box(), missed)
-    elif kind is Kind.RATIOS:
-        yield _ratios_widened(key, asked, missed)
+    elif kind is Kind.NAMED:
+        yield _named_widened(key, asked, missed)
     elif kind is Kind.WORD:
         yield {key: LIMITS[key].widest}, f'{key} "{LIMITS[key].widest}" instead of "{asked}"'
     elif isinstance(asked, tuple):
@@ -170,15 +171,15 @@ def _changes(
         yield {key: value}, f"{key} {value:.10g} instead of {asked:g}"
 
 
-def _ratios_widened(
-    key: str, asked: Mapping[str, Limits], missed: list[Defect]
-) -> tuple[dict[str, Any], str]:
-    """Ratios of links with limits that those of a design keep."""
+def _named_widened(key: str, asked: Mapping[str, Limits], missed: list[Defect]) -> tuple[dict[str, Any], str]:
+    """Limits by name that a design keeps."""
     reached = {
         name: _reaching(asked[name], [defect.found for defect in missed if defect.what == name])
         for name in dict.fromkeys(defect.what for defect in missed)
     }
-    words = [_range_words(f'{key}."{name}"', asked[name], limits) for name, limits in reached.items()]
+    words = [
+        _range_words(f"{key}.{shown_key(name)}", asked[name], limits) for name, limits in reached.items()
+    ]
     return {key: {**asked, **reached}}, " with ".join(words)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grashof.problems.values.arrays import FloatArray, IntArray
-from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import own_score
 from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of

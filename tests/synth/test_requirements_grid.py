@@ -24,7 +24,8 @@ from grashof.problems import (
     Requirements,
 )
 from grashof.problems.values.arrays import ComplexArray, FloatArray
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.distances import PAIRS
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.programme.start import Start
 from grashof.synth.quantities.along_motion import ALONG
@@ -119,11 +120,17 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
         low = of.ends(name, "x")[:, 0]
         least = float(np.median(low))
         return Box(x=(least, np.inf)), least - low
-    if limit.kind is Kind.RATIOS:
-        low = of.ends(name, "r3/r2")[:, 0]
+    if limit.kind is Kind.NAMED:
+        part = {"link_ratios": "r3/r2", "distances": "a-o4"}[name]
+        low = of.ends(name, part)[:, 0]
         least = float(np.median(low))
-        return {"r3/r2": (least, 1e6)}, least - low
+        return {part: (least, 1e6)}, least - low
     low, high = of.ends(name).T
+    if limit.kind is Kind.HEADING:
+        most, wide = between_two(high), np.radians(200.0)  # fits of the same angles are much alike
+        turns = 2 * np.pi * np.round((most - wide / 2 - (low + high) / 2) / (2 * np.pi))
+        beyond = np.maximum(most - wide - low - turns, high + turns - most)
+        return (float(np.degrees(most - wide)), float(np.degrees(most))), beyond
     if limit.kind is Kind.WORD:
         return "ccw", -low
     if limit.kind.is_angle:
@@ -138,7 +145,15 @@ def halving(of: Pool, name: str) -> tuple[Any, FloatArray]:
     if limit.quantity.better > 0:
         least = float(np.median(low))
         return (least * shown, limit.allowed[1]), least - low
-    return (max(limit.allowed[0], 0.0), most * shown), high - most
+    least = limit.allowed[0] if name == "coupler_rate" else max(limit.allowed[0], 0.0)
+    return (least, most * shown), high - most
+
+
+def between_two(values: FloatArray) -> float:
+    """The middle of the widest gap between values about the median."""
+    some = np.sort(values)[len(values) // 4 : -(len(values) // 4)]
+    k = int(np.argmax(np.diff(some)))
+    return float(some[k : k + 2].mean())
 
 
 def with_field(of: Pool, name: str, value: Any) -> Problem:
@@ -228,6 +243,52 @@ def solved_from_those_that_miss(scaled: ScaledProblem, of: Pool, beyond: FloatAr
         if done.verified:
             return of.values(done.verified[0].linkage, scaled.problem.requirements).verdict.ok
     return not missing
+
+
+def distances(design: Values, pair: str) -> FloatArray:
+    """Of two points at the targets, by the intersection of circles about A and O4."""
+    linkage, theta2 = design.linkage, design.verdict.theta2
+    o2, o4 = complex(*linkage.o2), complex(*linkage.o4)
+    a = o2 + linkage.r2 * np.exp(1j * theta2)
+    way = o4 - a
+    along = (abs(way) ** 2 + linkage.r3**2 - linkage.r4**2) / (2 * abs(way))
+    beside = np.sqrt(np.maximum(linkage.r3**2 - along**2, 0.0)) * np.asarray(design.verdict.assembly)
+    b = a + (along + 1j * beside) * way / abs(way)
+    p = a + complex(*linkage.coupler_point) * (b - a) / linkage.r3
+    places = {"o2": o2, "o4": o4, "a": a, "b": b, "p": p}
+    one, other = pair.split("-")
+    return np.abs(places[one] - places[other]) * np.ones(len(theta2))
+
+
+@pytest.mark.quick("poses met-most-b-o2", "poses met-fixed-b-p")
+@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("side", ["least", "most", "fixed"])
+@pytest.mark.parametrize("kind", TASKS)
+def test_misses_are_named_and_distances_kept(kind: str, side: str, pair: str) -> None:
+    of = pool(kind)
+    low, high = np.array([[apart.min(), apart.max()] for apart in (distances(v, pair) for v in of.known)]).T
+    if side == "fixed":
+        if pair not in ("a-p", "b-p"):  # the others change with the driver
+            return
+        asked = float(np.sort(low)[len(low) // 2]) + 100 * NEAR * of.problem.task.size
+        limits, beyond = (asked, asked), np.abs(low - asked)
+    else:
+        bound = float(np.median(low if side == "least" else high))
+        limits = (bound, 1e6) if side == "least" else (0.0, bound)
+        beyond = bound - low if side == "least" else high - bound
+    problem = with_field(of, "distances", {pair: limits})
+    clear = np.abs(beyond) > NEAR * max(1.0, float(np.ptp(beyond)))
+    for each, missed in zip(of.known, np.where(clear, beyond, np.nan), strict=True):
+        if np.isfinite(missed):
+            found = verify(each.linkage, problem.task, problem.requirements, problem=problem).defects
+            assert {defect.requirement for defect in found} == ({"distances"} if missed > 0 else set())
+            assert missed < 0 or max(each.miss for each in found) == pytest.approx(
+                missed / problem.scale(LIMITS["distances"].quantity), rel=1e-6
+            )
+    scaled = ScaledProblem.of(problem)
+    seen = rejudged(scaled, of.screened).violations[:, GROUPS.index("distances")] > 0
+    np.testing.assert_array_equal(seen[clear], (beyond > 0)[clear])
+    assert solved_from_those_that_miss(scaled, of, np.where(clear, beyond, 0.0))
 
 
 JOINTS = ("o2", "o4", "a", "b", "a_on_body", "b_on_body")

@@ -12,12 +12,19 @@ from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST
 from grashof.problems.values.linkages.mechanism import ONE_LOOP, WORDS
 from grashof.problems.values.linkages.mechanisms import SLIDER_CRANK, having
+from grashof.problems.values.requirements.limit_kinds import (
+    HEADINGS,
+    NARROW_HEADING,
+    NARROW_RATE,
+    RATES,
+    Kind,
+    Limit,
+)
 from grashof.problems.values.requirements.quantities import (
     GROUNDED,
     MEASURED,
+    OUTPUTS,
     RMS,
-    Kind,
-    Limit,
     Needs,
     Quantity,
     Scope,
@@ -36,6 +43,12 @@ def on_body(name: str) -> Quantity:
     words = f"place of {name.upper()} on the body"
     kinds = tuple(word for word, kind in ONE_LOOP.items() if name in kind.links[2].points)
     return Quantity(f"{name}_on_body", words, Unit.LENGTH, needs=Needs.ANGLES, listed=False, kinds=kinds)
+
+
+def advantage(key: str, better: int = 0, **others: Any) -> Quantity:
+    """The mechanical advantage over the task motion."""
+    words = "mechanical advantage"
+    return Quantity(key, words, Unit.RATIO, Scope.TASK, better, kinds=OUTPUTS, listed=not better, **others)
 
 
 def structural_error(key: str, travels: Mapping[str, str] | None = None) -> Quantity:
@@ -59,10 +72,13 @@ def limit(
     allowed: tuple[float, float] = (-np.inf, np.inf),
     usual: tuple[float, float] | None = None,
     words: Mapping[str, Limits] | None = None,
+    narrowest: float = 0.0,
 ) -> Any:
     """A field of `Requirements` that limits a quantity: one of `MEASURED`, or one declared with the field."""
     limited = MEASURED[quantity] if isinstance(quantity, str) else quantity
-    return field(default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {})})
+    return field(
+        default=default, metadata={"limit": Limit(limited, kind, allowed, usual, words or {}, narrowest)}
+    )
 
 
 def between(
@@ -73,3 +89,14 @@ def between(
 ) -> Any:
     """A field that limits a quantity to [lo, hi], both of them from `low` to `high`."""
     return limit(quantity, Kind.BETWEEN, allowed=(low, high), usual=usual)
+
+
+def coupler(name: str) -> Any:
+    """A field that limits the direction or the rate of the coupler, whose extremes are `MEASURED`."""
+    unit, words, about, kind, allowed, narrowest = {
+        "angle": (Unit.ANGLE, "direction", "of A->B", Kind.HEADING, HEADINGS, NARROW_HEADING),
+        "rate": (Unit.RATIO, "rate", "derivative of theta3 by theta2", Kind.BETWEEN, RATES, NARROW_RATE),
+    }[name]
+    words = f"{words} of the coupler"
+    made = Quantity(f"coupler_{name}", words, unit, Scope.TASK, about=about, listed=False)
+    return limit(made, kind, allowed=allowed, narrowest=narrowest)

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, cast
+from typing import Any, ClassVar
 
 import numpy as np
 
-from grashof.problems.values import checks
 from grashof.problems.values.arrays import FloatArray, Limits
-from grashof.problems.values.errors import ProblemError, shown, wrong_value
+from grashof.problems.values.errors import ProblemError, shown
+from grashof.problems.values.linkages.mechanisms import ROWS
+from grashof.problems.values.requirements.named_limits import NamedLimits
 
 PAIR = re.compile(r"(r[1-6])/(r[1-6])")
-_EXAMPLE = 'a table such as { "r3/r2" = [2, 2.5] }'
-LEAST, GREATEST = 1e-6, 1e6
 LEAST_LENGTH, ROUNDING = 1e-300, 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class LinkRatios(Mapping[str, Limits]):
-    """Limits of ratios by their names, such as "r3/r2"; read-only, and equal links have the ratio 1.
+class LinkRatios(NamedLimits):
+    """Limits of ratios by their names, such as "r3/r2"; equal links have the ratio 1.
 
     Examples
     --------
@@ -31,38 +30,26 @@ class LinkRatios(Mapping[str, Limits]):
     ((1.0, 1.0), LinkRatios(rows=(('r3/r2', (2.0, 3.0)),)))
     """
 
-    rows: tuple[tuple[str, Limits], ...] = ()
+    example: ClassVar[str] = 'a table such as { "r3/r2" = [2, 2.5] }'
+    allowed: ClassVar[Limits] = (1e-6, 1e6)
 
     @classmethod
-    def checked(cls, value: Any, where: str) -> LinkRatios:
-        """From a mapping to numbers or (lo, hi); ProblemError with a line for each error."""
-        if not isinstance(value, Mapping) or not value:
-            raise wrong_value(where, value, _EXAMPLE)
-        return cls(tuple(checks.each_checked(tuple(value.items()), where, _row)))
+    def kept_name(cls, name: Any, where: str) -> str:
+        """Two different lengths."""
+        found = PAIR.fullmatch(name) if isinstance(name, str) else None
+        if found is None or found[1] == found[2]:
+            raise ProblemError(f'{where} has {shown(name)}; it must be two of r1 to r6, such as "r3/r2"')
+        return found[0]
 
-    def __getitem__(self, name: str) -> Limits:
-        return dict(self.rows)[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(dict(self.rows))
-
-    def __len__(self) -> int:
-        return len(self.rows)
+    @classmethod
+    def kinds_with(cls, name: str) -> list[str]:
+        """The kinds that have both links."""
+        return [word for word, rows in ROWS.items() if set(links_of(name)) <= set(rows[0].lengths)]
 
     def of(self, lengths: Iterable[str]) -> LinkRatios:
         """Those of two of some lengths."""
         known = set(lengths)
-        return LinkRatios(tuple(row for row in self.rows if known.issuperset(links_of(row[0]))))
-
-
-def _row(row: tuple[Any, Any], where: str) -> tuple[str, Limits]:
-    name, value = row
-    found = PAIR.fullmatch(name) if isinstance(name, str) else None
-    place = where.rpartition("[")[0]
-    if found is None or found[1] == found[2]:
-        raise ProblemError(f'{place} has {shown(name)}; it must be two of r1 to r6, such as "r3/r2"')
-    both = value if isinstance(value, tuple | list) else (value, value)
-    return name, checks.limits(cast("Limits", tuple(both)), f'{place}."{name}"', least=LEAST, most=GREATEST)
+        return self.where(lambda name: known.issuperset(links_of(name)))
 
 
 def links_of(name: str) -> tuple[str, str]:
@@ -71,17 +58,15 @@ def links_of(name: str) -> tuple[str, str]:
     return one, other
 
 
-def contradictions(
-    ratios: LinkRatios | None, lengths: Mapping[str, Limits | None], greatest: float
-) -> list[str]:
+def contradictions(ratios: LinkRatios, lengths: Mapping[str, Limits | None], greatest: float) -> list[str]:
     """Ratios that the other limits do not allow, a line each.
 
     The others are those of lengths, the greatest ratio of any two, and the other ratios.
     """
     wrong = []
     stated = {name: limits for name, limits in lengths.items() if limits is not None}
-    for name, asked in (ratios or LinkRatios()).items():
-        others = LinkRatios(tuple(row for row in ratios.rows if row[0] != name) if ratios else ())
+    for name, asked in ratios.items():
+        others = LinkRatios(tuple(row for row in ratios.rows if row[0] != name))
         low, high = _allowed(name, others, stated, greatest)
         if asked[0] > high * (1 + ROUNDING) or asked[1] < low * (1 - ROUNDING):
             allowed = f"the other limits allow [{low:.6g}, {high:.6g}]"

@@ -7,14 +7,11 @@ can steer (`grashof.synth.quantities.formulas`); the two share nothing but the k
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from enum import Enum, StrEnum, auto
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum, StrEnum
 from typing import Any
 
-import numpy as np
-
-from grashof.problems.values.arrays import Limits
 from grashof.problems.values.linkages.cylinder import Cylinder
 from grashof.problems.values.linkages.mechanism import MECHANISMS, ONE_LOOP, WORDS, Mechanism, Parameter
 from grashof.problems.values.linkages.mechanisms import DIMENSIONS, having
@@ -181,8 +178,9 @@ _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
 _RATE = "change of its length for a radian of link 4: the arm with which its force turns link 4"
+_TASK = "from the first target to the last"
 _MISSED: dict[str, Any] = {"over": Scope.TARGETS, "better": -1}
-_OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": "from the first target to the last"}
+_OVERALL: dict[str, Any] = {"over": Scope.TASK, "about": _TASK}
 # Kinds of which some have D on the ground.
 GROUNDED = tuple(dict.fromkeys(
     row.word for row in MECHANISMS for each in row.parameters if (each.name, each.kind) == ("d", "station")
@@ -326,63 +324,13 @@ MEASURED: dict[str, Quantity] = {
         _rate("_end", " at the last target"),
         _rate("_min", " where it is least", +1),
         _rate("_max", " where it is greatest"),
+        *(
+            Quantity(
+                f"coupler_{name}_{end}", f"coupler {name} {end}", unit, Scope.TASK, about=_TASK,
+                full=f"{words} of the coupler where it is {extreme}",
+            )
+            for name, unit, words in (("angle", Unit.ANGLE, "direction"), ("rate", Unit.RATIO, "rate"))
+            for end, extreme in (("min", "least"), ("max", "greatest"))
+        ),
     )
 }  # fmt: skip
-
-
-class Kind(Enum):
-    """How a requirement limits its quantity."""
-
-    BETWEEN = auto()  # [lo, hi]
-    AT_LEAST = auto()
-    AT_MOST = auto()
-    EQUAL = auto()  # an angle
-    DIRECTION = auto()  # an angle, or [lo, hi]
-    INSIDE = auto()  # a box or a region in the plane
-    ON_BODY = auto()  # one in the body's frame
-    WORD = auto()  # one of several words, each allowing a range
-    RATIOS = auto()  # [lo, hi] of each of some ratios of links
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether it limits a direction, which is unique only up to full turns."""
-        return self in (Kind.EQUAL, Kind.DIRECTION)
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """How a field of `Requirements` limits a quantity."""
-
-    quantity: Quantity
-    kind: Kind
-    allowed: tuple[float, float]  # least and greatest value in files
-    usual: tuple[float, float] | None = None  # limits where none are given, in sizes of the task
-    words: Mapping[str, Limits] = field(default_factory=dict)  # the range that each word allows
-
-    @property
-    def widest(self) -> str:
-        """The word that allows most."""
-        return max(self.words, key=lambda word: self.words[word][1] - self.words[word][0])
-
-    def ranges(self, value: Any) -> dict[str, Limits]:
-        """The ranges that a value of the field allows, angles in rad.
-
-        By the axis of a box, also that around a region, or the name of a ratio; else by "".
-        """
-        if self.kind in (Kind.INSIDE, Kind.ON_BODY):
-            return {"x": value.x, "y": value.y}
-        if self.kind is Kind.RATIOS:
-            return dict(value)
-        if self.kind is Kind.WORD:
-            return {"": self.words[value]}
-        low, high = value if isinstance(value, tuple) else (value, value)
-        if self.kind is Kind.AT_LEAST:
-            high = np.inf
-        if self.kind is Kind.AT_MOST:
-            low = -np.inf
-        return {"": (float(low / self.quantity.unit.shown), float(high / self.quantity.unit.shown))}
-
-    def range_text(self, limits: Limits) -> str:
-        """Limits as files state them, as `Unit.range_text` or by a word; empty where none are."""
-        words = (word for word, allowed in self.words.items() if allowed == limits)
-        return next(words, self.quantity.unit.range_text(limits))

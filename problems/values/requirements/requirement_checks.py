@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import Any, cast
 
@@ -11,25 +11,29 @@ from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.box import Box
 from grashof.problems.values.errors import listing, wrong_value
 from grashof.problems.values.linkages.one_loop import FourBar
+from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
 from grashof.problems.values.requirements.link_ratios import LinkRatios
-from grashof.problems.values.requirements.quantities import Kind, Limit
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
 
 MAY_KEEP_OUT = (*FourBar.mechanism.points, "links", "body")
+# Limits by name, by the key of their quantity.
+NAMED: Mapping[str, type[NamedLimits]] = {"link_ratios": LinkRatios, "distances": Distances}
 KEPT_OUT = f"a list of {listing(MAY_KEEP_OUT, 'and')}"
 
 
-def limits(limited: Limit, value: Any, where: str) -> Box | LinkRatios | Limits | float | str:
-    """A checked limit of a quantity: a box, ratios, a pair, an angle, a number or a word."""
+def limits(limited: Limit, value: Any, where: str) -> Box | NamedLimits | Limits | float | str:
+    """A checked limit of a quantity: a box, limits by name, a pair, an angle, a number or a word."""
     if limited.kind in (Kind.INSIDE, Kind.ON_BODY):
         if not isinstance(value, Box):
             raise wrong_value(where, value, "a Box or a Region")
         return value
-    if limited.kind is Kind.RATIOS:
-        return value if isinstance(value, LinkRatios) else LinkRatios.checked(value, where)
+    if limited.kind is Kind.NAMED:
+        return NAMED[limited.quantity.key].checked(value, where)
     low, high = limited.allowed
-    if limited.kind is Kind.BETWEEN:
-        return checks.limits(value, where, least=low, most=high)
+    if limited.kind in (Kind.BETWEEN, Kind.HEADING):
+        return checks.apart(value, where, limited.narrowest, least=low, most=high)
     if limited.kind is Kind.WORD:
         return checks.one_of(value, where, limited.words)
     if limited.kind is Kind.DIRECTION and isinstance(value, tuple | list):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
-from enum import StrEnum
 from functools import partial
 from typing import Any
 
@@ -16,17 +15,24 @@ from grashof.problems.values.checks import GREATEST, some_of, true_or_false, wit
 from grashof.problems.values.linkages.mechanisms import having
 from grashof.problems.values.region import Region, regions
 from grashof.problems.values.requirements import requirement_checks as check
-from grashof.problems.values.requirements.limiting import between, limit, on_body, place_of, structural_error
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
+from grashof.problems.values.requirements.limiting import (
+    between,
+    coupler,
+    limit,
+    on_body,
+    place_of,
+    structural_error,
+)
 from grashof.problems.values.requirements.link_ratios import LinkRatios
+from grashof.problems.values.requirements.modes import Rotatability, TransmissionOver
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.quantities import (
     MEASURED,
     OUTPUTS,
     SINGLE,
     SLIDING,
     TRAVEL_ERRORS,
-    Kind,
-    Limit,
-    Needs,
     Quantity,
     Scope,
 )
@@ -35,28 +41,10 @@ from grashof.problems.values.tasks.task import USUAL_MARGIN, Task
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly, check_fields
 
-
-class Rotatability(StrEnum):
-    """The rotation that the driver must be capable of."""
-
-    FULL_CRANK = "full-crank"
-    CRANK_ROCKER = "crank-rocker"
-    DOUBLE_CRANK = "double-crank"
-    ANY = "any"
-
-
-class TransmissionOver(StrEnum):
-    """The motion over which the transmission angle is judged."""
-
-    TASK = "task"
-    CYCLE = "cycle"
-
-
 _SWING = "of link 4 between its limit positions, over the task where the driver cannot turn"
 _STROKES = "time of the slow stroke of link 4 over that of the quick one"
 _TRAVEL = "of the slide between its limit positions, over the task where the driver cannot turn"
 _TARGETS = "from the first target to the last"
-_ADVANTAGE = "mechanical advantage"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,6 +90,9 @@ class Requirements(ReadOnly):
         Where this ground pivot may lie; D is that of link 6, of a Watt II or Stephenson III.
     a, b : Box or Region, optional
         Where this moving pivot may be at every target.
+    distances : mapping of str to float or tuple of float, optional
+        Distances at every target, such as ``{"a-o4": (2, 3)}``: a number, or (lo, hi), of a-o4, b-o2, a-p,
+        b-p, o2-p or o4-p.
     offset : tuple of float, optional
         (lo, hi) for the signed offset of a slide: of its line from O2, of an inverted one from O4.
     slide_angle_deg : float or tuple of float, deg, optional
@@ -129,7 +120,7 @@ class Requirements(ReadOnly):
     structural_error_rms_deg : tuple of float, deg, optional
         (lo, hi) for its root mean square.
     structural_error_max, structural_error_rms : tuple of float, optional
-        (lo, hi) for the same of a function whose output is the travel of a slide.
+        (lo, hi) for the same where the output is the travel of a slide.
     time_ratio : tuple of float, optional
         (lo, hi) for the time of the slow stroke of link 4 over that of the quick one, the driver turning
         steadily; undefined for a driver that does not turn fully.
@@ -141,6 +132,10 @@ class Requirements(ReadOnly):
         (lo, hi) for its greatest force.
     cylinder_rate : tuple of float, length, optional
         (lo, hi) for the change of its length for a radian of link 4, over the task motion.
+    coupler_angle_deg : tuple of float, deg, optional
+        (lo, hi) for the direction A->B over the task motion; 360 deg more is the same.
+    coupler_rate : tuple of float, optional
+        (lo, hi) for the derivative of this direction by the driver angle, over the task motion.
     a_on_body, b_on_body : Box or Region, optional
         Where this pivot may sit on the body that is guided, in its frame: origin at P, turned with it.
     keep_out : sequence of array_like, shape (M, 2), length
@@ -178,8 +173,7 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
-        usual=(0.0, 30.0),
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False), usual=(0.0, 30.0)
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
@@ -187,14 +181,17 @@ class Requirements(ReadOnly):
         default=20.0,
         allowed=(1.0, 1e6),
     )
-    link_ratios: LinkRatios | None = limit(
-        Quantity("link_ratios", "ratio of two links", Unit.RATIO, listed=False), Kind.RATIOS
+    link_ratios: Mapping[str, float | Limits] | None = limit(
+        Quantity("link_ratios", "ratio of two links", Unit.RATIO, listed=False), Kind.NAMED
     )
     o2: Box | None = limit(place_of("o2", Scope.DESIGN), Kind.INSIDE)
     o4: Box | None = limit(place_of("o4", Scope.DESIGN), Kind.INSIDE)
     d: Box | None = limit(place_of("d", Scope.DESIGN), Kind.INSIDE)
     a: Box | None = limit(place_of("a", Scope.TARGETS), Kind.INSIDE)
     b: Box | None = limit(place_of("b", Scope.TARGETS), Kind.INSIDE)
+    distances: Mapping[str, float | Limits] | None = limit(
+        Quantity("distances", "distance of two points", Unit.LENGTH, Scope.TARGETS, listed=False), Kind.NAMED
+    )
     ground_angle_deg: float | Limits | None = limit(
         Quantity("ground_angle", "direction of O2O4", Unit.ANGLE, listed=False, kinds=having("o4")),
         Kind.DIRECTION,
@@ -226,8 +223,7 @@ class Requirements(ReadOnly):
     )
     output_swing_deg: Limits | None = between(
         Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=OUTPUTS),
-        0.0,
-        360.0,
+        high=360.0,
     )
     stroke: Limits | None = between(
         Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=SLIDING)
@@ -238,7 +234,15 @@ class Requirements(ReadOnly):
         1e6,
     )
     mechanical_advantage_min: float | None = limit(
-        Quantity("mechanical_advantage", _ADVANTAGE, Unit.RATIO, Scope.TASK, +1, listed=False, kinds=OUTPUTS),
+        Quantity(
+            "mechanical_advantage",
+            "mechanical advantage",
+            Unit.RATIO,
+            Scope.TASK,
+            +1,
+            listed=False,
+            kinds=OUTPUTS,
+        ),
         Kind.AT_LEAST,
         allowed=(0.0, 1e6),
     )
@@ -249,6 +253,8 @@ class Requirements(ReadOnly):
     structural_error_rms_deg: Limits | None = between(structural_error("rms"), 0.0, 360.0)
     structural_error_max: Limits | None = between(structural_error("max", TRAVEL_ERRORS))
     structural_error_rms: Limits | None = between(structural_error("rms", TRAVEL_ERRORS))
+    coupler_angle_deg: Limits | None = coupler("angle")
+    coupler_rate: Limits | None = coupler("rate")
     a_on_body: Box | None = limit(on_body("a"), Kind.ON_BODY)
     b_on_body: Box | None = limit(on_body("b"), Kind.ON_BODY)
     keep_out: tuple[FloatArray, ...] = ()
@@ -334,6 +340,17 @@ class Requirements(ReadOnly):
         }
 
     @property
+    def named(self) -> dict[str, NamedLimits]:
+        """The limits by name, such as ratios of links, by field."""
+        every = {name: getattr(self, name) for name in LIMITS}
+        return {name: each for name, each in every.items() if isinstance(each, NamedLimits)}
+
+    @property
+    def ratios(self) -> LinkRatios:
+        """Limits of ratios of links; empty without any."""
+        return LinkRatios(tuple(self.ranges("link_ratios").items()))
+
+    @property
     def regions(self) -> dict[str, Region]:
         """The places that are regions, not boxes, by field."""
         return regions({name: getattr(self, name) for name in LIMITS})
@@ -380,20 +397,4 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "keep_out": check.areas,
     "at": check.at_targets,
     "keep_out_for": partial(some_of, words=check.MAY_KEEP_OUT, wanted=check.KEPT_OUT),
-}
-
-_DERIVED = (
-    Quantity(
-        "mechanical_advantage_min", _ADVANTAGE, Unit.RATIO, Scope.TASK, kinds=OUTPUTS,
-        about="|omega2 / omega4| where it is least over the task motion", full=f"least {_ADVANTAGE}",
-    ),
-    Quantity(
-        "structural_error_at", "worst at", Unit.ANGLE, Scope.TASK, needs=Needs.OUTPUTS,
-        about="driver rotation from the first pair to the greatest structural error",
-        full="driver rotation to the greatest structural error",
-    ),
-)  # fmt: skip
-# All quantities of a design, by key; those that are listed in the order of the columns.
-QUANTITIES = MEASURED | {
-    each.key: each for each in (*(limited.quantity for limited in LIMITS.values()), *_DERIVED)
 }

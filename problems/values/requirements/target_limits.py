@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -12,6 +12,14 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.errors import ProblemError, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import not_had
+from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import (
+    HEADINGS,
+    NARROW_HEADING,
+    NARROW_RATE,
+    RATES,
+)
+from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import check_fields
 
@@ -30,10 +38,16 @@ class TargetLimits:
         Where this moving pivot may be there.
     instant_centre : Box, optional
         Where the centre of rotation of the coupler may lie there, the intersection of O2A and O4B.
+    distances : mapping of str to float or tuple of float, optional
+        Distances there, as those of `Requirements`.
     past_deg : tuple of float, deg, optional
         Angle of driver and coupler past toggle there (O2, A and B in line), (lo, hi), from -45 to 45, as in a
         clamp or brace. Positive where the motion from the first target, of the first one that back from the
         last, passes the toggle position.
+    coupler_angle_deg : tuple of float, deg, optional
+        Direction A->B there, (lo, hi).
+    coupler_rate : tuple of float, optional
+        Derivative of this direction by the driver angle there, (lo, hi).
     transmission_min_deg : float, deg, optional
         Least min(mu, pi - mu) there.
     mechanical_advantage_min : float, optional
@@ -54,7 +68,10 @@ class TargetLimits:
     a: Box | None = None
     b: Box | None = None
     instant_centre: Box | None = None
+    distances: Mapping[str, float | Limits] | None = None
     past_deg: Limits | None = None
+    coupler_angle_deg: Limits | None = None
+    coupler_rate: Limits | None = None
     transmission_min_deg: float | None = None
     mechanical_advantage_min: float | None = None
 
@@ -68,6 +85,12 @@ class TargetLimits:
         """Names of the limits that are stated."""
         return tuple(name for name in LIMITED if getattr(self, name) is not None)
 
+    @property
+    def named(self) -> dict[str, NamedLimits]:
+        """The limits by name, by field."""
+        every = {name: getattr(self, name) for name in self.limited}
+        return {name: each for name, each in every.items() if isinstance(each, NamedLimits)}
+
     def wrong(self, task: Task, kinds: Sequence[str], where: str) -> list[str]:
         """Contradictions with a task and kinds of linkages, a line each."""
         if not task.in_plane:
@@ -75,8 +98,11 @@ class TargetLimits:
         beyond = [number for number in self.targets if number > len(task)]
         wrong = [f"{where}.targets has {number}; the last target is {len(task)}" for number in beyond]
         for name in self.limited:
-            had = _kinds_with(name)
-            wrong += [] if set(kinds) & set(had) else [not_had(f"{where}.{name}", kinds, had)]
+            limits, every = self.named.get(name), {"": _kinds_with(name)}
+            if limits is not None:
+                every = {f".{each}": [*limits.kinds_with(each)] for each in limits}
+            for part, had in every.items():
+                wrong += [] if set(kinds) & set(had) else [not_had(f"{where}.{name}{part}", kinds, had)]
         return wrong
 
     def for_kind(self, kind: str) -> TargetLimits | None:
@@ -84,7 +110,12 @@ class TargetLimits:
         kept: dict[str, Any] = {
             name: getattr(self, name) for name in self.limited if kind in _kinds_with(name)
         }
-        return TargetLimits(targets=self.targets, **kept) if kept else None
+        kept |= {name: limits.for_kind(kind) for name, limits in self.named.items()}
+        return (
+            TargetLimits(targets=self.targets, **kept)
+            if any(each is not None for each in kept.values())
+            else None
+        )
 
 
 def _kinds_with(name: str) -> list[str]:
@@ -109,13 +140,11 @@ def _box(value: Any, where: str) -> Box | None:
     return value
 
 
-def _past(value: Any, where: str) -> Limits | None:
-    if value is None:
-        return None
-    low, high = checks.limits(value, where, least=-FARTHEST, most=FARTHEST)
-    if high - low < NARROWEST:
-        raise wrong_value(where, [low, high], f"[lo, hi] at least {NARROWEST:g} deg apart")
-    return low, high
+def _between(low: float, high: float, narrowest: float) -> Callable[[Any, str], Limits | None]:
+    def check(value: Any, where: str) -> Limits | None:
+        return None if value is None else checks.apart(value, where, narrowest, least=low, most=high)
+
+    return check
 
 
 def _number(low: float, high: float) -> Callable[[Any, str], float | None]:
@@ -127,10 +156,13 @@ _CHECKS: dict[str, Callable[[Any, str], Any]] = {
     "a": _box,
     "b": _box,
     "instant_centre": _box,
-    "past_deg": _past,
+    "distances": lambda value, where: None if value is None else Distances.checked(value, where),
+    "past_deg": _between(-FARTHEST, FARTHEST, NARROWEST),
+    "coupler_angle_deg": _between(*HEADINGS, NARROW_HEADING),
+    "coupler_rate": _between(*RATES, NARROW_RATE),
     "transmission_min_deg": _number(0.0, 90.0),
     "mechanical_advantage_min": _number(0.0, 1e6),
 }
 LIMITED = tuple(each.name for each in fields(TargetLimits) if each.name != "targets")
 # Points and lengths without which a limit has no meaning; of those not named here r3 and r4.
-_NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}}
+_NEEDED = {"a": {"a"}, "b": {"b"}, "past_deg": {"r3"}, "coupler_angle_deg": {"a"}, "coupler_rate": {"a"}}

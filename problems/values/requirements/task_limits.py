@@ -7,18 +7,21 @@ from collections.abc import Mapping, Sequence
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
+from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.linkages.mechanisms import LENGTHS, ROWS, joined, not_had
-from grashof.problems.values.requirements.link_ratios import contradictions, links_of
+from grashof.problems.values.linkages.mechanisms import LENGTHS, joined, not_had
+from grashof.problems.values.requirements.distances import Distances
+from grashof.problems.values.requirements.limit_kinds import Kind
+from grashof.problems.values.requirements.link_ratios import contradictions
+from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.quantities import (
     ROCKERS,
     SLIDING,
     TRAVELLING,
     TURNING,
-    Kind,
     Quantity,
 )
-from grashof.problems.values.requirements.requirements import LIMITS, Requirements, Rotatability
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 
@@ -81,7 +84,9 @@ def requirements_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -
     if wanted.error_factor is not None and wanted.is_exact(task):
         wrong.append("requirements.error_factor needs least squares, exact = false")
     lengths = {name: getattr(wanted, name) or wanted.link_length for name in LENGTHS}
-    wrong += contradictions(wanted.link_ratios, lengths, wanted.link_ratio_max)
+    wrong += contradictions(wanted.ratios, lengths, wanted.link_ratio_max)
+    if isinstance(wanted.distances, Distances):
+        wrong += wanted.distances.wrong(task, "requirements.distances")
     directions = (name for name, limited in LIMITS.items() if limited.kind is Kind.DIRECTION)
     wrong += [
         f"requirements.{name} is a range; of a {task.kind} it must be a single angle"
@@ -97,13 +102,12 @@ def requirements_wrong(task: Task, wanted: Requirements, kinds: Sequence[str]) -
     return wrong
 
 
-def kinds_of_ratios(wanted: Requirements) -> dict[str, list[str]]:
-    """The kinds that have both links of each limited ratio, by its key."""
+def kinds_of_names(wanted: Requirements) -> dict[str, Sequence[str]]:
+    """The kinds that have the parts of each limit by name, by its key path."""
     return {
-        f'requirements.link_ratios."{name}"': [
-            word for word, rows in ROWS.items() if set(links_of(name)) <= set(rows[0].lengths)
-        ]
-        for name in wanted.link_ratios or ()
+        f"requirements.{field}.{shown_key(name)}": limits.kinds_with(name)
+        for field, limits in wanted.named.items()
+        for name in limits
     }
 
 

@@ -22,7 +22,9 @@ from grashof.problems.values.linkages.mechanisms import (
     spelt_out,
 )
 from grashof.problems.values.requirements import task_limits
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.function_ground import grounded
+from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
 from grashof.problems.values.requirements.quantities import (
     BLOCKS,
@@ -31,12 +33,7 @@ from grashof.problems.values.requirements.quantities import (
     Needs,
     Quantity,
 )
-from grashof.problems.values.requirements.requirements import (
-    LIMITS,
-    QUANTITIES,
-    Requirements,
-    Rotatability,
-)
+from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
 from grashof.problems.values.tasks.task import Task
@@ -230,7 +227,7 @@ class Problem(ReadOnly):
         }
         if self.requirements.rotatability in ROCKING:
             having[f'requirements.rotatability = "{self.requirements.rotatability}"'] = ROCKERS
-        having |= task_limits.kinds_of_ratios(self.requirements)
+        having |= task_limits.kinds_of_names(self.requirements)
         return task_limits.not_of_kinds(self.task, self.mechanism, having)
 
     def for_kind(self, kind: str) -> Problem:
@@ -249,8 +246,8 @@ class Problem(ReadOnly):
         plain = Requirements()
         others = {name for name, limit in LIMITS.items() if kind not in limit.quantity.kinds}
         wanted = replace(self.requirements, **{name: getattr(plain, name) for name in others})
-        if wanted.link_ratios is not None:
-            wanted = replace(wanted, link_ratios=wanted.link_ratios.of(ROWS[kind][0].lengths) or None)
+        named: dict[str, Any] = {name: each.for_kind(kind) for name, each in wanted.named.items()}
+        wanted = replace(wanted, **named)
         if wanted.at:
             wanted = replace(wanted, at=tuple(filter(None, (each.for_kind(kind) for each in wanted.at))))
         if kind not in ROCKERS and wanted.rotatability in ROCKING:

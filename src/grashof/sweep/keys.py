@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 from grashof.problems import ProblemError
 from grashof.problems.values.errors import wrong_value
-from grashof.problems.values.requirements.quantities import Kind
+from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 
 Parts: TypeAlias = tuple[str | int, ...]

@@ -16,7 +16,7 @@ from grashof.figures.files import STYLE, shortened
 from grashof.figures.linkage import figure_of
 from grashof.figures.parts import COUPLER, DRIVER, GROUND, KEPT_OUT, OUTPUT
 from grashof.problems.values.arrays import BoolArray, FloatArray
-from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.sweep.result import Sweep
 from grashof.wording.numbers import with_unit
 

@@ -94,7 +94,7 @@ _DRAWN = ("id", "linkage", "low", "high", "turns", "direction", "theta2", "assem
 
 def decides_of(problem: Problem) -> dict[str, Any]:
     """The quantity by which the best design is chosen: its column, its label, and which way is better."""
-    from grashof.problems.values.requirements.requirements import QUANTITIES
+    from grashof.problems.values.requirements.all_quantities import QUANTITIES
 
     goals, lengths = problem.goals, {"length_unit": problem.length_unit}
     if problem.by_objective and len(goals) > 1:

@@ -27,8 +27,8 @@ from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Scope
-from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.requirements.target_limits import TargetLimits
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
@@ -137,8 +137,14 @@ def _at_targets(limits: TargetLimits, unit: str) -> str:
         sides = {} if box is None else {"x": box.x, "y": box.y}
         texts = {axis: Unit.LENGTH.range_text(side) for axis, side in sides.items()}
         said += [f"{name}.{axis} {text}{unit}" for axis, text in texts.items() if text]
+    for name, allowed in limits.named.get("distances", {}).items():
+        said.append(f"distance {name} {Unit.LENGTH.range_text(allowed)}{unit}")
     if limits.past_deg is not None:
         said.append("driver and coupler {:g} to {:g} deg past toggle".format(*limits.past_deg))
+    if limits.coupler_angle_deg is not None:
+        said.append("coupler at {:g} to {:g} deg".format(*limits.coupler_angle_deg))
+    if limits.coupler_rate is not None:
+        said.append("rate of the coupler {:g} to {:g}".format(*limits.coupler_rate))
     if limits.transmission_min_deg is not None:
         said.append(f"mu from {limits.transmission_min_deg:g} deg")
     if limits.mechanical_advantage_min is not None:

@@ -11,8 +11,8 @@ import numpy as np
 
 from grashof.problems import Problem
 from grashof.problems.values.linkages.mechanisms import FOUR_BAR
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Quantity
-from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.proof.claims.bounds import Bounds
 

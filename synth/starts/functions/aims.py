@@ -17,7 +17,7 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
-from grashof.problems.values.requirements.link_ratios import LinkRatios, greatest_logs
+from grashof.problems.values.requirements.link_ratios import greatest_logs
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.theory.functions.fit import DesiredOutput
@@ -153,7 +153,7 @@ class FunctionAims:
 def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requirements) -> FloatArray:
     """Greatest logarithm of one length over another."""
     low, high = np.array(list(sizes.values()), dtype=np.float64).T
-    most = greatest_logs(list(sizes), wanted.link_ratios or LinkRatios(), wanted.link_ratio_max)
+    most = greatest_logs(list(sizes), wanted.ratios, wanted.link_ratio_max)
     if not kind.FIRST_IS_LINK:
         most[0], most[:, 0] = np.inf, np.inf
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -80,6 +80,9 @@ def figures(theta2: float) -> dict[str, float]:
     mu = abs(np.angle((b - a) / (b - (4 + 1j))))
     found = {
         "instant_centre": centre.real,
+        "distances": abs(b),
+        "coupler_angle_deg": np.degrees(np.angle(b - a)),
+        "coupler_rate": turned / (2 * step),
         "a": a.real,
         "b": b.imag,
         "transmission_min_deg": np.degrees(min(mu, np.pi - mu)),
@@ -98,13 +101,17 @@ def limits(name: str, value: float, target: int, *, kept: bool) -> TargetLimits:
         "b": Box(y=(value - by, np.inf)),
         "instant_centre": Box(x=(value - by, np.inf)),
         "past_deg": (value - 5, value + by),
+        "distances": {"b-o2": (0, value + by)},
+        "coupler_angle_deg": (value - 360 - 50, value - 360 + by),  # a turn less is the same
+        "coupler_rate": (value - 1, value + by),
     }.get(name, value - by)
     return TargetLimits(targets=[target], **{name: given})
 
 
 @pytest.mark.parametrize("kept", [True, False])
 @pytest.mark.parametrize(
-    "name", ["a", "b", "instant_centre", "past_deg", "transmission_min_deg", "mechanical_advantage_min"]
+    "name",
+    ["a", "b", "instant_centre", "distances", "past_deg", "transmission_min_deg", "mechanical_advantage_min"],
 )
 def test_judge_and_search_see_what_is_missed(name: str, kept: bool) -> None:
     line = in_line()
@@ -134,7 +141,7 @@ def test_limits_at_targets_that_cannot_be_are_refused_in_a_line() -> None:
         ({"targets": [0], "past_deg": (1, 2)}, "targets"),
         ({"targets": [], "past_deg": (1, 2)}, "a list of numbers of targets"),
         ({"targets": [1]}, "targets have no limit"),
-        ({"targets": [1], "past_deg": (3, 3)}, "0.1 deg apart"),
+        ({"targets": [1], "past_deg": (3, 3)}, "at least 0.1 apart"),
         ({"targets": [1], "past_deg": (30, 50)}, "past_deg"),
     ):
         with pytest.raises(ProblemError, match=line):

@@ -10,13 +10,16 @@ import pytest
 
 from grashof import problems
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
+from grashof.analysis.judge.measures import MEASURES, PARTS, Values
+from grashof.analysis.judge.missed_limits import missed
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages
 from grashof.problems import Manufacturing, Problem, ProblemError, Requirements, TransmissionOver
-from grashof.problems.values.requirements.quantities import MEASURED, Kind, Limit, Scope
-from grashof.problems.values.requirements.requirements import LIMITS, QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
+from grashof.problems.values.requirements.limit_kinds import Kind, Limit
+from grashof.problems.values.requirements.quantities import MEASURED, Scope
+from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.units import Unit
 
 SAMPLES = 20_001

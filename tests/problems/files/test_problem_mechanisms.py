@@ -11,7 +11,7 @@ from grashof.problems.files.problem_file import problem_of
 from grashof.problems.files.problem_schema import problem_from
 from grashof.problems.files.problem_writing import problem_toml
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
-from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 
 POINTS = "[path]\npoints = [[0, 0], [1, 0], [2, 1], [3, 0]]\n"
 TASK = PathTask([[0, 0], [1, 0], [2, 1], [3, 0]])

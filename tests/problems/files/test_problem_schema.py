@@ -80,7 +80,11 @@ closed = true
 [requirements]
 size = [0, 9]
 link_ratios = {{ "r4/r2" = 1, "r3/r2" = [2, 2.5] }}
-at = [{{ targets = [1, 2], a = [1, 2], b = {{ x = [0, 1] }}, transmission_min_deg = 30 }}]
+distances = {{ a-o4 = [1, 9], "p-b" = 2 }}
+at = [
+    {{ targets = [3], distances = {{ "b-o2" = 3 }}, coupler_angle_deg = [30, 50], coupler_rate = [-1, 2] }},
+    {{ targets = [1, 2], a = [1, 2], b = {{ x = [0, 1] }}, transmission_min_deg = 30 }},
+]
 omega4_max = [0, 9]
 point_speed_max = [0, 9]
 point_acceleration_max = [0, 9]
@@ -98,6 +102,8 @@ driver_sense = "cw"
 a_on_body = {{ x = [0, 1] }}
 b_on_body = [1, 2]
 mechanical_advantage_min = 0.5
+coupler_angle_deg = [-30, 90]
+coupler_rate = [-2, 2]
 time_ratio = [1.2, 1.6]
 output_swing_deg = [40, 60]
 offset = [-1, 2]

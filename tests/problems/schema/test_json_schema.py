@@ -114,6 +114,7 @@ kind = "motion"\\nrequirements.keep_out = "zone.png" | is not valid under any of
 kind = "motion"\\nrequirements.keep_out_for = ["q"] | 'q' is not one of
 kind = "motion"\\nrequirements.link_ratios = { "r4-r2" = 1 } | 'r4-r2' does not match
 kind = "motion"\\nrequirements.link_ratios = { "r4/r2" = "1" } | is not valid under any of the given schemas
+kind = "motion"\\nrequirements.distances = { "a-o2" = 1 } | 'a-o2' does not match
 kind = "motion"\\nobjective.maximise = "speed" | is not valid under any of the given schemas
 kind = "motion"\\nsearch.starts = 2.5 | 2.5 is not of type 'integer'
 kind = "motion"\\nmotion.poses = [[1, 2]] | is not valid under any of the given schemas

@@ -37,7 +37,7 @@ from grashof.problems.values.dynamics.load_specs import (
 )
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.problems.values.dynamics.strength import SectionSpec
-from grashof.problems.values.requirements.requirements import QUANTITIES
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth import Result
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.nonlinear_programme import SOLVED, solve, solve_by_exchange
@@ -123,6 +123,7 @@ OF_SLIDES = {
         )
     },
 }
+MIDDLES = {"coupler_angle": 0.4, "coupler_rate": 0.2}  # between the limits
 ENDS = (-1.0, 3.5)  # rad, of the motion
 GRID_ERROR = 2e-3  # by which the peak at the grid falls short of the true one
 
@@ -150,8 +151,8 @@ def found(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> Fl
     """The formula of the search on arrays, in the units of the judge."""
     instant = KINDS[linkage.mechanism.word].instant
     at = instant(*placed(problem, linkage), driver_at(*drive_of(problem), share, *ENDS, 1.0))
-    values: FloatArray = magnitude(ALONG[key](at, Loading.of(problem))) * problem.scale(QUANTITIES[key])
-    return values
+    values: FloatArray = magnitude(ALONG[key](at, Loading.of(problem), MIDDLES.get(key, 0.0)))
+    return values * unit_of(problem, key)
 
 
 def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) -> FloatArray:
@@ -161,10 +162,14 @@ def on_symbols(problem: Problem, linkage: Linkage, share: FloatArray, key: str) 
     with numpy_on_symbols():
         driver = driver_at(*drive_of(problem), time, *ENDS, 1.0)
         at = KINDS[linkage.mechanism.word].instant(o2, ground, lengths, arm, assembly, driver)
-        every = ALONG[key](at, Loading.of(problem))
+        every = ALONG[key](at, Loading.of(problem), MIDDLES.get(key, 0.0))
         values = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in every]
     curve = ca.Function("curve", [time], [ca.mmax(ca.vertcat(*values))])
-    return np.asarray(curve(share[None])).ravel() * problem.scale(QUANTITIES[key])
+    return np.asarray(curve(share[None])).ravel() * unit_of(problem, key)
+
+
+def unit_of(problem: Problem, key: str) -> float:
+    return 1.0 if key in MIDDLES else problem.scale(QUANTITIES[key])
 
 
 def curves(problem: Problem, linkage: Linkage, share: FloatArray) -> dict[str, FloatArray]:
@@ -180,6 +185,10 @@ def curves(problem: Problem, linkage: Linkage, share: FloatArray) -> dict[str, F
         "point_speed_max": state.p.speed,
         "point_acceleration_max": state.p.acceleration_magnitude,
         "output_acceleration_max": np.abs(state.alpha4),
+        "coupler_angle": np.abs(np.angle(np.exp(1j * (state.theta3 - MIDDLES["coupler_angle"])))),
+        "coupler_rate": np.abs(
+            np.arctan(solve_kinematics(linkage, state.theta2).omega3) - MIDDLES["coupler_rate"]
+        ),
         "torque_peak": np.abs(dynamics.torque) * metre**2,
         "joint_force_peak": np.max([dynamics.joint_force(joint) for joint in joints_of(linkage)], axis=0)
         * metre,

@@ -114,14 +114,14 @@ def test_limits_are_those_of_the_linkage_and_the_list_is_exchanged(row: int) -> 
         for name in ("r3", "r4"):
             low, high = getattr(wanted, name) or (0.0, np.inf)
             assert low - 1e-6 <= lengths[name] <= high + 1e-6
-        for name, (low, high) in (wanted.link_ratios or {}).items():
+        for name, (low, high) in wanted.ranges("link_ratios").items():
             assert low - 1e-6 <= lengths[name[:2]] / lengths[name[3:]] <= high + 1e-6
         if row in (1, 2):
             assert each.verdict.grashof_class == wanted.rotatability
             swing = np.ptp(turns(each, np.linspace(0, 2 * np.pi, 721)))
             assert (swing > 6) == (row == 2)
     names = str.maketrans("34", "43")
-    ratios = {name.translate(names): limits for name, limits in (wanted.link_ratios or {}).items()}
+    ratios = {name.translate(names): limits for name, limits in wanted.ranges("link_ratios").items()}
     other = replace(wanted, r3=wanted.r4, r4=wanted.r3, link_ratios=ratios or None)
     output = synthesize(Problem(task=replace(task, link="output"), requirements=other), enough=6)
     np.testing.assert_allclose(

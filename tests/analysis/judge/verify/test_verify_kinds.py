@@ -23,8 +23,8 @@ from grashof.analysis.judge.measures import PARTS, Values
 from grashof.analysis.judge.planted import RANDOM, planted_motion, planted_path
 from grashof.analysis.judge.tolerance import made_linkages, made_moves, robustness
 from grashof.problems import InvertedSliderCrank, Manufacturing, MotionTask, PathTask, Problem, SliderCrank
+from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.quantities import Needs
-from grashof.problems.values.requirements.requirements import QUANTITIES
 
 ANY = problems.Requirements(
     exact=True, rotatability="any", link_length=(0.0, 1e9), coupler_arms=(0.0, 1e9), link_ratio_max=1e6
