@@ -11,6 +11,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
 from grashof.problems.values.dynamics.strength import CrossSection, SectionSpec, StrengthSpec
+from grashof.problems.values.dynamics.wanted_torque import WantedTorque
 from grashof.problems.values.errors import (
     AssemblyError,
     DeadPositionWarning,
@@ -78,6 +79,7 @@ __all__ = [
     "TargetLimits",
     "Task",
     "TransmissionOver",
+    "WantedTorque",
     "catalogue",
     "linkage_catalogue",
     "linkage_text",

@@ -10,8 +10,9 @@ import numpy as np
 
 from grashof.analysis.enclosure.closure import Least, Places, least_transmission, places
 from grashof.analysis.enclosure.interval import EPS, Interval, crank, unit
-from grashof.analysis.judge.measures import SLACK, Values
+from grashof.analysis.judge.measures import Values
 from grashof.analysis.judge.meeting.task_motion import STEADY
+from grashof.analysis.judge.missed_limits import SLACK
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.verdict import Enclosure, Verdict
 from grashof.problems import Linkage, Requirements, Rotatability, Task

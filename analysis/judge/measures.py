@@ -1,4 +1,4 @@
-"""The value of every quantity of a judged linkage, by the judge's own means, and the check of its limits."""
+"""The value of every quantity of a judged linkage, by the judge's own means."""
 
 from __future__ import annotations
 
@@ -15,22 +15,18 @@ from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
-from grashof.analysis.judge.regions import defects_outside
 from grashof.analysis.judge.tolerance import robustness
-from grashof.analysis.judge.verdict import Defect, Enclosure, Verdict
+from grashof.analysis.judge.verdict import Enclosure, Verdict
+from grashof.analysis.judge.wanted_torque import torque_misses
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_stroke
-from grashof.problems import Cylinder, Linkage, Problem, ProblemError, Requirements
-from grashof.problems.values.arrays import TURN, FloatArray, Limits, turned_beyond
+from grashof.problems import Cylinder, Linkage, Problem
+from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.linkages.mechanisms import LENGTHS, PARAMETERS
-from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Limit, Needs, Quantity, Scope
+from grashof.problems.values.requirements.quantities import TRAVEL_ERRORS, Needs
 from grashof.problems.values.requirements.requirements import QUANTITIES
 from grashof.problems.values.tasks.tandem_task import LINKS
-from grashof.problems.values.units import Unit
 
-# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
-SLACK = 1e-9
-_OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
 _RATES = tuple(f"rate_{name}" for name in ("start", "end", "min", "max"))  # of cylinders
 
 
@@ -62,7 +58,7 @@ class Values(Mapping[str, float]):
 
     def are_of(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> bool:
         """Whether they are those of this very design, by a problem that states the same."""
-        stated = attrgetter("requirements", "dynamics", "driver", "manufacturing", "length_unit")
+        stated = attrgetter("requirements", "dynamics", "torque", "driver", "manufacturing", "length_unit")
         alike = self.problem is problem or stated(self.problem) == stated(problem)
         return self.linkage is linkage and self.verdict is verdict and alike
 
@@ -108,6 +104,11 @@ class Values(Mapping[str, float]):
     def cylinder(self) -> CylinderFigures | None:
         """Figures of the cylinder that drives it; None without one."""
         return figures_of(self.linkage, self.problem.task, self.verdict)
+
+    @cached_property
+    def torque_misses(self) -> FloatArray:
+        """Drive torques minus the wanted ones."""
+        return torque_misses(self.linkage, self.problem, self.verdict)
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
@@ -249,6 +250,8 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": _torque_peak,
+    "torque_deviation": lambda values: np.sqrt(np.mean(values.torque_misses**2)),
+    "torque_deviation_max": lambda values: np.abs(values.torque_misses).max(),
     "dwell_from": partial(_of_dwell, "start"),
     "dwell_to": partial(_of_dwell, "end"),
     **dict.fromkeys(("band", "slide_band"), partial(_of_dwell, "band")),
@@ -342,59 +345,3 @@ PARTS: Mapping[str, Callable[[Values], Mapping[str, FloatArray]]] = {
     "b_on_body": partial(_on_body, False),
     "cylinder_rate": lambda values: {"": np.array([values[f"cylinder_{name}"] for name in _RATES[2:]])},
 }
-
-
-def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
-    """A defect for every limit of resolved requirements missed, in order of fields.
-
-    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
-    """
-    limited, verdict = wanted.limited, values.verdict  # another defect says that no motion joins the targets
-    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
-    for name, limit in limited.items():
-        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
-            continue
-        if limit.quantity.key in values.problem.task.without:  # a default
-            continue
-        if not values.problem.states(limit.quantity.needs):
-            raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
-        if limit.quantity.over is Scope.TASK and not joined:
-            continue
-        if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
-            continue  # that there is none is a defect by itself
-        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
-        if (region := wanted.regions.get(name)) is not None:
-            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
-            continue
-        for part, numbers in values.parts(quantity.key).items():
-            # r1 has limits of its own besides link_length, a ratio may have none
-            if part in limited or not {part, ""} & set(ranges):
-                continue
-            allowed = ranges[part if part in ranges else ""]
-            for value in np.unique([numbers.min(), numbers.max()]).tolist():
-                miss = _miss(value, allowed, limit, values.problem)
-                if miss > SLACK:
-                    found = value * quantity.unit.shown
-                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
-
-
-def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
-    """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
-    low, high = allowed
-    if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
-        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
-    if limit.kind.is_angle:
-        return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
-    miss = max(low - value, value - high)
-    if limit.quantity.unit is Unit.ANGLE:
-        return miss
-    if limit.quantity.unit is Unit.RATIO:
-        return miss / (abs(high if value > high else low) or 1.0)
-    return miss / problem.scale(limit.quantity)
-
-
-def _what(quantity: Quantity, part: str) -> str:
-    if part in ("x", "y"):
-        return f"{quantity.key}.{part}"
-    deg = " in deg" if quantity.unit is Unit.ANGLE else ""
-    return part or (quantity.key if quantity.words == quantity.key else f"the {quantity.words}{deg}")

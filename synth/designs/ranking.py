@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from grashof.analysis.judge.measures import SLACK
+from grashof.analysis.judge.missed_limits import SLACK
 from grashof.problems import Problem
 from grashof.problems.values.arrays import BoolArray, FloatArray
 from grashof.problems.values.requirements.quantities import Quantity

@@ -178,8 +178,7 @@ class Requirements(ReadOnly):
     offset: Limits | None = between("offset", -GREATEST)
     slide_angle_deg: float | Limits | None = limit("slide_angle", Kind.DIRECTION)
     coupler_arms: Limits | None = between(
-        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False),
-        usual=(0.0, 30.0),
+        Quantity("coupler_arms", "coupler arm", Unit.LENGTH, listed=False), usual=(0.0, 30.0)
     )
     link_ratio_max: float = limit(
         Quantity("link_ratio", "ratio of longest to shortest link", Unit.RATIO, better=-1, listed=False),
@@ -208,6 +207,8 @@ class Requirements(ReadOnly):
     output_acceleration_max: Limits | None = between("output_acceleration_max")
     torque_peak: Limits | None = between("torque_peak")
     torque_rms: Limits | None = between("torque_rms")
+    torque_deviation: Limits | None = between("torque_deviation")
+    torque_deviation_max: Limits | None = between("torque_deviation_max")
     joint_force_peak: Limits | None = between("joint_force_peak")
     coupler_fit_r2: Limits | None = between("coupler_fit_r2", -GREATEST, 1.0)
     hausdorff: Limits | None = between("hausdorff")
@@ -226,8 +227,7 @@ class Requirements(ReadOnly):
     )
     output_swing_deg: Limits | None = between(
         Quantity("output_swing", "output swing", Unit.ANGLE, Scope.CYCLE, +1, about=_SWING, kinds=OUTPUTS),
-        0.0,
-        360.0,
+        high=360.0,
     )
     stroke: Limits | None = between(
         Quantity("stroke", "stroke", Unit.LENGTH, Scope.CYCLE, +1, about=_TRAVEL, kinds=SLIDING)

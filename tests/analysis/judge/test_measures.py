@@ -10,7 +10,8 @@ import pytest
 
 from grashof import problems
 from grashof.analysis import solve_position, verify
-from grashof.analysis.judge.measures import MEASURES, PARTS, Values, missed
+from grashof.analysis.judge.measures import MEASURES, PARTS, Values
+from grashof.analysis.judge.missed_limits import missed
 from grashof.analysis.judge.over_task import motion_ends
 from grashof.analysis.judge.planted import planted_motion, planted_path, random_full_crank
 from grashof.analysis.judge.tolerance import made_linkages

@@ -29,7 +29,8 @@ share_within_linear, share_within_made, offset, slide_angle_deg,
 assembly_2, hosts, point_link, r5, r6, c_u, c_v, d_u, d_v, offset_2, slide_angle_2_deg, dwell_from_deg,
 dwell_to_deg, band_deg, band, band_made_deg, band_made, swing_deg, length_ratio, output_acceleration_max,
 swing_4_deg, swing_6_deg, time_ratio_4, time_ratio_6, synchrony_error, move_r5, move_r6,
-move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2, cylinder_on, cylinder_base_x,
+move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2,
+torque_deviation, torque_deviation_max, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,
 cylinder_force_max, cylinder_rate_start, cylinder_rate_end, cylinder_rate_min, cylinder_rate_max
 """

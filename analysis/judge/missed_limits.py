@@ -1,0 +1,75 @@
+"""The limits that a judged linkage misses, and by how much."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.regions import defects_outside
+from grashof.analysis.judge.verdict import Defect
+from grashof.problems import Problem, ProblemError, Requirements
+from grashof.problems.values.arrays import Limits, turned_beyond
+from grashof.problems.values.requirements.quantities import Limit, Needs, Quantity, Scope
+from grashof.problems.values.units import Unit
+
+# Limits are inclusive; rounding may carry a design this far past them (sizes, rad or ratio).
+SLACK = 1e-9
+_OF_CYLINDERS = (Needs.CYLINDER, Needs.LOADED_CYLINDER)
+
+
+def missed(values: Values, wanted: Requirements) -> Iterator[Defect]:
+    """A defect for every limit of resolved requirements missed, in order of fields.
+
+    The worst target on either side. ProblemError for a quantity that needs more than the problem states.
+    """
+    limited, verdict = wanted.limited, values.verdict  # another defect says that no motion joins the targets
+    joined = verdict.branch_ok or verdict.cylinder is not None or not wanted.same_branch
+    for name, limit in limited.items():
+        if values.linkage.mechanism.word not in limit.quantity.kinds:  # of a list of several kinds
+            continue
+        if limit.quantity.key in values.problem.task.without:  # a default
+            continue
+        if not values.problem.states(limit.quantity.needs):
+            raise ProblemError(f"requirements.{name} needs a problem with {limit.quantity.needs.value}")
+        if limit.quantity.over is Scope.TASK and not joined:
+            continue
+        if verdict.cylinder is None and limit.quantity.needs in _OF_CYLINDERS:
+            continue  # that there is none is a defect by itself
+        quantity, ranges = wanted.as_required(limit.quantity), wanted.ranges(name)
+        if (region := wanted.regions.get(name)) is not None:
+            yield from defects_outside(name, region, limit, values.parts(quantity.key), values.problem)
+            continue
+        for part, numbers in values.parts(quantity.key).items():
+            # r1 has limits of its own besides link_length, a ratio may have none
+            if part in limited or not {part, ""} & set(ranges):
+                continue
+            allowed = ranges[part if part in ranges else ""]
+            for value in np.unique([numbers.min(), numbers.max()]).tolist():
+                miss = _miss(value, allowed, limit, values.problem)
+                if miss > SLACK:
+                    found = value * quantity.unit.shown
+                    yield Defect(name, _what(quantity, part), found, limit.range_text(allowed), miss)
+
+
+def _miss(value: float, allowed: Limits, limit: Limit, problem: Problem) -> float:
+    """By how much a value is beyond its limits: in rad, as a share of the limit of a ratio, or in scales."""
+    low, high = allowed
+    if np.isnan(value):  # a target at which the linkage cannot be assembled is a defect by itself
+        return 0.0 if limit.quantity.over is Scope.TARGETS else np.inf
+    if limit.kind.is_angle:
+        return abs(float(turned_beyond(value, allowed, problem.period(limit.quantity.key))))
+    miss = max(low - value, value - high)
+    if limit.quantity.unit is Unit.ANGLE:
+        return miss
+    if limit.quantity.unit is Unit.RATIO:
+        return miss / (abs(high if value > high else low) or 1.0)
+    return miss / problem.scale(limit.quantity)
+
+
+def _what(quantity: Quantity, part: str) -> str:
+    if part in ("x", "y"):
+        return f"{quantity.key}.{part}"
+    deg = " in deg" if quantity.unit is Unit.ANGLE else ""
+    return part or (quantity.key if quantity.words == quantity.key else f"the {quantity.words}{deg}")
