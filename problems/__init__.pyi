@@ -9,6 +9,7 @@ from .values.box import Box
 from .values.dynamics.dynamics_spec import DynamicsSpec
 from .values.dynamics.manufacturing import Manufacturing
 from .values.dynamics.strength import CrossSection, SectionSpec, StrengthSpec
+from .values.dynamics.wanted_torque import WantedTorque
 from .values.errors import (
     AssemblyError,
     DeadPositionWarning,
@@ -77,6 +78,7 @@ __all__ = [
     "TargetLimits",
     "Task",
     "TransmissionOver",
+    "WantedTorque",
     "catalogue",
     "linkage_catalogue",
     "linkage_text",

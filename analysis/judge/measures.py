@@ -18,6 +18,7 @@ from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
+from grashof.analysis.judge.wanted_torque import torque_misses
 from grashof.analysis.mechanism.position import Position, solve_position
 from grashof.analysis.mechanism.stroke import OutputStroke, link_stroke, output_stroke
 from grashof.problems import Cylinder, Linkage, Problem
@@ -60,7 +61,7 @@ class Values(Mapping[str, float]):
 
     def are_of(self, linkage: Linkage, verdict: Verdict, problem: Problem) -> bool:
         """Whether they are those of this very design, by a problem that states the same."""
-        stated = attrgetter("requirements", "dynamics", "driver", "manufacturing", "length_unit")
+        stated = attrgetter("requirements", "dynamics", "torque", "driver", "manufacturing", "length_unit")
         alike = self.problem is problem or stated(self.problem) == stated(problem)
         return self.linkage is linkage and self.verdict is verdict and alike
 
@@ -111,6 +112,11 @@ class Values(Mapping[str, float]):
     def coupler(self) -> CouplerMotion:
         """Extremes of its direction and rate over the task motion."""
         return coupler_motion(self.linkage, self.problem.task, self.verdict)
+
+    @cached_property
+    def torque_misses(self) -> FloatArray:
+        """Drive torques minus the wanted ones."""
+        return torque_misses(self.linkage, self.problem, self.verdict)
 
     @cached_property
     def curve_distances(self) -> tuple[float, float]:
@@ -252,6 +258,8 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "size": attrgetter("verdict.size"),
     **{field.name: attrgetter(f"over_task.{field.name}") for field in fields(OverTask)},
     "torque_peak": _torque_peak,
+    "torque_deviation": lambda values: np.sqrt(np.mean(values.torque_misses**2)),
+    "torque_deviation_max": lambda values: np.abs(values.torque_misses).max(),
     "dwell_from": partial(_of_dwell, "start"),
     "dwell_to": partial(_of_dwell, "end"),
     **dict.fromkeys(("band", "slide_band"), partial(_of_dwell, "band")),

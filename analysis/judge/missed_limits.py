@@ -1,4 +1,4 @@
-"""The check of the limits of quantities of a judged linkage."""
+"""The limits that a judged linkage misses, and by how much."""
 
 from __future__ import annotations
 

@@ -55,7 +55,8 @@ class Verdict:
     angle_error : ndarray, shape (N,), rad
         NaN where a target has no angle.
     square : float, length squared
-        The objective of least squares: the weighted sum of |dp|^2 + (angle_length * dangle)^2.
+        The objective of least squares: the weighted sum of |dp|^2 + (angle_length * dangle)^2, and what the
+        weight of a wanted torque adds.
     direction : int
         Sense of the driver, +1 counter-clockwise.
     grashof_class : GrashofClass

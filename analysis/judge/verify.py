@@ -17,6 +17,7 @@ from grashof.analysis.judge.meeting.task_motion import STEADY, Targets, TaskMoti
 from grashof.analysis.judge.missed_limits import SLACK, missed
 from grashof.analysis.judge.over_task import as_used, joins, motion_ends, sampled
 from grashof.analysis.judge.verdict import Defect, Verdict
+from grashof.analysis.judge.wanted_torque import torque_misses
 from grashof.analysis.mechanism.extremes import diagonal, reach_box
 from grashof.analysis.mechanism.mobility import (
     branch_index,
@@ -31,7 +32,7 @@ from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.mechanism.second_loop import cut
 from grashof.analysis.mechanism.transmission import worst_transmission, worst_transmission_cycle
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task
+from grashof.problems import Cylinder, Linkage, Problem, Requirements, Rotatability, Task, WantedTorque
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.tasks.task import row_of
@@ -113,12 +114,16 @@ def verify(
         output_error=targets.output_error,
         **met.figures,
     )
+    if problem is not None and problem.torque is not None and problem.torque.weight:
+        verdict = replace(
+            verdict, square=verdict.square + _of_torque(linkage, problem, problem.torque, verdict)
+        )
     drive = _drive(linkage, task, wanted, verdict, motion, problem)
     defects = (
         *(_exactness(targets, task, wanted) if wanted.is_exact(task) else []),
         *met.defects,
         *_zones(targets, task),
-        *_total_error(targets, task, most_square),
+        *_total_error(verdict.square, task, most_square),
         *drive,
         *_rotatability(linkage, task, wanted),
         *_covered(targets),
@@ -138,6 +143,13 @@ def _square(targets: Targets, task: Task) -> float:
         return float(task.weights @ targets.output_error**2)
     turned = task.angle_length * targets.angle_error
     return float(np.nansum(task.weights * targets.position_error**2) + np.nansum(task.weights * turned**2))
+
+
+def _of_torque(linkage: Linkage, problem: Problem, torque: WantedTorque, verdict: Verdict) -> float:
+    """What the deviation from a wanted torque adds to the square; nothing where targets are not joined."""
+    misses = torque_misses(linkage, problem, verdict) / torque.greatest
+    per_target = np.nan_to_num(np.mean((torque.weight * problem.task.size * misses) ** 2))
+    return float(len(problem.task) * per_target)
 
 
 def _exactness(targets: Targets, task: Task, wanted: Requirements) -> list[Defect]:
@@ -177,8 +189,8 @@ def _zones(targets: Targets, task: Task) -> Iterator[Defect]:
             yield Defect(key, where, found, allowed, float(over[worst]))
 
 
-def _total_error(targets: Targets, task: Task, most_square: float) -> Iterator[Defect]:
-    found, most = (float(np.sqrt(square / len(task))) for square in (_square(targets, task), most_square))
+def _total_error(square: float, task: Task, most_square: float) -> Iterator[Defect]:
+    found, most = (float(np.sqrt(each / len(task))) for each in (square, most_square))
     miss = (found - most) / task.size
     if miss > SLACK:
         yield Defect("error_factor", "the error (root mean square)", found, f"up to {most:.6g}", miss)

@@ -19,6 +19,7 @@ from grashof.problems.values.box import Box
 from grashof.problems.values.checks import near_miss, noted, refused
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
+from grashof.problems.values.dynamics.wanted_torque import ROW, WantedTorque
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
@@ -231,6 +232,13 @@ class ManufacturingTable(tables.SpecTable):
     beside = MappingProxyType({"*": {"length_tolerance": 1.0}})
 
 
+@tables.keys_of(
+    WantedTorque, {"wanted": Annotated[list[list[float]], tables.listed(f"a list of rows {ROW}")]}
+)
+class TorqueTable(tables.SpecTable):
+    beside = MappingProxyType({"over": {"wanted": [[1.0, 1.0]]}, "weight": {"wanted": [[1.0, 1.0]]}})
+
+
 @tables.keys_of(Search)
 class SearchTable(tables.SpecTable):
     beside = tables.EACH
@@ -277,6 +285,7 @@ class _Task(_WithTask):  # type: ignore[misc, valid-type]
 
 
 class ProblemFile(MachineTables, _Task):
+    torque: TorqueTable | None = None
     manufacturing: ManufacturingTable | None = None
     search: SearchTable = SearchTable()
 
@@ -313,6 +322,7 @@ class ProblemFile(MachineTables, _Task):
             outlines=self.scene.value(),
             requirements=self._requirements(),
             dynamics=self.dynamics_spec(),
+            torque=None if self.torque is None else self.torque.value(),
             driver=None if self.driver is None else self.driver.value(),
             manufacturing=None if self.manufacturing is None else self.manufacturing.value(),
             search=self.search.value(),

@@ -74,6 +74,8 @@ def _tables(problem: Problem) -> Tables:
         yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:
         yield from problem.dynamics.tables.items()
+    if problem.torque is not None:
+        yield "torque", problem.torque.stated
     if problem.manufacturing is not None:
         yield "manufacturing", asdict(problem.manufacturing)
     yield "search", asdict(problem.search)

@@ -6,7 +6,8 @@ improves many random starts at once, with differences for derivatives. Sequentia
 (SLSQP of scipy) brings the best within their limits, and `grashof.analysis.judge.verify` judges them.
 
 It is a plain reference. It covers free and timed points met in order, and poses with position and angle, but
-neither areas kept out nor user constraints.
+neither areas kept out nor user constraints. A torque that is wanted over shares of the motion is the slope of
+a potential (`Potential`), by differences, of linkages that move slowly.
 """
 
 from dataclasses import dataclass, replace
@@ -15,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from convex_sides import sides
+from potential import Potential
 from scipy.optimize import minimize
 
 from grashof.analysis import Verdict, verify
@@ -24,6 +26,7 @@ from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, IntAr
 STARTS, POLISHED = 800, 40
 # Distance of designs from their limits, sizes and rad (the judge forgives 1e-9); step of differences.
 INSIDE, NUDGE = 2e-7, 1e-7
+TURNED = 1e-4  # rad: step of the slope of a potential
 HAIR = 1e-12  # added to the length of a line, which may be zero
 STAGES = ((1.0, 0.3, 20), (0.6, 1.0, 30), (0.4, 10.0, 60))  # share kept, weight of a limit, steps
 
@@ -44,6 +47,7 @@ class Aim:
     turned: bool  # the targets have angles
     timed: bool  # the driver rotations are prescribed
     over_turn: bool  # the transmission angle counts over the full turn
+    potential: Potential | None = None  # whose slope is wanted
 
     @classmethod
     def of(cls, problem: Problem) -> "Aim":
@@ -61,6 +65,7 @@ class Aim:
             task.angle_length / size, task.driver_turns, task.closed, wanted,
             turned=not np.isnan(task.angles).any(), timed=not np.isnan(task.driver_turns).any(),
             over_turn=task.closed or wanted.transmission_over == "cycle",
+            potential=Potential.of(problem) if problem.torque is not None and problem.torque.weight else None,
         )  # fmt: skip
 
 
@@ -128,14 +133,30 @@ def places(aim: Aim, designs: Designs) -> Places:
     return Places(o2, o4, r2, r3, r4, coupler, x[:, 9:10], theta2, a, b, p)
 
 
-def misses(aim: Aim, at: Places) -> FloatArray:
+def misses(aim: Aim, designs: Designs, at: Places) -> FloatArray:
     """Terms of the sum of squares: weighted distances of points, turns of poses as lengths; shape (B, M)."""
     gap = (at.p - aim.points) * aim.root_weights
     parts = [gap.real, gap.imag]
     if aim.turned:
         turn = np.angle((at.b - at.a) * np.exp(1j * (at.body - aim.angles)))
         parts.append(turn * aim.angle_length * aim.root_weights)
+    if aim.potential is not None:
+        parts.append(np.sqrt(len(aim.points)) * torque_misses(aim, aim.potential, designs, at))
     return np.concatenate(parts, axis=1)
+
+
+def torque_misses(aim: Aim, potential: Potential, designs: Designs, at: Places) -> FloatArray:
+    """Slopes of the potential minus the wanted torques, as shares of the greatest of these; shape (B, K)."""
+    first, last = at.theta2[:, :1], at.theta2[:, -1:]
+    theta2 = first + potential.shares * (last - first)
+    untimed = replace(aim, timed=False)
+
+    def energy(by: float) -> FloatArray:
+        moved = np.concatenate([designs.x[:, :10], theta2 + by], axis=1)
+        return potential.energy(places(untimed, replace(designs, x=moved)))
+
+    slope = designs.sense[:, None] * (energy(TURNED) - energy(-TURNED)) / (2 * TURNED)
+    return potential.weight * (slope - potential.torques)
 
 
 def oversteps(aim: Aim, designs: Designs, at: Places) -> FloatArray:
@@ -224,7 +245,7 @@ def slopes(aim: Aim, at: Places) -> FloatArray:
     places of A and B are limited, a design may not gain by others.
     """
     boxed = (aim.wanted.a, aim.wanted.b) != (Box(), Box()) or bool(aim.wanted.at)
-    if aim.over_turn and not boxed:
+    if aim.over_turn and not boxed and aim.potential is None:
         return np.empty((len(at.p), 0))
     coupler, output, driver = at.b - at.a, at.b - at.o4, at.a - at.o2
     down = (coupler.conj() * output).imag
@@ -245,7 +266,7 @@ def residuals(aim: Aim, designs: Designs, weight: float) -> FloatArray:
     """Misses, and limits overstepped at this weight of their squares; shape (B, M + K)."""
     at = places(aim, designs)
     over = np.maximum(oversteps(aim, designs, at), 0.0)
-    return np.concatenate([misses(aim, at), np.sqrt(weight) * over], axis=1)
+    return np.concatenate([misses(aim, designs, at), np.sqrt(weight) * over], axis=1)
 
 
 def improved(aim: Aim, designs: Designs, weight: float, steps: int) -> tuple[Designs, FloatArray]:
@@ -331,7 +352,7 @@ def polished(aim: Aim, design: Designs, steady: bool) -> tuple[Designs, float]:
     def batch(key: bytes) -> tuple[FloatArray, FloatArray, FloatArray]:
         designs = replace(design, x=np.frombuffer(key)[None]).nudged()
         at = places(aim, designs)
-        return misses(aim, at), -oversteps(aim, designs, at), slopes(aim, at)
+        return misses(aim, designs, at), -oversteps(aim, designs, at), slopes(aim, at)
 
     def value(x: FloatArray, part: int) -> FloatArray:
         found: FloatArray = batch(x.tobytes())[part][0]
@@ -393,7 +414,7 @@ def search(problem: Problem, starts: int = STARTS, seed: int = 0) -> Best | None
         if square == np.inf or (best and square * aim.size**2 >= best.verdict.square):
             break
         linkage = linkage_of(aim, design)
-        verdict = verify(linkage, problem.task, problem.requirements)
+        verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
         if verdict.ok and (best is None or verdict.square < best.verdict.square):
             best = Best(linkage, verdict, float(np.sqrt(verdict.square / len(problem.task))))
     return best

@@ -76,6 +76,9 @@ _SLOPES: dict[np.ufunc, Callable[..., tuple[Any, ...]]] = {
     np.arccos: lambda f, x: (-1 / np.sqrt(np.maximum(1 - x**2, 1e-12)),),
     np.arctan2: lambda f, y, x: (x / (x**2 + y**2), -y / (x**2 + y**2)),
     np.hypot: lambda f, x, y: (x / f, y / f),
+    np.remainder: lambda f, x, y: (ONE, 0.0),  # by numbers
+    np.sign: lambda f, x: (0.0,),
+    **dict.fromkeys((np.greater_equal, np.less_equal, np.less), lambda f, x, y: (0.0, 0.0)),
     np.maximum: lambda f, x, y: (np.where(x >= y, 1.0, 0.0), np.where(x >= y, 0.0, 1.0)),
     np.minimum: lambda f, x, y: (np.where(x <= y, 1.0, 0.0), np.where(x <= y, 0.0, 1.0)),
 }

@@ -17,15 +17,15 @@ from grashof.synth.programme.plane import column, cross, quarter_turn, rotated, 
 from grashof.synth.programme.second_loop import Joined, joined, links_of_first_loop
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import PLANES, Form, points_held
-from grashof.synth.programme.unknowns import FAR, INSET, SecondUnknowns, Unknowns, interleaved
+from grashof.synth.programme.unknowns import INSET, SecondUnknowns, Unknowns, interleaved
 from grashof.synth.programme.user_functions import magnitude_at, on_symbols
+from grashof.synth.quantities.along_motion import torque_misses
 from grashof.synth.quantities.formulas import View
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.target_constraints import AtTarget
+from grashof.synth.quantities.wanted_torque import WantedCurve, rms
 
 OWN_INSET = 1e-8  # by which the user's constraints are tightened, so that the polished design keeps them
-MOST_ZONE = 0.5  # sizes, rad: greater ones lead the solver astray
-ZONE_INSET = 1e-7  # share of a zone that the programme leaves to the judge
 LEAST_STEP = 1e-4  # rad, of the driver between two targets that are both met
 LEAST_SQUARE = 1e-8  # sizes squared: scales the squared distances to about 1
 
@@ -159,7 +159,7 @@ def close_at_points(build: Builder, form: Form, x: Unknowns, targets: Targets) -
         if form.exact and form.positions[k]:
             build.zero(p[k] - targets.points[k])
         if form.exact and form.angles[k]:
-            build.zero(_off(x, targets, k))
+            build.zero(off(x, targets, k))
         if form.timed and k:
             build.zero(x.theta2[k] - x.theta2[0] - x.direction * (timing[k] - timing[0]))
     for point, at in ((x.a, a), (x.b, b)):
@@ -173,17 +173,6 @@ def second_loop(form: Form, second: SecondUnknowns, frames: Mapping[int, Frame],
     """The second dyad between the links of a first loop, P's link in a direction."""
     arms = vector(second.c), vector(second.d)
     return joined(form.row, frames, arms, ca.vertsplit(second.bars), vector(unit(turned)))
-
-
-def square(form: Form, x: Unknowns, places: Positions, targets: Targets) -> ca.SX:
-    """Weighted sum of squared distances and turns from the targets."""
-    cost = ca.SX(0)
-    for k in range(form.targets):
-        if form.positions[k]:
-            cost += targets.weights[k] * ca.sumsqr(places.p[k] - targets.points[k])
-        if form.angles[k]:
-            cost += targets.weights[form.targets + k] * _off(x, targets, k) ** 2
-    return cost
 
 
 def require_modes(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
@@ -221,28 +210,13 @@ def stand_nearest(build: Builder, form: Form, x: Unknowns, places: Positions, ta
             missed = targets.weights[k] * (p - targets.points[k])
             row += d * ca.dot(missed, quarter_turn(a - x.o2)) + n * ca.dot(missed, quarter_turn(p - a))
         if form.angles[k]:
-            row += n * targets.weights[form.targets + k] * _off(x, targets, k)
+            row += n * targets.weights[form.targets + k] * off(x, targets, k)
         if form.timed:
             total += row / d
         else:
             build.zero(ca.sqrt(targets.error_scale) * row)
     if form.timed and any(form.nearest):
         build.zero(ca.sqrt(targets.error_scale) * total)
-
-
-def bound_error(build: Builder, form: Form, x: Unknowns, places: Positions, targets: Targets) -> None:
-    """The sum of the squares, or each target's, is bounded, as shares of their bounds."""
-    if form.most_error:
-        most = build.parameter(lambda _, start: min(start.terms.most_error, FAR) ** 2 * form.targets)
-        build.row(1 - square(form, x, places, targets) / most)
-    if not form.zoned:
-        return
-    zones = build.parameter(_zones, 2 * form.targets)
-    for k in range(form.targets):
-        if form.positions[k]:
-            build.require(("within",), 1 - ca.sumsqr(places.p[k] - targets.points[k]) / zones[k] ** 2)
-        if form.angles[k]:
-            build.require(("within",), 1 - (_off(x, targets, k) / zones[form.targets + k]) ** 2)
 
 
 def bound_transmission(build: Builder, form: Form, x: Unknowns, places: Positions) -> None:
@@ -339,7 +313,7 @@ def symbolic_design(build: Builder, form: Form, x: Unknowns, places: Positions) 
     return Design(o2=o2, o4=o4, coupler_point=scale * arm, theta2=x.theta2, a=a, b=b, p=p, **named)
 
 
-def _off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
+def off(x: Unknowns, targets: Targets, k: int) -> ca.SX:
     """Angle of the body from a pose."""
     return x.carrying[k] + x.body_angle - targets.turns[k]
 
@@ -361,14 +335,17 @@ def _square(scaled: ScaledProblem, start: Start) -> float:
     """Weighted squared misses of the targets at the start."""
     order = np.argsort(start.visit)
     turned = np.array(start.carrying)[order] + start.body_angle
-    return float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
+    missed = float(scaled.missed(start.track[2][order], turned)) ** 2 * len(order)
+    if (curve := WantedCurve.of(scaled.problem)) is not None and curve.weight:
+        missed += len(order) * float(curve.weight * rms(misses_at_start(scaled, start))) ** 2
+    return missed
 
 
-def _zones(scaled: ScaledProblem, start: Start) -> FloatArray:
-    """Permitted miss of each target, slightly tightened: sizes, then rad."""
-    zones = np.full((2, len(scaled.targets)), FAR) if scaled.zones is None else scaled.zones
-    kept = 1 - ZONE_INSET - start.terms.tightened_by("within")
-    return (np.minimum(zones, MOST_ZONE) * kept)[:, list(start.visit)].ravel()
+def misses_at_start(scaled: ScaledProblem, start: Start) -> FloatArray:
+    """Drive torques of a start minus the wanted ones (K,), reference torques."""
+    ways = np.array([start.theta2]), np.array([start.direction]), np.array([start.assembly])
+    misses: FloatArray = torque_misses(scaled, start.points[None], *ways)[0]
+    return misses
 
 
 def _planes(scaled: ScaledProblem, start: Start) -> FloatArray:

@@ -7,15 +7,21 @@ from collections.abc import Sequence
 import casadi as ca
 import numpy as np
 
-from grashof.problems.values.arrays import TURN, FloatArray, Limits
+from grashof.problems.values.arrays import FloatArray, Limits
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.problems.values.units import Unit
 from grashof.synth.loop.vector import Vector
 from grashof.synth.programme.builder import Builder, Fill, always
-from grashof.synth.programme.constraints import Fixed, Positions, Symbols, arm_of
-from grashof.synth.programme.plane import column, vector
+from grashof.synth.programme.constraints import Positions, Symbols
+from grashof.synth.programme.deviations import (
+    cost_of_deviations,
+    deviation_unit,
+    driver_ends,
+    instant_of,
+)
+from grashof.synth.programme.plane import column
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.programme.unknowns import FAR, Unknowns, inset, lifted, near
@@ -34,6 +40,7 @@ from grashof.synth.quantities.along_motion import (
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
 from grashof.synth.quantities.formulas import Part, parts_of, range_of, smooth_ratio
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 ADDED = 2 * MOST_PEAKS  # driver angles, at most, that are added to the grid
 
@@ -139,6 +146,7 @@ def cost_of_goals(build: Builder, form: Form, x: Unknowns, places: Positions) ->
             lambda scaled, start: scaled.wanted.ranges("size")[""][1] - start.terms.tightened_by("size")
         )
         build.require(("size",), most - size)
+    cost += cost_of_deviations(build, form, x, places, weights)
     for key in form.along:
         value = value_of(key, _peak(build, form, x, places, key))
         cost -= weights.get(key, 0.0) * QUANTITIES[key].better * value
@@ -166,8 +174,6 @@ def diagonal(build: Builder, form: Form, x: Unknowns, places: Positions) -> ca.S
 
 def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) -> ca.SX:
     """An upper bound of a magnitude at the driver angles of an even grid, and those added to it."""
-    arm, lengths = vector(arm_of(x, places)), ca.vertsplit(x.r)
-    ground = form.kind.dyad.ground(Fixed(form, x))
     one = build.parameter(lambda scaled, start: peak_unit(form, scaled, start, key))  # its peak at the start
     omega2 = build.parameter(lambda scaled, _: drive_of(scaled.problem)[1])
     middle = (
@@ -175,10 +181,9 @@ def _peak(build: Builder, form: Form, x: Unknowns, places: Positions, key: str) 
     )
     added = ca.vertsplit(build.parameter(lambda _, start: _padded(start.terms.peaks_at.get(key, ())), ADDED))
     peak = build.unknown(key, 1, lambda *_: 1.0, _most(form, key))
-    last = x.theta2[0] + x.direction * TURN if form.closed else x.theta2[form.targets - 1]
+    ends, instant = driver_ends(form, x), instant_of(form, x, places)
     for share in (*np.linspace(0, 1, form.grid), *added):
-        driver = driver_at(form.motor, omega2, share, x.theta2[0], last, x.direction)
-        at = form.kind.instant(vector(x.o2), ground, lengths, arm, x.assembly, driver)
+        at = instant(driver_at(form.motor, omega2, share, *ends))
         for value in ALONG[key](at, form.loading, middle):
             if isinstance(value, Vector):
                 build.row(peak**2 - (value / one).square)
@@ -215,6 +220,7 @@ def _share(form: Form, key: str) -> Fill:
 
     def counted(scaled: ScaledProblem, start: Start, key: str) -> float:
         unit = value_of(key, peak_unit(form, scaled, start, key)) if key in ALONG else 1.0
+        unit = deviation_unit(scaled, start) if key in DEVIATIONS else unit
         return (
             start.terms.goals[key] * unit / (scaled.scale(QUANTITIES[key]) if key in form.formulas else 1.0)
         )

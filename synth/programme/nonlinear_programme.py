@@ -14,7 +14,6 @@ from grashof.analysis.judge.design import Constraint, OwnObjective, one_at_a_tim
 from grashof.synth.programme.builder import STOPPED, Builder, Programme, always
 from grashof.synth.programme.constraints import (
     Targets,
-    bound_error,
     bound_transmission,
     close_at_points,
     close_at_poses,
@@ -22,9 +21,9 @@ from grashof.synth.programme.constraints import (
     own_goal,
     require_modes,
     require_own,
-    square,
     stand_nearest,
 )
+from grashof.synth.programme.errors import bound_error, square
 from grashof.synth.programme.instants import bound_second_loop, overlooked_instants
 from grashof.synth.programme.limits import ADDED, cost_of_goals, peak_unit, require_limits
 from grashof.synth.programme.second_loop import SecondLoop

@@ -21,6 +21,7 @@ from grashof.synth.quantities.loading import Loading
 from grashof.synth.quantities.regions import pairs_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import points_kept_out
+from grashof.synth.quantities.wanted_torque import DEVIATIONS, WantedCurve
 
 MOST_SIDES = 64  # half-planes that bound a convex piece of a region
 PLANES = 4  # half-planes that bound a free region
@@ -48,6 +49,7 @@ class Form:
     grid: int  # number of instants at which quantities along the motion are bounded
     loading: Loading | None  # that causes the torque and forces that are bounded; None without them
     motor: MotorSpec | None  # drive law where anything is bounded along the motion
+    torque: WantedCurve | None  # wanted, where the deviation from it counts
     closed: bool  # the task motion is a full turn
     keep_out: tuple[str, ...]  # of o2, o4, a, b, p those in free regions, the moving ones at every target
     # Fields of places that are regions, with the half-planes of each; none for a segment. Bounds suffice for
@@ -84,6 +86,13 @@ class Form:
         limited = [LIMITS[name].quantity.key for name in self.limited]
         return tuple(key for key in ALONG if key in limited or key in self.goals)
 
+    @property
+    def deviations(self) -> tuple[str, ...]:
+        """Keys of the deviations from a wanted torque that are bounded or improved."""
+        limited = [LIMITS[name].quantity.key for name in self.limited]
+        found = (key for key in DEVIATIONS if key in limited or key in self.goals)
+        return () if self.torque is None else tuple(found)
+
     @classmethod
     def of(cls, scaled: ScaledProblem, start: Start) -> Form:
         """The form for a problem and a start."""
@@ -107,6 +116,7 @@ class Form:
             grid=_grid_size(start, closed),
             loading=Loading.of(scaled.problem),
             motor=drive_of(scaled.problem)[0],
+            torque=WantedCurve.of(scaled.problem) if start.second is None else None,
             closed=closed,
             keep_out=points_held(scaled),
             regions=_regions(scaled, start),
@@ -116,6 +126,8 @@ class Form:
             most_error=bool(np.isfinite(start.terms.most_error)),
             zoned=start.terms.zoned,
         )
+        if not made.deviations and not (made.torque is not None and made.torque.weight):
+            made = replace(made, torque=None)
         # One programme serves short and long motions, whatever loads act.
         if not made.along:
             return replace(made, grid=0, loading=None, motor=None)
@@ -161,6 +173,8 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
         for name, limit in wanted.limited.items()
     )
     zoned = start.terms.zoned and (scaled.has_angles or scaled.timed)
+    torque = scaled.problem.torque
+    placed = placed or (torque is not None and torque.over == "target")
     own = scaled.every_constraint or (start.terms.bounded and start.terms.objective is None)
     every = bool(placed or moving or own or zoned)
     if scaled.timed:
@@ -168,7 +182,7 @@ def _nearest(scaled: ScaledProblem, start: Start) -> tuple[bool, ...]:
     over_task = wanted.transmission_over is TransmissionOver.TASK and not scaled.closed
     ends = bool(over_task and (wanted.transmission_min_deg > 0 or start.terms.bounded))
     nearest = np.full(count, every)
-    nearest[[0, -1]] |= ends
+    nearest[[0, -1]] |= ends or torque is not None
     if wanted.theta2_start_deg is not None:  # a pose is met where it is nearest, a point where it is given
         nearest[start.visit.index(0)] = scaled.has_angles
     return tuple(nearest.tolist())

@@ -10,17 +10,11 @@ from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.requirements.requirements import LIMITS
 from grashof.synth.loop.dyad import coupler_of
 from grashof.synth.programme.user_functions import FAR, own_violations
-from grashof.synth.quantities.along_motion import (
-    ALONG,
-    SCREENED,
-    allowed_along,
-    magnitudes,
-    unit_along,
-    value_of,
-)
+from grashof.synth.quantities.along_motion import ALONG, allowed_along, along_motion, unit_along
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Screened, inside, points_kept_out
+from grashof.synth.quantities.wanted_torque import DEVIATIONS
 
 _SAMPLES = 13  # driver angles, the targets' ends among them
 _ALONG = np.array([0.2, 0.4, 0.6, 0.8])  # of a link
@@ -30,7 +24,7 @@ _ROWS = 4000  # linkages at a time
 def fully_screened(scaled: ScaledProblem, linkages: Screened) -> Screened:
     """Screened linkages with these violations added."""
     wanted = scaled.wanted
-    along = [name for name in wanted.limited if LIMITS[name].quantity.key in ALONG]
+    along = [name for name in wanted.limited if LIMITS[name].quantity.key in (*ALONG, *DEVIATIONS)]
     if not len(linkages) or not (along or wanted.size or scaled.every_constraint or wanted.keep_out):
         return linkages
     violations = linkages.violations.copy()
@@ -61,8 +55,7 @@ def _beyond(scaled: ScaledProblem, linkages: Screened, name: str) -> FloatArray:
     quantity = LIMITS[name].quantity
     low, high = allowed_along(scaled.wanted, quantity.key)
     ways = linkages.theta2, linkages.direction, linkages.assembly
-    peak = magnitudes(scaled, quantity.key, linkages.points, *ways, SCREENED).max(axis=1)
-    value = value_of(quantity.key, peak) * unit_along(scaled, quantity.key)
+    value = along_motion(scaled, quantity.key, linkages.points, *ways) * unit_along(scaled, quantity.key)
     share = np.maximum(low - value, value - high) / (high if np.isfinite(high) else max(low, 1.0))
     amount: FloatArray = np.maximum(np.nan_to_num(share, posinf=FAR), 0.0)
     return amount

@@ -13,12 +13,13 @@ import numpy as np
 from grashof.problems import Requirements
 from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray, Limits
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
-from grashof.synth.loop.instant import Instant
+from grashof.synth.loop.instant import Instant, Moment
 from grashof.synth.loop.vector import Vector
 from grashof.synth.quantities.drive_torque import drive_torque, joint_forces
 from grashof.synth.quantities.driver_motion import drive_of, driver_at
 from grashof.synth.quantities.loading import NOTHING, Loading
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.wanted_torque import DEVIATIONS, WantedCurve
 
 SCREENED = 25  # instants at which many linkages are compared
 INSPECTED = 30 * SCREENED  # instants at which one linkage is inspected
@@ -86,6 +87,22 @@ def _sides(wanted: Requirements, key: str) -> list[float]:
     return sides
 
 
+def along_motion(
+    scaled: ScaledProblem,
+    key: str,
+    points: ComplexArray,
+    theta2: FloatArray,
+    direction: FloatArray,
+    assembly: FloatArray,
+) -> FloatArray:
+    """A quantity of `ALONG` or `DEVIATIONS` of many linkages (n,), given as for `magnitudes`, as screened."""
+    ways = points, theta2, direction, assembly
+    if key in DEVIATIONS:
+        return DEVIATIONS[key](torque_misses(scaled, *ways))
+    found: FloatArray = value_of(key, magnitudes(scaled, key, *ways, SCREENED).max(axis=1))
+    return found
+
+
 def magnitudes(
     scaled: ScaledProblem,
     key: str,
@@ -101,20 +118,50 @@ def magnitudes(
     P at the first target (n, 5) in sizes, driver angles in the order of visit (n, N) in rad, direction and
     assembly (n,).
     """
-    problem, kind = scaled.problem, scaled.kind
-    ground, lengths, arm = kind.sides(points[:, None])
-    o2 = points[:, :1]
-    last = theta2[:, 0] + direction * TURN if problem.task.closed else theta2[:, -1]
-    share = np.linspace(0, 1, count)
-    ends = theta2[:, :1], last[:, None]
+    ends = _ends(scaled, theta2, direction)
     with np.errstate(all="ignore"):
-        driver = driver_at(*drive_of(problem), share, *ends, direction[:, None])
-        base, along, point = (Vector(each.real, each.imag) for each in (o2, ground, arm))
-        at = kind.instant(base, along, lengths, point, assembly[:, None], driver)
-        values = ALONG[key](at, Loading.of(problem), middle_of(problem.requirements, key))
+        driver = driver_at(*drive_of(scaled.problem), np.linspace(0, 1, count), *ends)
+        middle = middle_of(scaled.problem.requirements, key)
+        values = ALONG[key](_instants(scaled, points, assembly, driver), Loading.of(scaled.problem), middle)
         found = [np.hypot(v.x, v.y) if isinstance(v, Vector) else np.abs(v) for v in values]
     greatest: FloatArray = np.nan_to_num(np.max(found, axis=0), nan=np.inf)
     return greatest
+
+
+def torque_misses(
+    scaled: ScaledProblem,
+    points: ComplexArray,
+    theta2: FloatArray,
+    direction: FloatArray,
+    assembly: FloatArray,
+) -> FloatArray:
+    """Drive torques minus the wanted ones (n, K) of linkages given as for `magnitudes`, reference torques."""
+    curve = WantedCurve.of(scaled.problem)
+    if curve is None:
+        raise TypeError("a problem without a wanted torque has no deviation from it")
+    first, last, sense = _ends(scaled, theta2, direction)
+    at_targets = theta2[:, curve.targets] if curve.over == "target" else None
+    with np.errstate(all="ignore"):
+        driver = curve.moment(np.array(curve.places), first, last, sense, at_targets)
+        at = _instants(scaled, points, assembly, driver)
+        misses: FloatArray = np.nan_to_num(curve.miss(at, sense, np.array(curve.torques)), nan=np.inf)
+    return misses
+
+
+def _ends(
+    scaled: ScaledProblem, theta2: FloatArray, direction: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """First and last driver angle of the task motions, and their sense, (n, 1) each."""
+    closed = scaled.problem.task.closed
+    last = theta2[:, 0] + direction * TURN if closed else theta2[:, -1]
+    return theta2[:, :1], last[:, None], direction[:, None]
+
+
+def _instants(scaled: ScaledProblem, points: ComplexArray, assembly: FloatArray, driver: Moment) -> Instant:
+    """Linkages (n,) at the angles of their drivers (n, K)."""
+    ground, lengths, arm = scaled.kind.sides(points[:, None])
+    base, along, point = (Vector(each.real, each.imag) for each in (points[:, :1], ground, arm))
+    return scaled.kind.instant(base, along, lengths, point, assembly[:, None], driver)
 
 
 def overlooked(

@@ -15,6 +15,8 @@ from grashof.problems.values.arrays import TURN, FloatArray, IntArray
 from grashof.problems.values.dynamics.motor import MotorSpec
 from grashof.synth.loop.instant import Moment
 
+_HALVINGS = 60  # to the last digit
+
 
 def driver_at(motor: MotorSpec | None, omega2: Any, share: Any, first: Any, last: Any, sense: Any) -> Moment:
     """The driver at shares (0 to 1) of the time from the first target to the last; no motor is steady speed.
@@ -34,6 +36,18 @@ def drive_of(problem: Problem) -> tuple[MotorSpec | None, float]:
     """The motor of a problem and its mean speed, rad/s."""
     spec = problem.dynamics
     return (None, 1.0) if spec is None else (spec.motor, spec.omega2)
+
+
+def time_of(motor: MotorSpec | None, ways: FloatArray) -> FloatArray:
+    """Shares of the time at which the driver has done shares of its way, shape (K,), by halving."""
+    if motor is None or motor.steady:
+        return ways
+    low, high = np.zeros(len(ways)), np.ones(len(ways))
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        below = _profile(motor, middle)[0] < ways
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.where(ways <= 0, 0.0, np.where(ways >= 1, 1.0, (low + high) / 2))
 
 
 def _lasts(motor: MotorSpec) -> float:

@@ -16,6 +16,7 @@ from grashof.synth.quantities.formulas import Formulas, Part, parts_of, range_of
 from grashof.synth.quantities.kind import Kind
 from grashof.synth.quantities.regions import hull_parts, pairs_of
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.wanted_torque import WantedCurve
 
 PROPORTIONS = 3  # unknowns of every kind; of slider kinds the last one does nothing
 STEEPEST = 80.0  # deg, the greatest transmission angle by construction: beyond, cranks are too short
@@ -39,6 +40,8 @@ class SearchTargets:
     outputs: FloatArray | None = None
     formulas: Formulas | None = None  # by default those of the kind
     spare: float = 0.0  # share by which limits are narrower here
+    torque: WantedCurve | None = None  # wanted, where the deviation from it counts as an error
+    count: int = 0  # of the targets of the task, by which it counts
     # field, part and range of all that is limited and has a formula
     limited: tuple[tuple[str, Part, Limits], ...] = field(init=False, repr=False)
 
@@ -60,6 +63,7 @@ class SearchTargets:
     def of(cls, scaled: ScaledProblem) -> SearchTargets:
         """The targets of a problem; a last point that repeats the first counts as its second half."""
         last = -1 if scaled.problem.task.returns else None
+        curve = WantedCurve.of(scaled.problem)
         weights, turn_weights = scaled.weights[:last].copy(), scaled.turn_weights[:last].copy()
         if last:
             weights[0] += scaled.weights[-1]
@@ -74,6 +78,8 @@ class SearchTargets:
             closed=scaled.closed,
             exact=scaled.exact,
             kind=scaled.kind,
+            torque=curve if curve is not None and curve.weight else None,
+            count=len(scaled.targets),
         )
 
     @property

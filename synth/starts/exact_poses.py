@@ -21,6 +21,7 @@ from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import Screened
 from grashof.synth.starts.coupler_search import searched_round
+from grashof.synth.starts.deviation_descent import nearer_to_torque, seeks_torque
 from grashof.synth.starts.dyad_pairs import near_misses, screen
 from grashof.synth.starts.finder import StartFinder
 from grashof.synth.starts.parallelograms import parallelogram_obstacle, parallelogram_starts, parallelograms
@@ -188,6 +189,8 @@ class FewPoses(DyadPairs):
         sideways = parallelogram_starts(scaled, enough, rng) if self.motion.translates else []
         dyads = self.dyads(rng)
         pairs = self.pairs(dyads)
+        if seeks_torque(scaled) and len(scaled.targets) < 4:
+            pairs = Screened.joined([nearer_to_torque(scaled, self.motion, pairs), pairs])
         feasible = pairs[pairs.feasible]
         starts = feasible_starts(scaled, feasible, enough)
         if len(starts) < enough:

@@ -78,7 +78,9 @@ class LeastSquares(CouplerSearch):
         some, index = thinned(target, FEW_TARGETS)
         drawn = draw(some, size * (TIMED_DRAWS if target.timed else DRAWS), rng, ASTRAY)
         best = _best_fitting(some, drawn, size)
-        free = _free_round(scaled, _on_all_targets(target, index, best, size), size)
+        # the deviation from a wanted torque depends on the place
+        unbound = target.torque is None
+        free = _free_round(scaled, _on_all_targets(target, index, best, size), size) if unbound else None
         return free or _limited_round(scaled, rng, drawn, best, size)
 
 
@@ -248,7 +250,7 @@ def _distinct(placed: Placed) -> IntArray:
 def _start(scaled: ScaledProblem, linkages: Screened, error: FloatArray, index: int) -> Start:
     start = Start.of_screened(linkages, index, scaled.objective)
     fitted = _all_fitted(SearchTargets.of(scaled)) and not scaled.every_constraint
-    met = bool(linkages.feasible[index]) and linkages.error[index] < FOUND
+    met = bool(linkages.feasible[index]) and max(linkages.error[index], error[index]) < FOUND
     return replace(start, expected_error=float(error[index])).under(settled=met or fitted)
 
 

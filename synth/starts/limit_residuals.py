@@ -70,6 +70,12 @@ class Placement(View):
         lengths = (each[:, None] for each in (np.ones_like(loop.r2), loop.r2, loop.r3, loop.r4))
         self.turns = required | target.kind.dyad.turns_fully(Sizes(*lengths))
 
+    @property
+    def normal(self) -> Vector:  # type: ignore[override]
+        """The unit vector along the ground line, or across a slide."""
+        along: Vector = self._ground / self.r1
+        return along
+
     @cached_property
     def a(self) -> Vector:  # type: ignore[override]
         """A at every target."""

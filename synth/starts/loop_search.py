@@ -30,6 +30,7 @@ from grashof.synth.starts.closed_loop import (
     by_theta3_of,
 )
 from grashof.synth.starts.limit_residuals import Placement, oversteps
+from grashof.synth.starts.torque_residuals import torque_residuals
 from grashof.synth.theory.stopping import raise_if_overdue, stop_requested
 
 # Consecutive steps that reduce the error by less than this share end the work on a linkage.
@@ -264,7 +265,7 @@ def fitting(target: SearchTargets) -> Model:
 
 
 def within_limits(target: SearchTargets, weight: float) -> Model:
-    """The error under limits, for batches with their places among the unknowns (see `with_places`).
+    """The error, also in torque, under limits, for batches with places among the unknowns (`with_places`).
 
     Overstepping a limit by one unit counts as an error of `weight`, in sizes.
     """
@@ -286,8 +287,15 @@ def within_limits(target: SearchTargets, weight: float) -> Model:
                 slope[..., width - PLACES + 2 * k] = root * spanned
                 slope[..., width - PLACES + 2 * k + 1] = 1j * root * spanned
             error = np.where(loop.closes, (np.abs(residual) ** 2).sum(axis=1), np.inf)
-            return _joined(
-                target, Placement(target, loop, by_theta2, by_theta3, z, by_z), residual, slope, weight, error
+            at = Placement(target, loop, by_theta2, by_theta3, z, by_z)
+            cost, missed, by_unknowns = _joined(target, at, residual, slope, weight, error)
+            if target.torque is None:
+                return cost, missed, by_unknowns
+            misses, by_misses = torque_residuals(target, at, batch.assembly, batch.direction)
+            return (
+                cost + (misses**2).sum(axis=1),
+                np.concatenate([missed, misses], axis=1),
+                np.concatenate([by_unknowns, by_misses], axis=1),
             )
 
     return model

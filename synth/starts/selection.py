@@ -8,14 +8,16 @@ from grashof.problems.values.arrays import FloatArray, IntArray
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.synth.programme.start import Start
 from grashof.synth.programme.user_functions import own_score
-from grashof.synth.quantities.along_motion import ALONG, SCREENED, magnitudes, value_of
+from grashof.synth.quantities.along_motion import ALONG, along_motion
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.quantities.screening import GROUPS, Many, Screened
+from grashof.synth.quantities.wanted_torque import DEVIATIONS
 from grashof.synth.theory.distinct import best_first, pick_apart, signature
 from grashof.synth.theory.stopping import raise_if_overdue
 
 POOL = 6000  # linkages among which starts are picked
 PEAKS, PEAK_SPACING = 8, 0.25
+VALLEYS = 24  # of deviations, which have more local optima than other goals
 SPACINGS = (0.5, 0.35, 0.25, 0.18, 0.12, 0.08, 0.06, 0.04, 0.03, 0.02, 0.015)
 MISSES, MISS_SPACING = 40, 0.05  # starts from near misses, the nearest first
 SETS, EACH = 3, 5  # sets of requirements that are missed by least, and starts of each
@@ -25,7 +27,7 @@ NEARLY = 0.1  # linkages that violate no more are also spread over, for variety
 
 
 def feasible_starts(
-    scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int = PEAKS, closer: float = 1.0
+    scaled: ScaledProblem, linkages: Screened, enough: int, peaks: int | None = None, closer: float = 1.0
 ) -> list[Start]:
     """Starts from feasible linkages: the best well separated ones first (`peaks`), free to climb.
 
@@ -34,6 +36,8 @@ def feasible_starts(
     """
     if not len(linkages):
         return []
+    if peaks is None:
+        peaks = PEAKS if DEVIATIONS.keys().isdisjoint(scaled.problem.objective.goals) else VALLEYS
     every = scores(scaled, linkages)
     pool = _pool(every)
     linkages, score = linkages[pool], every[pool]
@@ -166,10 +170,9 @@ def _worth(scaled: ScaledProblem, linkages: Screened, key: str) -> FloatArray:
         known = [0, 1, 2, 3, 4] if "o4" in scaled.kind.linkage.mechanism.ground else [0, 2, 3, 4]
         points = linkages.points[:, known]
         worth = -np.hypot(np.ptp(points.real, axis=1), np.ptp(points.imag, axis=1))
-    elif key in ALONG:
+    elif key in (*ALONG, *DEVIATIONS):
         ways = linkages.theta2, linkages.direction, linkages.assembly
-        peak = magnitudes(scaled, key, linkages.points, *ways, SCREENED).max(axis=1)
-        worth = QUANTITIES[key].better * value_of(key, peak)
+        worth = QUANTITIES[key].better * along_motion(scaled, key, linkages.points, *ways)
     elif key in scaled.kind.formulas:
         (part,) = scaled.kind.formulas[key]
         o2, o4, a, b, p = linkages.points.T

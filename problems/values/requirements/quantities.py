@@ -34,6 +34,7 @@ class Needs(Enum):
 
     NOTHING = "nothing"
     DYNAMICS = "dynamics"
+    WANTED_TORQUE = "torque.wanted"
     MANUFACTURING = "manufacturing"
     CLOSED = "a closed path"
     LEAST_SQUARES = "exact = false"
@@ -302,6 +303,14 @@ MEASURED: dict[str, Quantity] = {
             about=_SYNCHRONY, full="synchrony error of the outputs",
         ),
         *(_move(name) for name in DIMENSIONS if name not in _FIRST.dimensions),
+        *(
+            Quantity(
+                f"torque_deviation{key}", f"torque deviation{end}", Unit.TORQUE, Scope.TASK, -1,
+                Needs.WANTED_TORQUE, digits=3, about="at the rows of torque.wanted",
+                words=f"deviation from the wanted torque{words}",
+            )
+            for key, end, words in (("", "", RMS), ("_max", ", max", " where it is greatest"))
+        ),
         *(_length(name, name.replace("_", " "), needs=Needs.CYLINDER) for name in Cylinder.COLUMNS),
         _length(
             "cylinder_closed", "closed cylinder", over=Scope.TASK, needs=Needs.CYLINDER, digits=4,

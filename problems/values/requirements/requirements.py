@@ -205,6 +205,8 @@ class Requirements(ReadOnly):
     output_acceleration_max: Limits | None = between("output_acceleration_max")
     torque_peak: Limits | None = between("torque_peak")
     torque_rms: Limits | None = between("torque_rms")
+    torque_deviation: Limits | None = between("torque_deviation")
+    torque_deviation_max: Limits | None = between("torque_deviation_max")
     joint_force_peak: Limits | None = between("joint_force_peak")
     coupler_fit_r2: Limits | None = between("coupler_fit_r2", -GREATEST, 1.0)
     hausdorff: Limits | None = between("hausdorff")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, get_type_hints
 
@@ -13,6 +13,7 @@ from grashof.problems.values import checks
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec, metres, reference_torque
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
+from grashof.problems.values.dynamics.wanted_torque import WantedTorque
 from grashof.problems.values.errors import ProblemError, shown, wrong_value
 from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanisms import (
@@ -21,7 +22,7 @@ from grashof.problems.values.linkages.mechanisms import (
     mechanisms,
     spelt_out,
 )
-from grashof.problems.values.requirements import task_limits
+from grashof.problems.values.requirements import task_limits, torque_limits
 from grashof.problems.values.requirements.all_quantities import QUANTITIES
 from grashof.problems.values.requirements.function_ground import grounded
 from grashof.problems.values.requirements.modes import Rotatability
@@ -36,6 +37,7 @@ from grashof.problems.values.requirements.quantities import (
 from grashof.problems.values.requirements.requirements import LIMITS, Requirements
 from grashof.problems.values.requirements.task_limits import stated_size, strokes_wrong
 from grashof.problems.values.specs.dynamics_of_kind import misplaced
+from grashof.problems.values.specs.needs import NEEDED, NO_OUTPUT, OF_OUTPUTS
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.units import Unit
 from grashof.problems.values.value_bases import ReadOnly, check_fields, set_fields
@@ -109,6 +111,8 @@ class Problem(ReadOnly):
         The kinds of linkages that may do it, such as ("four-bar", "slider-crank"); one list of all.
     driver : CylinderSpec, optional
         The cylinder that drives the linkage, in place of a crank on link 2.
+    torque : WantedTorque, optional
+        The drive torque that is wanted; the deviation from it is then the usual objective.
     """
 
     task: Task
@@ -124,10 +128,12 @@ class Problem(ReadOnly):
     dynamics: DynamicsSpec | None = None
     mechanism: Sequence[str] = ()  # by default the usual one of the task
     driver: CylinderSpec | None = None
+    torque: WantedTorque | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.task, Task) and self.objective is None:
-            set_fields(self, objective=Objective(**self.task.usual_objective))
+        usual = self.objective is None
+        if usual:
+            set_fields(self, objective=Objective())
         for name, kind in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise ProblemError(f"problem.{name} is {shown(value)}; it must be {_named(kind)}")
@@ -140,6 +146,8 @@ class Problem(ReadOnly):
         set_fields(self, mechanism=spelt_out(given, self._unsuited))
         checks.refuse([line for word in self.mechanism if (line := Task.impossible(self.task, word))])
         set_fields(self, requirements=self._met_by_all_kinds())
+        if usual:
+            set_fields(self, objective=self.usual_objective)
         if isinstance(self.outlines, str) or not isinstance(self.outlines, Iterable):
             raise wrong_value("scene.outlines", self.outlines, "a list of outlines")
         wrong: list[str] = []
@@ -159,8 +167,11 @@ class Problem(ReadOnly):
         wrong += self._not_of_these_kinds()
         wrong += self._without_value()
         wrong += task_limits.requirements_wrong(self.task, self.requirements, self.mechanism)
-        if self.objective != Objective(**self.task.usual_objective) and not self.by_objective:
+        if self.objective != self.usual_objective and not self.by_objective:
             wrong.append(NO_OBJECTIVE)
+        if self.torque is not None:
+            stated = self.task, self.requirements, self.dynamics, self.mechanism
+            wrong += torque_limits.wrong(self.torque, *stated)
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
@@ -194,8 +205,8 @@ class Problem(ReadOnly):
         wrong = []
         for where, quantity in used.items():
             if not self.states(quantity.needs):
-                without = quantity.needs in _OUTPUTS and not self.task.has_output.any()
-                line = _NO_OUTPUT if without else _NEEDED[quantity.needs][1]
+                without = quantity.needs in OF_OUTPUTS and not self.task.has_output.any()
+                line = NO_OUTPUT if without else NEEDED[quantity.needs][1]
                 wrong.append(f"{line.format(kind=self.task.kind, both=both)}; {where} needs it")
         wrong += task_limits.without_meaning(self.task, self.requirements, used)
         if not self.requirements.same_branch:
@@ -253,8 +264,8 @@ class Problem(ReadOnly):
         if kind not in ROCKERS and wanted.rotatability in ROCKING:
             wanted = replace(wanted, rotatability=Rotatability.FULL_CRANK)
         weights = {name: w for name, w in self.objective.stated.items() if kind in GOALS[name].kinds}
-        usual = Objective(**self.task.usual_objective)
-        objective = Objective(**{"transmission": 0.0} | weights) if any(weights.values()) else usual
+        given = any(weights.values())
+        objective = Objective(**{"transmission": 0.0} | weights) if given else self.usual_objective
         if kind in BLOCKS and objective == Objective() and self.by_objective:
             objective = SMALLEST
         return replace(self, mechanism=(kind,), requirements=wanted, objective=objective)
@@ -265,13 +276,20 @@ class Problem(ReadOnly):
 
     def states(self, needs: Needs) -> bool:
         """Whether it states the parts that a quantity needs to have a value."""
-        return needs not in _NEEDED or _NEEDED[needs][0](self)
+        return needs not in NEEDED or NEEDED[needs][0](self)
 
     @property
     def goals(self) -> tuple[tuple[Quantity, float], ...]:
         """Quantities of the objective and their weights; the transmission angle over the motion required."""
         goals = self.objective.goals.items()
         return tuple((self.as_required(QUANTITIES[key]), weight) for key, weight in goals)
+
+    @property
+    def usual_objective(self) -> Objective:
+        """The objective where none is stated."""
+        if self.torque is not None and self.by_objective:
+            return Objective(0.0, torque_deviation=1.0)
+        return Objective(**self.task.usual_objective)
 
     @property
     def by_objective(self) -> bool:
@@ -354,42 +372,3 @@ class Problem(ReadOnly):
 
 _LISTED = ("outlines", "mechanism")  # with checks of their own
 _KINDS = {name: kind for name, kind in get_type_hints(Problem).items() if name not in _LISTED}
-_NO_OUTPUT = '{kind} states no output; kind = "function" does'
-_NO_DWELL = '{kind} states no such dwell; kind = "dwell" does, with swing_deg or stroke'
-_NOT_TWO = "{kind} states no two outputs; two tables [[stroke]] do"
-_OUTPUTS = (Needs.OUTPUTS, Needs.ROTATION, Needs.TRAVEL)
-# Test that a problem states the data for a need, and the error otherwise; other needs are always met.
-_NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
-    Needs.DYNAMICS: (lambda problem: problem.dynamics is not None, "dynamics is missing"),
-    Needs.MANUFACTURING: (lambda problem: problem.manufacturing is not None, "manufacturing is missing"),
-    Needs.CLOSED: (lambda problem: problem.task.closed, "{kind}.closed is false; it must be true"),
-    Needs.LEAST_SQUARES: (
-        lambda problem: not problem.requirements.is_exact(problem.task),
-        "requirements.exact = false is missing",
-    ),
-    Needs.ANGLES: (lambda problem: bool(problem.task.has_angle.any()), "{kind} has no angles"),
-    Needs.CYLINDER: (lambda problem: problem.driver is not None, "driver.cylinder is missing"),
-    Needs.LOADED_CYLINDER: (
-        lambda problem: problem.driver is not None and problem.dynamics is not None,
-        "{both}",
-    ),
-    Needs.OUTPUTS: (lambda problem: bool(problem.task.has_output.any()), _NO_OUTPUT),
-    Needs.ROTATION: (
-        lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
-        "function has an output that slides, not one that turns",
-    ),
-    Needs.TRAVEL: (
-        lambda problem: problem.task.travels,
-        "function has an output that turns, not one that slides",
-    ),
-    Needs.TWO_OUTPUTS: (lambda problem: problem.task.swings is not None, _NOT_TWO),
-    Needs.DWELL: (lambda problem: problem.task.dwell is not None, _NO_DWELL),
-    Needs.DWELL_OF_LINK: (
-        lambda problem: problem.task.dwell is not None and problem.task.swing is not None,
-        _NO_DWELL,
-    ),
-    Needs.DWELL_OF_SLIDE: (
-        lambda problem: problem.task.dwell is not None and problem.task.stroke is not None,
-        _NO_DWELL,
-    ),
-}

@@ -19,6 +19,7 @@ from grashof.analysis import (
     stated_masses,
 )
 from grashof.analysis.judge.over_task import driver_law, motion_ends
+from grashof.analysis.judge.wanted_torque import places_of
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import Scene, bodies_of
 from grashof.page.render import compact, plain
@@ -185,6 +186,7 @@ def designs_of(problem: Problem, designs: Sequence[Candidate], rows: Sequence[Ro
             if design.verdict.branch_ok
             else None,
             "torque": torque,
+            **_wanted(problem, design.verdict, ahead),
             **cylinder_data(design.verdict.cylinder, design.values["cylinder_closed"]),
             **_function(problem, linkage, design),
             "figures": {key: plain(value) for key, value in figures.items()},
@@ -216,6 +218,14 @@ def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str
     }
     names = {"title": problem.task.output_words, "unit": problem.task.counted_in.of(problem.length_unit)}
     return {"function": names | {name: compact(values.tolist()) for name, values in columns.items()}}
+
+
+def _wanted(problem: Problem, verdict: Verdict, ahead: float) -> dict[str, Any]:
+    """Driver angles and wanted torques there, counter-clockwise; empty without them."""
+    if problem.torque is None or not verdict.branch_ok:
+        return {}
+    theta2 = places_of(problem.torque, problem, verdict) - ahead
+    return {"wanted": [theta2.tolist(), (verdict.direction * problem.torque.torques).tolist()]}
 
 
 def _torques(problem: Problem, drawn: Sequence[_Drawn]) -> list[list[float | None] | None]:

@@ -21,6 +21,7 @@ from grashof.problems import (
     StrokeTask,
     TandemTask,
     Task,
+    WantedTorque,
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
@@ -47,8 +48,10 @@ _KEYS = (
     "error_max", "error_rms", "structural_error_max", "structural_error_rms", "transmission_min_task",
     "transmission_min_cycle", "band", "slide_band", "band_made", "slide_band_made", "swing",
     "swing_4", "swing_6", "time_ratio_4", "time_ratio_6", "synchrony_error",
-    "driver_rotation", "output_swing", "stroke", "time_ratio", "size", "torque_peak",
+    "driver_rotation", "output_swing", "stroke", "time_ratio", "size", "torque_peak", "torque_deviation",
 )  # fmt: skip
+
+FEW_ROWS = 4  # of a wanted torque, all of which a summary states
 
 
 def ends_with_enough(problem: Problem) -> bool:
@@ -60,10 +63,16 @@ def ends_with_enough(problem: Problem) -> bool:
 def error_meaning(problem: Problem) -> str:
     """Explanation of a least-squares error that includes angles; empty for others."""
     task = problem.task
-    if problem.requirements.is_exact(task) or not task.has_angle.any():
+    if problem.requirements.is_exact(task):
         return ""
     unit = f" {problem.length_unit}" if problem.length_unit else ""
-    return f"of positions and angles together, 1 rad counted as {task.angle_length:.6g}{unit}"
+    counted_as = [f"1 rad counted as {task.angle_length:.6g}{unit}"] if task.has_angle.any() else []
+    parts, torque = ["positions", *(["angles"] if counted_as else [])], problem.torque
+    if torque is not None and torque.weight:
+        parts.append("torques")
+        length = torque.weight * task.size / torque.greatest
+        counted_as.append(f"1 N m {'' if len(counted_as) else 'counted '}as {length:.6g}{unit}")
+    return f"of {listing(parts, 'and')} together, {' and '.join(counted_as)}" if counted_as else ""
 
 
 def goals(problem: Problem) -> str:
@@ -100,6 +109,8 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}{band}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
+    if problem.torque is not None:
+        lines.append(f"  {_torque(problem.torque)}")
     if problem.driver is not None:
         lines.append(f"  {_cylinder(problem.driver, unit)}")
     return [*lines, f"  best: {_best(problem)}", f"  search: {_search(problem)}"]
@@ -200,6 +211,15 @@ def _search(problem: Problem) -> str:
     enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
     effort = f", effort {search.effort:g}" if search.effort != 1 else ""
     return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
+
+
+def _torque(torque: WantedTorque) -> str:
+    """A wanted drive torque."""
+    places = {"driver": "{:g} deg", "share": "share {:g}", "target": "target {:g}"}[torque.over]
+    ends = [f"{value:g} N m at {places.format(place)}" for place, value in torque.wanted]
+    few = ends if len(ends) <= FEW_ROWS else [ends[0], "...", ends[-1]]
+    counted_as = f"; the greatest counts as {torque.weight:g} sizes" if torque.weight else ""
+    return f"wanted torque: {', '.join(few)}{counted_as}"
 
 
 def _driven(spec: DynamicsSpec) -> str:

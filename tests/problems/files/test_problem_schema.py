@@ -91,6 +91,8 @@ point_acceleration_max = [0, 9]
 output_acceleration_max = [0, 9]
 torque_peak = [0, 9]
 torque_rms = [0, 9]
+torque_deviation = [0, 9]
+torque_deviation_max = [0, 9]
 joint_force_peak = [0, 9]
 coupler_fit_r2 = [0.5, 1]
 hausdorff = [0, 9]
@@ -111,6 +113,8 @@ slide_angle_deg = 30
 stroke = [4, 5]
 [dynamics]
 payload = 1
+[torque]
+wanted = [[0, 5], [90, -5]]
 [manufacturing]
 length_tolerance = 0.1
 """

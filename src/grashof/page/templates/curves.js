@@ -158,7 +158,9 @@ function showTravel(design, closed, transmission, torque) {
   if (torque && design.torque) {
     const sampled = travelAngles(design).map((angle) => angle * DEG);
     const drive = { title: "Drive torque", unit: "N m", driver, places: sampled, angles: sampled };
-    torque.show({ ...drive, series: [{ label: "T", values: design.torque }] }, options);
+    const wanted = design.wanted && [design.wanted[0].map((angle) => within(design, angle) * DEG), design.wanted[1]];
+    const points = wanted ? [{ label: "wanted", xy: wanted }] : [];
+    torque.show({ ...drive, series: [{ label: "T", values: design.torque }], points }, options);
   }
   return { places, states, options };
 }

@@ -1,0 +1,235 @@
+"""Wanted torques against searches of their own with ten times the effort, which share nothing with `synth`.
+
+Three poses are met by circles through three places of each joint, and the joints move by a simplex search;
+points and torques together are fitted by `independent_search.py`. A torque is there the slope of a potential.
+The judge has the last word on both.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from time import perf_counter
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from independent_search import STARTS, elbow, search
+from measuring import Case
+from potential import Potential
+from scipy.optimize import minimize
+
+from grashof import synthesize
+from grashof.analysis import verify
+from grashof.analysis.judge.measures import Values
+from grashof.analysis.judge.planted import planted_motion
+from grashof.problems import (
+    DynamicsSpec,
+    FourBar,
+    PathTask,
+    Problem,
+    ProblemError,
+    Requirements,
+    WantedTorque,
+)
+from grashof.problems.values.arrays import TURN, ComplexArray, FloatArray
+from grashof.problems.values.dynamics.load_specs import LoadSpec, Place, SpringSpec
+
+EFFORT = 10  # times the time of the product
+SLOW = 1e-3  # rpm: no inertia to speak of
+ROWS, POINTS, NOISE, WEIGHT = 6, 8, 0.03, 0.1
+DRAWS, BEST, STEPS = 20_000, 12, 800
+SIMPLEX: Any = {"maxiter": STEPS, "maxfev": STEPS, "xatol": 1e-9, "fatol": 1e-12}
+MISSED = 1e6
+STEP = 1e-4  # rad
+WITHIN = 1.02
+
+
+def loaded(rng: np.random.Generator, count: int) -> Problem:
+    """Poses of a linkage with bars, a payload, a force and a spring, and a torque wanted at random."""
+    task, _ = planted_motion(rng, count)
+    size = task.size
+    places = [tuple(rng.uniform(-far * size, far * size, 2).tolist()) for far in (2, 1, 0.5)]
+    spec = DynamicsSpec(
+        mass_per_length=float(rng.uniform(0.5, 3)), payload=float(rng.uniform(5, 40)), speed_rpm=SLOW,
+        gravity=(0, -9.80665),
+        loads=(LoadSpec(3, at=places[2], force=tuple(rng.uniform(-200, 200, 2).tolist())),),
+        springs=(
+            SpringSpec((Place(1, places[0]), Place(3, places[1])), float(rng.uniform(50, 500)), 0.3 * size),
+        ),
+    )  # fmt: skip
+    torques = 100 * size * (rng.normal() + np.cumsum(0.4 * rng.normal(size=ROWS)))
+    rows = tuple(zip(np.linspace(0, 1, ROWS).tolist(), torques.tolist(), strict=True))
+    return Problem(task=task, length_unit="m", dynamics=spec, torque=WantedTorque(rows, "share"))
+
+
+@dataclass(frozen=True, slots=True)
+class Circles:
+    """Linkages through three poses, from A and B at the first (B, 4), in sizes about the middle."""
+
+    problem: Problem
+    potential: Potential
+    points: ComplexArray
+    turns: ComplexArray
+
+    @classmethod
+    def of(cls, problem: Problem) -> "Circles":
+        """Those of a problem."""
+        task, potential = problem.task, Potential.of(problem)
+        points = (task.positions @ np.array([1, 1j]) - potential.middle) / potential.size
+        return cls(problem, potential, points, np.exp(1j * task.angles))
+
+    def at_poses(self, joint: ComplexArray) -> ComplexArray:
+        """A joint (B,) at every pose, (B, 3)."""
+        turned: ComplexArray = (joint - self.points[0])[:, None] * self.turns / self.turns[0]
+        return turned + self.points
+
+    def deviations(self, x: FloatArray, sense: int) -> FloatArray:
+        """Deviations (rms) as shares of the greatest wanted torque, infinite where limits are missed."""
+        a, b = (self.at_poses(x[:, k] + 1j * x[:, k + 1]) for k in (0, 2))
+        with np.errstate(all="ignore"):
+            o2, o4 = centre(a), centre(b)
+            r1, r2, r3, r4 = (
+                np.abs(each) for each in (o4 - o2, a[:, 0] - o2, b[:, 0] - a[:, 0], b[:, 0] - o4)
+            )
+            side = np.sign(((o4[:, None] - a).conj() * (b - a)).imag)
+            theta2 = np.angle(a - o2[:, None])
+            steps = (sense * np.diff(theta2, axis=1)) % TURN
+            theta2 = theta2[:, :1] + sense * np.concatenate(
+                [0 * steps[:, :1], np.cumsum(steps, axis=1)], axis=1
+            )
+            lengths = np.stack([r1, r2, r3, r4], axis=1)
+            margin = 1.001e-3 * lengths.sum(axis=1)
+            arms = np.abs(np.stack([x[:, 0] + 1j * x[:, 1], x[:, 2] + 1j * x[:, 3]], axis=1) - self.points[0])
+            sound = (
+                (side == side[:, :1]).all(axis=1) & (steps.sum(axis=1) < TURN) & (lengths > 0.01).all(axis=1)
+                & (lengths < 20).all(axis=1) & (lengths.max(axis=1) < 20 * lengths.min(axis=1))
+                & (r3 + r4 - r1 - r2 > margin) & (np.abs(r1 - r2) - np.abs(r3 - r4) > margin)
+                & (arms < 30).all(axis=1)
+            )  # fmt: skip
+            inside = theta2[:, :1] + self.potential.shares * (theta2[:, -1:] - theta2[:, :1])
+            arm = (self.points[0] - a[:, :1]) / (b - a)[:, :1] * r3[:, None]
+
+            def energy(by: float) -> FloatArray:
+                at_a = o2[:, None] + r2[:, None] * np.exp(1j * (inside + by))
+                along = elbow(o4[:, None] - at_a, r3[:, None], r4[:, None], side[:, :1])
+                at_b = at_a + along
+                return self.potential.energy(SimpleNamespace(
+                    a=at_a, b=at_b, p=at_a + arm * along / r3[:, None], o2=o2[:, None], o4=o4[:, None],
+                    r2=r2[:, None], r3=r3[:, None], r4=r4[:, None],
+                ))  # fmt: skip
+
+            slope = sense * (energy(STEP) - energy(-STEP)) / (2 * STEP)
+            missed = np.sqrt(((self.potential.weight * (slope - self.potential.torques)) ** 2).sum(axis=1))
+        return np.where(sound & np.isfinite(missed), missed, np.inf)
+
+    @property
+    def unit(self) -> float:
+        """The greatest wanted torque, N m."""
+        return float(np.abs(self.potential.torques).max())
+
+    @property
+    def first(self) -> FloatArray:
+        """The guided point at the first pose, twice."""
+        return np.array([self.points[0].real, self.points[0].imag] * 2)
+
+    def deviation(self, x: FloatArray, sense: int) -> float:
+        """That of one of them, large where limits are missed."""
+        return float(min(self.deviations(x[None], sense)[0], MISSED))
+
+    def judged(self, x: FloatArray) -> float:
+        """The deviation of one of them in N m by the judge, infinite where that rejects it."""
+        try:
+            linkage = self.linkage(x)
+        except ProblemError:
+            return np.inf
+        problem = self.problem
+        verdict = verify(linkage, problem.task, problem.requirements, problem=problem)
+        return Values(linkage, verdict, problem)["torque_deviation"] if verdict.ok else np.inf
+
+    def linkage(self, x: FloatArray) -> FourBar:
+        """One of them in metres."""
+        a, b = (self.at_poses(x[None, k] + 1j * x[None, k + 1]) for k in (0, 2))
+        o2, o4 = centre(a)[0], centre(b)[0]
+        along = (b - a)[0, 0]
+        arm = (self.points[0] - a[0, 0]) * abs(along) / along * self.potential.size
+        size, middle = self.potential.size, self.potential.middle
+        pivots = [((each * size + middle).real, (each * size + middle).imag) for each in (o2, o4)]
+        assembly = int(np.sign(((o4 - a[0, 0]).conjugate() * along).imag))
+        r2, r3, r4 = (float(size * abs(each)) for each in (a[0, 0] - o2, along, b[0, 0] - o4))
+        turn = float(np.angle(self.turns[0] / along))
+        return FourBar(pivots[0], pivots[1], r2, r3, r4, (arm.real, arm.imag), assembly, turn)
+
+
+def centre(places: ComplexArray) -> ComplexArray:
+    """Centre of the circle through three places (B, 3)."""
+    one, two = places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]
+    found: ComplexArray = places[:, 0] - 1j * (np.abs(one) ** 2 * two - np.abs(two) ** 2 * one) / (
+        2 * (one.conj() * two).imag
+    )
+    return found
+
+
+def by_circles(problem: Problem, seconds: float, seed: int) -> float:
+    """The least deviation of a simplex search of that time, as the judge has it; N m."""
+    circles, rng, least = Circles.of(problem), np.random.default_rng(seed), np.inf
+    until = perf_counter() + seconds
+    while perf_counter() < until:
+        sense = int(rng.choice([-1, 1]))
+        x = np.exp(rng.uniform(-2.5, 1.5, (DRAWS, 1))) * rng.normal(size=(DRAWS, 4)) + circles.first
+        values = circles.deviations(x, sense)
+        best = np.argsort(values)[:BEST]
+        for start in x[best[np.isfinite(values[best])]]:
+            found = minimize(circles.deviation, start, (sense,), method="Nelder-Mead", options=SIMPLEX)
+            if found.fun * circles.unit < least:
+                least = min(least, circles.judged(found.x))
+    return float(least)
+
+
+def by_points(problem: Problem, seconds: float) -> float:
+    """The least error of rounds of the independent search in that time, m."""
+    until, least, tried = perf_counter() + seconds, np.inf, 0
+    while perf_counter() < until or not tried:
+        found = search(problem, STARTS, tried)
+        least, tried = min(least, np.inf if found is None else found.error), tried + 1
+    return float(least)
+
+
+def fitted(rng: np.random.Generator) -> Problem:
+    """Points that no linkage need pass, and a torque that none need have, fitted together."""
+    stated = loaded(rng, POINTS)
+    off = NOISE * stated.task.size * rng.normal(size=(POINTS, 2))
+    torque = WantedTorque(() if stated.torque is None else stated.torque.wanted, "share", WEIGHT)
+    task, wanted = PathTask(stated.task.positions + off), Requirements(exact=False)
+    return Problem(task=task, requirements=wanted, length_unit="m", dynamics=stated.dynamics, torque=torque)
+
+
+def compared(
+    count: int,
+    seed: int,
+    draw: Callable[[np.random.Generator], Problem],
+    key: str,
+    other: Callable[[Problem, float, int], float],
+) -> Iterator[str]:
+    """The least value of each task, and that of another search with ten times the time."""
+    worst = 0.0
+    for number in range(count):
+        problem = draw(np.random.default_rng([seed, number]))
+        begun = perf_counter()
+        result = synthesize(problem)
+        seconds, ours = perf_counter() - begun, result.best.values[key] if result else np.inf
+        theirs = other(problem, EFFORT * seconds, number)
+        worst = max(worst, ours / theirs)
+        yield f"task {number}: {ours:.6g} in {seconds:.1f} s, independent {theirs:.6g}, {ours / theirs:.4f}"
+    yield f"greatest ratio {worst:.4f}{' !' if worst > WITHIN else ''}"
+
+
+def poses(count: int, seed: int) -> Iterator[str]:
+    """Three poses met, and a torque that no linkage need have."""
+    yield from compared(count, seed, lambda rng: loaded(rng, 3), "torque_deviation", by_circles)
+
+
+def points(count: int, seed: int) -> Iterator[str]:
+    """Points and torques fitted together."""
+    yield from compared(count, seed, fitted, "error", lambda problem, seconds, _: by_points(problem, seconds))
+
+
+CASES = [Case("poses", 10, poses), Case("points", 10, points)]

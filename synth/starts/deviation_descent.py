@@ -1,0 +1,138 @@
+"""Linkages of two or three poses that come near a wanted torque: many at once, by what the poses leave free.
+
+The deviation has many local minima, and none of the sampled linkages need lie in the best one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems.values.arrays import BoolArray, ComplexArray, FloatArray
+from grashof.synth.programme.whole_screening import fully_screened
+from grashof.synth.quantities.along_motion import torque_misses
+from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.quantities.screening import GROUPS, Screened
+from grashof.synth.quantities.wanted_torque import DEVIATIONS, rms
+from grashof.synth.starts.dyad_pairs import judged_pairs
+from grashof.synth.theory.burmester import Displacements, Dyads, bisector_dyads, circle_dyads
+from grashof.synth.theory.stopping import raise_if_overdue
+
+# Linkages that are improved: the nearest, and some of the others, as the best may be far from its minimum;
+# numbers of those that continue, and their steps before that.
+KEPT, OTHERS = 300, 1200
+STAGES = ((300, 6), (300, 20))
+LONGEST = 0.3  # greatest change of a number in a step
+NUDGE = 1e-6
+_FREE = [number for number, name in enumerate(GROUPS) if name not in DEVIATIONS]
+
+
+def seeks_torque(scaled: ScaledProblem) -> bool:
+    """Whether a deviation from a wanted torque is a goal, or limited."""
+    limited = {limit.quantity.key for limit in scaled.wanted.limited.values()}
+    return not DEVIATIONS.keys().isdisjoint(limited | set(scaled.problem.objective.goals))
+
+
+def nearer_to_torque(scaled: ScaledProblem, motion: Displacements, linkages: Screened) -> Screened:
+    """Linkages that Levenberg-Marquardt makes of some through two or three poses, and the best as they are.
+
+    They keep all limits but those of the deviation. The numbers are the logarithms of AP and BP and, of two
+    poses, how far the ground pivots lie from the chords of A and B.
+    """
+    kept = linkages[_sound(linkages)]
+    deviation = _deviations(scaled, kept)
+    order = np.argsort(deviation, kind="stable")
+    best = kept[order[:KEPT]]
+    if not len(best):
+        return best
+    x = _numbers(scaled, motion, kept[np.concatenate([order[:KEPT], order[KEPT:][:: _stride(len(order))]])])
+    for keep, steps in STAGES:
+        x, deviation = _improved(scaled, motion, x, steps)
+        x = x[np.argsort(deviation, kind="stable")[:keep]]
+    return Screened.joined([_linkages(scaled, motion, x), best])
+
+
+def _stride(count: int) -> int:
+    """By which linkages are thinned that do not come near by themselves."""
+    return max(1, -(-(count - KEPT) // OTHERS))
+
+
+def _improved(
+    scaled: ScaledProblem, motion: Displacements, x: FloatArray, steps: int
+) -> tuple[FloatArray, FloatArray]:
+    """Numbers of linkages (n, M) after steps, and the sums of their squared misses (n,)."""
+    misses = _misses(scaled, _linkages(scaled, motion, x))
+    cost, damping = (misses**2).sum(axis=1), np.full(len(x), 1e-2)
+    for _ in range(steps):
+        raise_if_overdue()
+        slopes = _slopes(scaled, motion, x, misses)
+        normal = slopes @ slopes.swapaxes(1, 2)
+        scale = damping[:, None] * (np.einsum("sii->si", normal) + 1e-12)
+        damped = normal + scale[..., None] * np.eye(x.shape[1])
+        step = np.linalg.solve(damped, slopes @ misses[..., None])[..., 0]
+        tried = x - np.clip(step, -LONGEST, LONGEST)
+        there = _linkages(scaled, motion, tried)
+        new = np.where(_sound(there)[:, None], _misses(scaled, there), np.inf)
+        better = (new**2).sum(axis=1) < cost
+        x, misses = (np.where(better[:, None], one, other) for one, other in ((tried, x), (new, misses)))
+        cost = (misses**2).sum(axis=1)
+        damping = np.clip(np.where(better, damping / 4, damping * 4), 1e-12, 1e8)
+    return x, cost
+
+
+def _sound(linkages: Screened) -> BoolArray:
+    """Which keep all limits but those of the deviation."""
+    sound: BoolArray = linkages.violations[:, _FREE].max(axis=1, initial=0.0) <= 0
+    return sound
+
+
+def _misses(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    ways = linkages.theta2, linkages.direction, linkages.assembly
+    return torque_misses(scaled, linkages.points, *ways)
+
+
+def _deviations(scaled: ScaledProblem, linkages: Screened) -> FloatArray:
+    return rms(_misses(scaled, linkages))
+
+
+def _slopes(scaled: ScaledProblem, motion: Displacements, x: FloatArray, misses: FloatArray) -> FloatArray:
+    """Derivatives of the misses by the numbers, (n, M, K), zero where a linkage has none."""
+    slopes = []
+    for column in range(x.shape[1]):
+        moved = x.copy()
+        moved[:, column] += NUDGE
+        slopes.append((_misses(scaled, _linkages(scaled, motion, moved)) - misses) / NUDGE)
+    return np.nan_to_num(np.stack(slopes, axis=1), posinf=0.0, neginf=0.0)
+
+
+def _numbers(scaled: ScaledProblem, motion: Displacements, linkages: Screened) -> FloatArray:
+    """The numbers of linkages (n, M)."""
+    o2, o4, a, b, _ = linkages.points.T
+    columns = []
+    for joint, ground in ((a, o2), (b, o4)):
+        arm = np.log(joint - scaled.targets[0])
+        columns += [arm.real, arm.imag]
+        if len(motion.shift) == 2:
+            columns.append(np.arcsinh(((ground - _middle(motion, joint)) / _across(motion, joint)).real))
+    return np.stack(columns, axis=1)
+
+
+def _linkages(scaled: ScaledProblem, motion: Displacements, x: FloatArray) -> Screened:
+    """Linkages of numbers, and their violations."""
+    driver, driven = (_dyads(scaled, motion, part) for part in np.split(x, 2, axis=1))
+    with np.errstate(all="ignore"):
+        return fully_screened(scaled, judged_pairs(motion, scaled.targets[0], driver, driven, scaled.wanted))
+
+
+def _dyads(scaled: ScaledProblem, motion: Displacements, x: FloatArray) -> Dyads:
+    joint = scaled.targets[0] + np.exp(x[:, 0] + 1j * x[:, 1])
+    return circle_dyads(motion, joint) if x.shape[1] == 2 else bisector_dyads(motion, joint, np.sinh(x[:, 2]))
+
+
+def _middle(motion: Displacements, joint: ComplexArray) -> ComplexArray:
+    """Between the two places of a joint."""
+    return bisector_dyads(motion, joint, np.zeros(len(joint))).ground
+
+
+def _across(motion: Displacements, joint: ComplexArray) -> ComplexArray:
+    """The unit vector square to the way from one to the other."""
+    return bisector_dyads(motion, joint, np.ones(len(joint))).ground - _middle(motion, joint)
