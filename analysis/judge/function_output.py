@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from grashof.analysis.judge.meeting.function_start import Beginning, begins, moved_output, way_of
+from grashof.analysis.judge.meeting.function_start import (
+    Beginning,
+    begins,
+    moved_output,
+    output_rate,
+    way_of,
+)
+from grashof.analysis.judge.meeting.inputs import ByAngle, ByLength, input_of
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion
-from grashof.analysis.judge.verdict import Verdict
+from grashof.analysis.judge.verdict import Defect, Verdict
 from grashof.analysis.mechanism.position import solve_position
 from grashof.analysis.numerics.peaks import peaks
-from grashof.problems import Linkage, Requirements, Task, TransmissionOver
+from grashof.problems import Cylinder, Linkage, Requirements, Task, TransmissionOver
 from grashof.problems.values.arrays import TURN, FloatArray
 
 _DENSE = 721
 _GAUSS = 12  # points between two samples of the quadrature
+RATE_SLACK = 1e-9  # share of the greatest limit
 
 
 def output_error(
-    linkage: Linkage, task: Task, begun: Beginning, turned: FloatArray, sense: int
+    linkage: Linkage, task: Task, begun: Beginning, inputs: FloatArray, sense: int
 ) -> FloatArray:
-    """Generated less wanted output but for a constant, at growing driver rotations (K,), rad or length.
+    """Generated less wanted output but for a constant, at growing inputs (K,), rad or length.
 
     Positive where the output is ahead in the sense of the driver; NaN where the linkage cannot be assembled.
     """
-    state = solve_position(linkage, begun.theta2 + begun.direction * turned)
-    found: FloatArray = moved_output(task, state, begun.direction) - sense * task.output(turned)
+    state = solve_position(linkage, begun.driver_angles(inputs))
+    found: FloatArray = moved_output(task, state, begun.direction) - sense * task.output(inputs)
     return found
 
 
@@ -42,23 +51,23 @@ def structural_error(
     """
     senses = (1, -1) if task.sense == "either" else (1,)
     share = task.weights / task.weights.sum()
-    dense = np.unique(np.concatenate([task.driver_turns, np.linspace(*task.span, _DENSE)]))
+    dense = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, _DENSE)]))
     found = []
     for sense in senses:
         off = output_error(linkage, task, begun, dense, sense)
         if np.isnan(off).any():
             return None
-        at_pairs = off[np.searchsorted(dense, task.driver_turns)]
+        at_pairs = off[np.searchsorted(dense, task.inputs)]
         found.append((float(np.ptp(off)), sense, off, at_pairs))
     _, sense, off, at_pairs = min(found, key=lambda each: each[:2])
     zero = float(share @ at_pairs)
 
-    def curves(turned: FloatArray) -> FloatArray:
-        order = np.argsort(turned, kind="stable")
-        errors = np.empty(len(turned))
-        found = output_error(linkage, task, begun, turned[order], sense)
+    def curves(inputs: FloatArray) -> FloatArray:
+        order = np.argsort(inputs, kind="stable")
+        errors = np.empty(len(inputs))
+        found = output_error(linkage, task, begun, inputs[order], sense)
         if not task.travels:  # without the full turns by which they may differ from the dense samples
-            found = found - TURN * np.round((found - np.interp(turned[order], dense, off)) / TURN)
+            found = found - TURN * np.round((found - np.interp(inputs[order], dense, off)) / TURN)
         errors[order] = found
         return np.stack([errors, -errors])
 
@@ -66,7 +75,7 @@ def structural_error(
     if task.norm == "max" and not exact:
         zero = (high - low) / 2
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-    coarse = np.unique(np.concatenate([task.driver_turns, np.linspace(*task.span, 25)]))
+    coarse = np.unique(np.concatenate([task.inputs, np.linspace(*task.span, 25)]))
     middle, half = (coarse[1:] + coarse[:-1]) / 2, np.diff(coarse) / 2
     inner = (middle[:, None] + half[:, None] * nodes).ravel()
     square = float((half[:, None] * weights).ravel() @ (curves(inner)[0] - zero) ** 2) / float(np.ptp(coarse))
@@ -75,35 +84,78 @@ def structural_error(
     return at_pairs - zero, {
         "structural_error_max": worst,
         "structural_error_rms": float(np.sqrt(square)),
-        "structural_error_at": at,
+        "structural_error_at": float(begun.driver_turns(np.array([at]))[0]),
         "output_zero": way_of(task, begun.direction) * zero,
         "output_sense": sense,
     }
 
 
 def met_as_function(
-    linkage: Linkage, task: Task, wanted: Requirements
-) -> tuple[Targets, TaskMotion, dict[str, Any] | None]:
-    """Driver angle and error at each pair, the motion, and the figures of the error, or None without one."""
+    linkage: Linkage, task: Task, wanted: Requirements, cylinder: Cylinder | None
+) -> tuple[Targets, TaskMotion, dict[str, Any] | None, tuple[Defect, ...]]:
+    """Driver angle and error at each pair, the motion, and the figures of the error, or None without one.
+
+    Last the defects against limits of the rate. Where the inputs are lengths of a cylinder, `cylinder`
+    drives; without one there is no motion.
+    """
     exact = wanted.is_exact(task)
     start = None if wanted.theta2_start_deg is None else float(np.radians(wanted.theta2_start_deg))
     senses = {"ccw": (1,), "cw": (-1,)}.get(wanted.driver_sense, (1, -1))
     limited = start is None and wanted.transmission_over is TransmissionOver.TASK
     least = float(np.radians(wanted.transmission_min_deg)) if limited else 0.0
-    begun = begins(linkage, task, exact, start, senses, least)
-    # A linkage that misses a requirement from every start is reported where it errs least.
-    begun = begun or begins(linkage, task, exact, start, senses) or begins(linkage, task, exact, start)
-    met = begun or Beginning(start or 0.0, 1)
+    by = input_of(linkage, task, cylinder)
+    begun = None
+    if by is not None:
+        begun = begins(linkage, task, by, exact, start, senses, least)
+        # A linkage that misses a requirement from every start is reported where it errs least.
+        begun = begun or begins(linkage, task, by, exact, start, senses)
+        begun = begun or begins(linkage, task, by, exact, start)
+    met = begun or _nowhere(task, start)
     first = met.theta2 if start is not None else met.theta2 - TURN * np.round(met.theta2 / TURN)
-    met = Beginning(float(first), met.direction)
-    theta2 = met.theta2 + met.direction * task.driver_turns
+    met = replace(met, theta2=float(first))
+    theta2 = met.driver_angles(task.inputs)
     found = structural_error(linkage, task, met, exact) if begun else None
     errors, figures = (np.full(len(task), np.inf), None) if found is None else found
     free, own = np.full(len(task), np.nan), np.full(len(task), int(linkage.assembly))
-    low, high = task.span
-    motion = TaskMotion.ordered(theta2, met.direction)
-    motion = replace(motion, start=met.theta2 + met.direction * low, end=met.theta2 + met.direction * high)
-    return Targets(theta2, own, free, free, np.abs(errors)), motion, figures
+    first, last = met.driver_angles(np.array(task.span)).tolist()
+    motion = replace(TaskMotion.ordered(theta2, met.direction), start=first, end=last)
+    targets = Targets(theta2, own, free, free, np.abs(errors))
+    return targets, motion, figures, tuple(_rate_defects(linkage, task, met, figures))
+
+
+def generated_rate(linkage: Linkage, task: Task, begun: Beginning, inputs: FloatArray) -> FloatArray:
+    """Leverage ratio d(output)/d(input) of a linkage at inputs (K,), with the sign of its output."""
+    by_driver = output_rate(linkage, task, begun.driver_angles(inputs))
+    turned = begun.by.rate(begun.theta2, begun.direction, inputs)
+    # A rotation counts in the sense of the driver, and so does that of link 2.
+    return (begun.direction if task.travels else 1) * by_driver * turned
+
+
+def _rate_defects(
+    linkage: Linkage, task: Task, begun: Beginning, figures: dict[str, Any] | None
+) -> Iterator[Defect]:
+    """Rates beyond their limits, with the miss as a share of the greatest limit."""
+    if task.rates is None or figures is None:
+        return
+    at, low, high = task.rates.T
+    rates = figures["output_sense"] * generated_rate(linkage, task, begun, at)
+    scale = np.maximum(np.abs(low), np.abs(high))
+    for number, rate in enumerate(rates):
+        least, most = low[number], high[number]
+        miss = (max(least - rate, rate - most) if np.isfinite(rate) else np.inf) / (scale[number] or 1.0)
+        if miss > RATE_SLACK:
+            place = f"{task.counted_from.shown * at[number]:.6g}"
+            what = f"the leverage ratio d(output)/d(input) at input {place}"
+            allowed = f"{task.rate_unit * least:.6g} to {task.rate_unit * most:.6g}"
+            yield Defect("function.rate", what, float(task.rate_unit * rate), allowed, float(miss))
+
+
+def _nowhere(task: Task, start: float | None) -> Beginning:
+    """Where a linkage begins that does not cover the range, turned by some cylinder where it has none."""
+    if not task.lengthens:
+        return Beginning(start or 0.0, 1, ByAngle())
+    stroke = float(task.inputs[-1])
+    return Beginning(np.pi / 4, 1, ByLength(base=stroke, arm=stroke, zero=0.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,13 +164,13 @@ class FunctionCurves:
 
     Parameters
     ----------
-    turned : ndarray, rad
-        Driver rotation from the first pair.
+    inputs : ndarray, rad or length
+        Driver rotation, or lengthening of the cylinder, from the first pair.
     wanted, generated, error : ndarray, rad or length
         Output rotation, positive as the driver turns, or travel along the slide, from the wanted zero on.
     """
 
-    turned: FloatArray
+    inputs: FloatArray
     wanted: FloatArray
     generated: FloatArray
     error: FloatArray
@@ -127,7 +179,7 @@ class FunctionCurves:
 def function_curves(
     linkage: Linkage, task: Task, verdict: Verdict, count: int = 361, at: FloatArray | None = None
 ) -> FunctionCurves | None:
-    """Output of a judged linkage over the range of its function, or at given driver rotations.
+    """Output of a judged linkage over the range of its function, or at given inputs.
 
     None where it does not cover the range.
 
@@ -144,12 +196,15 @@ def function_curves(
     if not np.isfinite(verdict.structural_error_max):
         return None
     dense = np.linspace(*task.span, max(count, _DENSE))
-    turned = np.linspace(*task.span, count) if at is None else at
-    every = np.unique(np.concatenate([dense, turned]))
-    begun = Beginning(float(verdict.theta2[0]), verdict.direction)
+    inputs = np.linspace(*task.span, count) if at is None else at
+    every = np.unique(np.concatenate([dense, inputs]))
+    by = input_of(linkage, task, verdict.cylinder)
+    if by is None:
+        return None
+    begun = Beginning(float(verdict.theta2[0]), verdict.direction, by)
     way = way_of(task, verdict.direction)
     off = output_error(linkage, task, begun, every, verdict.output_sense) - way * verdict.output_zero
     middle = 0.0 if task.travels else TURN * np.round(np.median(off) / TURN)
-    error = off[np.searchsorted(every, turned)] - middle
-    wanted = verdict.output_sense * task.output(turned)
-    return FunctionCurves(turned, wanted, wanted + error, error)
+    error = off[np.searchsorted(every, inputs)] - middle
+    wanted = verdict.output_sense * task.output(inputs)
+    return FunctionCurves(inputs, wanted, wanted + error, error)

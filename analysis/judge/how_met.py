@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke
 from grashof.problems import (
+    Cylinder,
     DwellTask,
     FunctionTask,
     Linkage,
@@ -32,6 +33,7 @@ from grashof.problems.values.tasks.closed_curve import spline_length
 from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.tandem_task import LINKS
 
+Driven: TypeAlias = Cylinder | None  # that drives the linkage
 _EVEN = 1e-12  # rad: strokes that differ by less take as long
 
 
@@ -90,7 +92,7 @@ def _poses(linkage: Linkage, task: Task, wanted: Requirements) -> tuple[Targets,
     return targets, motion
 
 
-def _in_plane(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
+def _in_plane(linkage: Linkage, task: Task, wanted: Requirements, _: Driven = None) -> Met:
     targets, motion = meet(linkage, task, wanted)
     most = task.most_length_ratio(linkage.mechanism)
     if not np.isfinite(most):
@@ -108,15 +110,16 @@ def _too_long(ratio: float, most: float) -> Defect:
     return Defect("length_ratio_max", what, ratio, f"up to {most:.6g}", miss)
 
 
-def _as_function(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
+def _as_function(linkage: Linkage, task: Task, wanted: Requirements, cylinder: Driven = None) -> Met:
     """The entire range counts, not only its pairs."""
-    targets, motion, figures = met_as_function(linkage, task, wanted)
+    targets, motion, figures, defects = met_as_function(linkage, task, wanted, cylinder)
     theta2 = np.array([motion.start, *targets.theta2, motion.end])
     assembly = np.full(len(theta2), int(linkage.assembly))
-    return Met(targets, motion, theta2, assembly, covered=figures is not None, figures=figures or {})
+    covered = figures is not None
+    return Met(targets, motion, theta2, assembly, covered=covered, figures=figures or {}, defects=defects)
 
 
-def _between_limits(linkage: Linkage, task: Task, wanted: Requirements) -> Met:
+def _between_limits(linkage: Linkage, task: Task, wanted: Requirements, _: Driven = None) -> Met:
     """The limit positions of a linkage on its own assembly, and the turn that begins with the slow stroke.
 
     A full turn apart where there are none. Clockwise where the driver's sense has to be; either has the same
@@ -167,7 +170,7 @@ def _missed_by(
         yield Defect("exact", what, value * unit, within, miss - tolerance)
 
 
-def _in_tandem(linkage: Linkage, task: TandemTask, wanted: Requirements) -> Met:
+def _in_tandem(linkage: Linkage, task: TandemTask, wanted: Requirements, _: Driven = None) -> Met:
     """As for one stroke, that of link 4; both swings have to be met, and the time ratios that are stated."""
     (theta2, motion), found = _slow_stroke(linkage, wanted), two_outputs(linkage, LINKS)
     assembly, defects = np.full(2, int(linkage.assembly)), tuple(_tandem_defects(found, task, wanted))
@@ -190,7 +193,7 @@ def _tandem_defects(found: TwoOutputs | None, task: TandemTask, wanted: Requirem
             yield from _missed_by(wanted.tolerance, name, ratio, wish, 1.0, wish)
 
 
-def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements) -> Met:
+def _standing_still(linkage: Linkage, task: DwellTask, wanted: Requirements, _: Driven = None) -> Met:
     """The ends of the dwell of least band, and the turn that begins with it; anywhere where there is none."""
     sense = -1 if wanted.driver_sense == "cw" else 1
     slides = bool(linkage.mechanism.loops[-1].slide_angle)
@@ -224,7 +227,7 @@ def _dwell_defects(found: DwellFigures | None, task: DwellTask, slides: bool) ->
         yield Defect(key, f"the output band in the dwell{deg}", found.band * unit, allowed, miss)
 
 
-HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements], Met]] = {
+HOW_MET: Mapping[type, Callable[[Linkage, Any, Requirements, Driven], Met]] = {
     Task: _in_plane,
     FunctionTask: _as_function,
     StrokeTask: _between_limits,

@@ -84,7 +84,7 @@ def verify(
     """
     task = grounded(task, requirements)
     wanted = requirements.for_task(task).resolved(task.size, scale_free=task.scale_free)
-    met = row_of(HOW_MET, task)(linkage, task, wanted)
+    met = row_of(HOW_MET, task)(linkage, task, wanted, cylinder)
     targets, motion = met.targets, met.motion
     circuits = circuit_index(linkage, met.theta2, met.assembly)
     branches = branch_index(linkage, met.theta2, met.assembly)

@@ -99,11 +99,17 @@ def _task(task: Task) -> dict[str, Any]:
 
 def _function(task: FunctionTask) -> dict[str, Any]:
     """A function's table: its pairs, or the law with its ranges."""
-    words = {"sense": task.sense, "norm": task.norm, "link": task.link}
+    words: dict[str, Any] = {"sense": task.sense, "norm": task.norm, "link": task.link}
+    if task.rates is not None:
+        at, *limits = task.rates.T
+        by_angle = task.lengthens and not task.travels
+        rates = [degrees_of(each) if by_angle else task.rate_unit * each for each in limits]
+        words["rate"] = np.column_stack([at if task.lengthens else degrees_of(at), *rates])
     law = task.law
     if law is None:
         output = {"output": task.outputs} if task.travels else {"output_deg": degrees_of(task.outputs)}
-        return {"input_deg": degrees_of(task.inputs), **output, **words}
+        given = {"input": task.inputs} if task.lengthens else {"input_deg": degrees_of(task.inputs)}
+        return {**given, **output, **words}
     output = {"output_range_deg": degrees_of(np.array(law.output_range))}
     return {
         "law": law.name,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import AfterValidator, Tag, model_validator
+from pydantic import AfterValidator, Tag, WithJsonSchema, model_validator
 
 from grashof.problems.files.curves import POINTS
 from grashof.problems.files.tables import (
@@ -20,6 +20,7 @@ from grashof.problems.files.tables import (
     either,
     keys_of,
     listed,
+    numbers,
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import each_checked, outline
@@ -160,6 +161,8 @@ class DwellTable(SpecTable):
     )
 
 
+_RATE = Annotated[list[float], listed("a row [input, lo, hi]"), WithJsonSchema(numbers(3))]
+Rates = Annotated[list[_RATE], listed("a list of rows [input, lo, hi]")]
 _PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
 
 
@@ -167,7 +170,10 @@ _PAIRS = {"input_deg": [0, 1, 2], "output_deg": [0, 1, 2]}
     FunctionTask,
     {
         **dict.fromkeys(("input_deg", "output_deg"), Angles),
-        "output": Annotated[list[float], listed("a list of lengths", MOST_TARGETS)],
+        **dict.fromkeys(
+            ("input", "output"), Annotated[list[float], listed("a list of lengths", MOST_TARGETS)]
+        ),
+        "rate": Rates,
         "law": str,
         "x": Pair,
         "sampled": Annotated[list[float], listed("a list of numbers", MOST_TARGETS)],

@@ -48,10 +48,16 @@ def judged(
 
 
 def judged_linkage(
-    scaled: ScaledProblem, linkage: Linkage, *, start: int, iterations: int, most_error: float = np.inf
+    scaled: ScaledProblem,
+    linkage: Linkage,
+    *,
+    start: int,
+    iterations: int,
+    most_error: float = np.inf,
+    cylinder: Cylinder | None = None,
 ) -> Candidate:
-    """A linkage with the verdict on it, as `judged`."""
-    verdict = driven_verdict(scaled, linkage, most_error)
+    """A linkage with the verdict on it, as `judged`; driven by a known cylinder, or else by the best."""
+    verdict = driven_verdict(scaled, linkage, most_error, cylinder)
     candidate = _valued(scaled, Candidate(linkage, verdict, scaled.problem, start, iterations))
     if verdict.ok:
         candidate.objective(scaled.problem)  # here, where many are judged at once; the values stay known

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis import Verdict, solve_position
-from grashof.problems import Linkage, Objective
+from grashof.problems import Cylinder, Linkage, Objective
 from grashof.problems.values.arrays import ComplexArray
 from grashof.synth.loop.dyad import PlacedLoop, Sizes, as_vector
 from grashof.synth.programme.second_loop import SecondLoop
@@ -193,7 +193,16 @@ class Start:
         )  # fmt: skip
 
 
-Proposal: TypeAlias = Start | Linkage  # a linkage is a design already: nothing is left to solve
+@dataclass(frozen=True, slots=True)
+class DrivenLinkage:
+    """A linkage with the cylinder that drives it."""
+
+    linkage: Linkage
+    cylinder: Cylinder
+
+
+# A linkage is a design already: nothing is left to solve.
+Proposal: TypeAlias = Start | Linkage | DrivenLinkage
 
 
 @dataclass(frozen=True, slots=True)

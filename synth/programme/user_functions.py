@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from grashof.analysis.judge.design import Constraint, Design, OwnObjective, greatest, name_of, one_at_a_time
-from grashof.problems import Linkage, ProblemError
+from grashof.problems import ProblemError
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
 from grashof.problems.values.errors import wrong_value
@@ -127,7 +127,7 @@ def mended(scaled: ScaledProblem, starts: Sequence[Proposal]) -> Sequence[Propos
         return starts
     return [
         start
-        if isinstance(start, Linkage) or _met(scaled, start)
+        if not isinstance(start, Start) or _met(scaled, start)
         else start.under(radius=np.inf, stay=scaled.exact, settled=False)
         for start in starts
     ]
@@ -140,7 +140,7 @@ def relaxed_by_own(scaled: ScaledProblem, starts: Sequence[Proposal]) -> list[St
     return [
         start.under(radius=np.inf, stay=False, settled=False, relaxed=("constraints",))
         for start in starts[:NEAREST]
-        if not isinstance(start, Linkage)
+        if isinstance(start, Start)
     ]
 
 

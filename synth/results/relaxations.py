@@ -10,7 +10,7 @@ import numpy as np
 from grashof.problems import ProblemError
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import judged_again
-from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
+from grashof.synth.programme.start import UNSMOOTH, DrivenLinkage, Proposal, Start
 from grashof.synth.programme.whole_screening import fully_screened
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.provers import bounds_before
@@ -137,6 +137,8 @@ def _finished(scaled: ScaledProblem, found: Relaxation, run: Run) -> Relaxation:
     under_it = judged_again(eased, found.candidate)
     # solved under the relaxed requirement, to be certain
     start: Proposal = under_it.linkage
+    if eased.problem.task.lengthens and under_it.verdict.cylinder is not None:
+        start = DrivenLinkage(under_it.linkage, under_it.verdict.cylinder)
     if eased.has_targets:
         start = Start.of_linkage(eased, under_it.linkage, under_it.verdict)
     (made,) = run.solve(eased, [start], 0)

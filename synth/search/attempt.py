@@ -16,7 +16,7 @@ from grashof.synth.designs.judging import MISSED, judged, judged_linkage, shares
 from grashof.synth.designs.polishing import polished_solve, polished_start
 from grashof.synth.designs.ranking import ranking_key
 from grashof.synth.programme.nonlinear_programme import SOLVED, Solve, begun_from, solve_by_exchange
-from grashof.synth.programme.start import UNSMOOTH, Proposal, Start
+from grashof.synth.programme.start import UNSMOOTH, DrivenLinkage, Proposal, Start
 from grashof.synth.programme.structure import Form
 from grashof.synth.quantities.formulas import FORMULAS
 from grashof.synth.quantities.scaled_problem import ScaledProblem
@@ -80,6 +80,9 @@ def attempt(scaled: ScaledProblem, start: Proposal, number: int, *, cognates: bo
         return Attempt(LEFT_ALONE, None)
     if isinstance(start, Linkage):
         return Attempt(AS_IT_IS, judged_linkage(scaled, start, start=number, iterations=0))
+    if isinstance(start, DrivenLinkage):
+        known = judged_linkage(scaled, start.linkage, start=number, iterations=0, cylinder=start.cylinder)
+        return Attempt(AS_IT_IS, known)
     finder, start = finder_for(scaled), polished_start(scaled, start)
     done = None
     solvable = scaled.has_targets or start.second is not None

@@ -10,7 +10,7 @@ from math import ceil
 
 import numpy as np
 
-from grashof.problems import Linkage, Problem, Search
+from grashof.problems import Problem, Search
 from grashof.problems.values.arrays import ComplexArray, FloatArray
 from grashof.problems.values.checks import counted
 from grashof.synth.designs.candidate import Candidate
@@ -168,7 +168,7 @@ class Ledger:
             return starts
         chosen = list[Proposal]()
         for number, start in enumerate(starts):
-            if isinstance(start, Linkage):
+            if not isinstance(start, Start):
                 chosen.append(start)
                 continue
             confirms, marks = first and number == 0, _marks(made, start)
@@ -312,7 +312,7 @@ class Ledger:
         return not self.best and self.solved >= FRUITLESS * min(1.0, self.search.effort)
 
     def _too_far(self, made: Round, start: Proposal) -> bool:
-        expected_error = 0.0 if isinstance(start, Linkage) else start.expected_error
+        expected_error = start.expected_error if isinstance(start, Start) else 0.0
         return expected_error > max(made.prune * max(self.least, EXACT_ERROR), self.scaled.of_use)
 
     def _known(self, made: Round, start: Start, marks: ComplexArray) -> bool:

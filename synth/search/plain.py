@@ -20,7 +20,7 @@ from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar
 from grashof.problems.values.linkages.mechanisms import CLASSES
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.start import Round, Start, Terms
+from grashof.synth.programme.start import DrivenLinkage, Round, Start, Terms
 from grashof.synth.quantities.kinds import kind_of
 from grashof.synth.search.attempt import Attempt, Outcome
 from grashof.synth.search.ledger import Chunk, Tally
@@ -29,8 +29,8 @@ from grashof.synth.search.ledger import Chunk, Tally
 TYPES: dict[str, Any] = {
     each.__name__: each
     for each in (
-        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DwellFigures, Objective, Round, Start,
-        Tally, Terms, TwoOutputs, Verdict,
+        *CLASSES.values(), Attempt, Candidate, Chunk, Cylinder, Defect, DrivenLinkage, DwellFigures,
+        Objective, Round, Start, Tally, Terms, TwoOutputs, Verdict,
     )
 }  # fmt: skip
 WORDS: dict[str, Any] = {"GrashofClass": GrashofClass, "Outcome": Outcome}

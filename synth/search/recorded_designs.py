@@ -7,10 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from grashof.problems import Linkage
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.judging import alike, judged_again
-from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.programme.start import Proposal, Round, Start
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.search.attempt import Attempt
 from grashof.synth.search.ledger import Chunk
@@ -27,7 +26,7 @@ def are_attempts(scaled: ScaledProblem, starts: Sequence[Proposal], result: obje
     """Whether a result is an attempt for each start, with the judge's verdict on every design."""
     if not isinstance(result, list) or len(result) != len(starts):
         return False
-    allowed = [np.inf if isinstance(start, Linkage) else start.terms.most_error for start in starts]
+    allowed = [start.terms.most_error if isinstance(start, Start) else np.inf for start in starts]
     return all(
         isinstance(one, Attempt)
         and (one.candidate is None or _is_true(scaled, one.candidate, most))

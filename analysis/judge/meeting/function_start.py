@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from grashof.analysis.judge.meeting.inputs import Input
 from grashof.analysis.judge.meeting.task_motion import valleys
 from grashof.analysis.mechanism.closing import STEADY, close, move, operands_of
 from grashof.analysis.mechanism.mobility import closes_everywhere, driver_ranges
@@ -27,10 +28,19 @@ _ROUNDING = 1e-9  # rad, of driver ranges and transmission angles
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """Driver angle at the first pair of a function, in rad, and the sense of the driver."""
+    """Driver angle at the first pair of a function, in rad, the sense of the driver, and its input."""
 
     theta2: float
     direction: int
+    by: Input
+
+    def driver_turns(self, inputs: FloatArray) -> FloatArray:
+        """Rotation of the driver from the first pair at inputs (N,), in its sense, rad."""
+        return self.by.turned(np.array(self.theta2), self.direction, inputs)
+
+    def driver_angles(self, inputs: FloatArray) -> FloatArray:
+        """Driver angles at inputs (N,), rad."""
+        return self.theta2 + self.direction * self.driver_turns(inputs)
 
 
 def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool = True) -> FloatArray:
@@ -42,6 +52,15 @@ def moved_output(task: Task, state: Position, direction: int, *, unwrapped: bool
     return moved
 
 
+def output_rate(linkage: Linkage, task: Task, theta2: FloatArray) -> FloatArray:
+    """Derivative of the output, an angle or a travel, by the driver angle; not finite where dead."""
+    loops, _ = close(linkage.mechanism, operands_of(linkage), theta2)
+    moving, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
+    link = turns[task.turning_link(linkage.mechanism)]
+    rate: FloatArray = moving[-1].orders[0].travel if task.travels else link.tangential[0]
+    return rate
+
+
 def way_of(task: Task, direction: int) -> int:
     """Sense in which an output counts: a rotation in that of the driver, a travel along the slide."""
     return 1 if task.travels else direction
@@ -50,6 +69,7 @@ def way_of(task: Task, direction: int) -> int:
 def begins(
     linkage: Linkage,
     task: Task,
+    by: Input,
     exact: bool,
     theta2_start: float | None,
     directions: tuple[int, ...] = (1, -1),
@@ -68,7 +88,7 @@ def begins(
         raise ProblemError(
             f"mechanism {linkage.mechanism.word} has no output that {way}; the function requires one"
         )
-    search = _Search(linkage, task, exact or task.norm == "rms", transmission)
+    search = _Search(linkage, task, by, exact or task.norm == "rms", transmission)
     if theta2_start is None:
         lowest = sorted(valley for direction in directions for valley in search.valleys(direction))
         found = search.bottoms(lowest[:_VALLEYS])
@@ -80,7 +100,7 @@ def begins(
     least = min(value for value, _, _ in found)
     alike = least * _SAME + _NOTHING * task.output_unit
     _, direction, start = next(one for one in found if one[0] <= alike)
-    return Beginning(start, direction)
+    return Beginning(start, direction, by)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +109,7 @@ class _Search:
 
     linkage: Linkage
     task: Task
+    by: Input
     squares: bool
     transmission: float
 
@@ -99,10 +120,11 @@ class _Search:
     def values(self, starts: FloatArray, direction: int, samples: int = _FINE) -> FloatArray:
         """RMS or greatest error for first angles (S,); infinite below the least transmission angle."""
         task = self.task
-        turned = task.driver_turns if self.squares else np.linspace(*task.span, samples)
+        inputs = task.inputs if self.squares else np.linspace(*task.span, samples)
+        turned = self.by.turned(starts, direction, inputs)
         state = solve_position(self.linkage, starts[:, None] + direction * turned)
         moved = moved_output(task, state, direction, unwrapped=not self.squares)
-        wanted = task.outputs if self.squares else task.output(turned)
+        wanted = task.outputs if self.squares else task.output(inputs)
         best = np.full(len(starts), np.inf)
         for sense in self.senses:
             off = moved - sense * wanted
@@ -115,8 +137,10 @@ class _Search:
                 value = (_crest(off) + _crest(-off)) / 2
             best = np.fmin(best, np.nan_to_num(value, nan=np.inf))
         if self.transmission > 0:
-            low, high = (starts + direction * end for end in task.span)
-            worst = worst_transmission(self.linkage, low, high)
+            ends = starts[:, None] + direction * self.by.turned(starts, direction, np.array(task.span))
+            worst = np.full(len(starts), -1.0)
+            known = np.isfinite(ends).all(axis=1)
+            worst[known] = worst_transmission(self.linkage, *ends[known].T)
             best = np.where(worst >= self.transmission - _ROUNDING, best, np.inf)
         return best
 
@@ -134,14 +158,16 @@ class _Search:
 
     def _ranges(self, direction: int) -> list[tuple[float, float]]:
         """Driver angles at the first pair from which the range is possible."""
-        low, high = self.task.span
         ranges = driver_ranges(self.linkage, self.transmission).tolist()
         if closes_everywhere(self.linkage) and ranges[0][1] - ranges[0][0] >= TURN:
-            return [(ranges[0][0], ranges[0][1])]
-        back, on = (-low, high) if direction > 0 else (high, -low)
-        ends = [(a + back, b - on) for a, b in ranges]
-        # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
-        return [(min(a, b), max(a, b)) for a, b in ends if b - a >= -_ROUNDING]
+            return list(self.by.starts_of_turn((ranges[0][0], ranges[0][1]), direction, self.task.span))
+        span = self.task.span
+        return [
+            found
+            for low, high in ranges
+            if np.isfinite(high - low)
+            for found in self.by.starts((low, high), direction, span)
+        ]
 
     def bottoms(self, valleys: Sequence[tuple[float, int, float]]) -> list[tuple[float, int, float]]:
         """The same, with their bottoms in place of the starts within them."""
@@ -170,11 +196,10 @@ class _Search:
         share = self.task.weights / self.task.weights.sum()
         way = way_of(self.task, direction)
         for _ in range(6):
-            state = solve_position(self.linkage, at + direction * self.task.driver_turns)
-            loops, _ = close(self.linkage.mechanism, operands_of(self.linkage), state.theta2)
-            moving, turns = move(loops, STEADY, dead_below=0.0, last_too=True)
-            turned = turns[self.task.turning_link(self.linkage.mechanism)]
-            rate = moving[-1].orders[0].travel if self.task.travels else turned.tangential[0]
+            turned = self.by.turned(np.array(at), direction, self.task.inputs)
+            state = solve_position(self.linkage, at + direction * turned)
+            rate = output_rate(self.linkage, self.task, state.theta2)
+            rate = rate * self.by.moved_by_start(at, direction, self.task.inputs)
             if not np.isfinite(rate).all():  # a dead position
                 break
             output = moved_output(self.task, state, direction, unwrapped=False)

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from grashof.problems.values.arrays import Limits
 from grashof.problems.values.checks import GREATEST, LEAST
-from grashof.problems.values.errors import shown_key
+from grashof.problems.values.errors import shown, shown_key
+from grashof.problems.values.linkages.cylinder import CylinderSpec
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import LENGTHS, joined, not_had
 from grashof.problems.values.requirements.distances import Distances
@@ -166,6 +167,29 @@ def cylinders_wrong(task: Task, wanted: Requirements) -> list[str]:
         wrong.append(
             f"requirements.rotatability is {wanted.rotatability}; it must be any with driver.cylinder, "
             "which turns nothing fully"
+        )
+    return wrong
+
+
+def lengths_wrong(task: Task, wanted: Requirements, driver: CylinderSpec | None) -> list[str]:
+    """Contradictions between inputs that are lengths of a cylinder and what drives, a line each."""
+    if not task.lengthens:
+        return []
+    if driver is None:
+        return [f"driver.cylinder is missing; {task.kind}.input, its lengthening, needs it"]
+    wrong = []
+    if "driver" not in driver.on:
+        given = shown(list(driver.on))
+        wrong.append(f"driver.cylinder.on is {given}; with {task.kind}.input it must have driver, link 2")
+    if wanted.theta2_start_deg is not None:
+        wrong.append(
+            f"requirements.theta2_start_deg does not go with {task.kind}.input, which leaves link 2 free"
+        )
+    most = float(task.inputs[-1]) / (driver.ratio_max - 1)
+    if driver.closed is not None and driver.closed[1] * (1 + 1e-9) < most:
+        wrong.append(
+            f"driver.cylinder.closed is up to {driver.closed[1]:.6g}; it must reach {most:.6g} for a stroke "
+            f"of {task.inputs[-1]:.6g} with ratio_max {driver.ratio_max:g}"
         )
     return wrong
 

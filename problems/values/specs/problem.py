@@ -174,6 +174,7 @@ class Problem(ReadOnly):
             wrong += torque_limits.wrong(self.torque, *stated)
         if self.driver is not None:
             wrong += task_limits.cylinders_wrong(self.task, self.requirements)
+        wrong += task_limits.lengths_wrong(self.task, self.requirements, self.driver)
         wrong += task_limits.functions_wrong(self.task, self.mechanism)
         wrong += task_limits.dwells_wrong(self.task, self.requirements)
         wrong += task_limits.tandems_wrong(self.task, self.requirements)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal
 
@@ -10,70 +10,27 @@ import numpy as np
 import numpy.typing as npt
 
 from grashof.problems.values import checks
-from grashof.problems.values.arrays import TURN, FloatArray, IntArray, frozen_array
+from grashof.problems.values.arrays import FloatArray, IntArray, frozen_array
 from grashof.problems.values.errors import ProblemError, listing, shown, wrong_value
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.tasks.function_law import FunctionLaw, chebyshev_spacing, lobatto_with_weights
-from grashof.problems.values.tasks.target_checks import deg_text
+from grashof.problems.values.tasks.function_pairs import (
+    FEWEST,
+    INPUT,
+    INPUT_DEG,
+    MOST,
+    OUTPUT,
+    OUTPUT_DEG,
+    checked_pairs,
+    checked_rates,
+    either,
+    finite_numbers,
+    rates_inside,
+    refuse_beside,
+    refuse_missing,
+)
 from grashof.problems.values.tasks.task import Task
 from grashof.problems.values.value_bases import set_fields
-
-INPUT, OUTPUT_DEG, OUTPUT = "input_deg", "output_deg", "output"  # keys of files
-FEWEST, MOST = 3, 100_000
-_LEAST_STEP = 1e-6  # rad, between two inputs
-_LEAST_OUTPUT = 1e-6  # rad, between the least and the greatest output
-
-
-def checked_pairs(
-    inputs: npt.ArrayLike, outputs: npt.ArrayLike, *, travels: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Inputs (N,) in rad that grow from 0, and outputs (N,) in rad, or length of a slide that travels."""
-    key = OUTPUT if travels else OUTPUT_DEG
-    turned, output = finite_numbers(inputs, INPUT), finite_numbers(outputs, key)
-    if len(turned) != len(output):
-        angles = checks.counted(len(turned), "angle")
-        others = checks.counted(len(output), "travel" if travels else "angle")
-        raise ProblemError(f"function.{INPUT} has {angles}, function.{key} {others}; it must be as many")
-    if len(turned) < FEWEST:
-        raise ProblemError(f"function has {checks.counted(len(turned), 'pair')}; it must have three or more")
-    if len(turned) > MOST:
-        raise ProblemError(f"function has {len(turned)} pairs; it must have at most {MOST}")
-    for name, first in ((INPUT, turned[0]), (key, output[0])):
-        if first != 0:
-            given = deg_text(first) if name.endswith("_deg") else f"{first:.6g}"
-            raise ProblemError(f"function.{name}[0] is {given}; it must be 0, at the first pair")
-    for index in np.flatnonzero(np.diff(turned) < _LEAST_STEP) + 1:
-        raise ProblemError(
-            f"function.{INPUT}[{index}] is {deg_text(turned[index])} after {deg_text(turned[index - 1])}; "
-            "inputs must grow (the driver may turn either way all the same)"
-        )
-    _refuse_turns(turned, INPUT)
-    if travels:
-        travel = float(np.ptp(output))
-        if not travel > 0:
-            raise ProblemError(f"function.{OUTPUT} does not move; the slide must travel")
-        if travel > checks.GREATEST:
-            raise ProblemError(
-                f"function.{OUTPUT} covers {travel:.6g}; it must be at most {checks.GREATEST:g}"
-            )
-        return turned, output
-    _refuse_turns(output, OUTPUT_DEG)
-    if np.ptp(output) < _LEAST_OUTPUT:
-        raise ProblemError(f"function.{OUTPUT_DEG} does not move; the output must turn")
-    return turned, output
-
-
-def finite_numbers(values: Any, key: str) -> FloatArray:
-    """A list of finite numbers under a key, as an array."""
-    return checks.finite_list(values, f"function.{key}", "lengths" if key == OUTPUT else "angles")
-
-
-def _refuse_turns(angles: FloatArray, key: str) -> None:
-    if np.ptp(angles) > TURN * (1 + 1e-12):
-        raise ProblemError(
-            f"function.{key} covers {deg_text(np.ptp(angles))} deg; it must be at most one turn, 360"
-        )
-
 
 SENSES = ("given", "either")
 NORMS = ("rms", "max")
@@ -82,6 +39,7 @@ LINKS = ("output", "coupler")
 _OF_COUPLERS = tuple(word for word, row in ONE_LOOP.items() if row.loops[0].pinned)
 LAW_PAIRS = 41  # of a law fitted over its full range
 MOST_EXACT, MOST_OF_SIX_BARS = 5, 9
+OF_TRIANGLE = 3  # free lengths of a cylinder on the driver: base and arm from O2, and its first length
 _SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
 
 
@@ -89,14 +47,17 @@ _SLIDING, _FOUR_BAR = 8, 9  # freedoms of slider kinds, and of a four-bar
 class FunctionTask(Task):
     """Function generation: link 4 turns, or slides, with the driver as wanted; or the coupler turns.
 
+    The driver is link 2, or a cylinder that turns it.
+
     Angles are relative: both start angles are free, and where pairs need not be met exactly the output's
     zero is, too, so that the first pair may err as the others.
 
     Parameters
     ----------
-    inputs : array_like, shape (N,), rad
+    inputs : array_like, shape (N,), rad or length
         Driver rotation from the first pair, zero there, then growing over at most one turn. Designs may
-        turn the driver either way.
+        turn the driver either way. Or the lengthening of the cylinder that drives, from its shortest length
+        on.
     outputs : array_like, shape (N,), rad or length
         Rotation of the link from the first pair, positive where it turns as the driver does; or the travel
         of a slide from there, positive along its direction.
@@ -114,6 +75,11 @@ class FunctionTask(Task):
     link : {"output", "coupler"}
         The link whose rotation the outputs are: the last one, or link 3, the coupler. Of slider-cranks and
         six-bars the coupler is not searched for.
+    lengthens : bool
+        The inputs are lengthenings of the cylinder that drives link 2; not of six-bars.
+    rates : array_like, shape (R, 3), optional
+        Limits of the leverage ratio d(output)/d(input): rows of input, least and greatest value, with the
+        signs of the outputs.
 
     Raises
     ------
@@ -149,6 +115,8 @@ class FunctionTask(Task):
     length: float
     travels: bool
     link: str
+    lengthens: bool
+    rates: FloatArray | None
 
     def __init__(
         self,
@@ -161,18 +129,20 @@ class FunctionTask(Task):
         length: float = 1.0,
         travels: bool = False,
         link: str = "output",
+        lengthens: bool = False,
+        rates: npt.ArrayLike | None = None,
     ) -> None:
         checks.one_of(link, "function.link", LINKS)
         if travels and link != "output":
             raise ProblemError(
                 f'function.link is "{link}", which turns; with a travel of a slide it must be "output"'
             )
-        turned, output = checked_pairs(inputs, outputs, travels=travels)
+        given, output = checked_pairs(inputs, outputs, travels=travels, lengthens=lengthens)
         if law is not None and not isinstance(law, FunctionLaw):
             raise wrong_value("function.law", law, "a FunctionLaw")
         set_fields(
             self,
-            inputs=frozen_array(turned),
+            inputs=frozen_array(given),
             outputs=frozen_array(output),
             sense=checks.one_of(sense, "function.sense", SENSES),
             norm=checks.one_of(norm, "function.norm", NORMS),
@@ -180,12 +150,16 @@ class FunctionTask(Task):
             length=checks.positive_number(length, "function.length"),
             travels=bool(travels),
             link=link,
+            lengthens=bool(lengthens),
         )
+        if rates is not None:
+            rates = frozen_array(checked_rates(rates, given, self.rate_unit, lengthens=self.lengthens))
+        set_fields(self, rates=rates)
 
     @classmethod
     def of_law(
         cls, law: FunctionLaw, *, pairs: int | None = None, sense: str = "given", norm: str = "rms",
-        link: str = "output",
+        link: str = "output", rates: npt.ArrayLike | None = None,
     ) -> FunctionTask:  # fmt: skip
         """The task of a law over its full range.
 
@@ -195,6 +169,8 @@ class FunctionTask(Task):
         pairs : int, optional
             Number of pairs, at Chebyshev spacing; by default as many as fit the full range.
         sense, norm, link : str
+        rates : array_like, shape (R, 3), optional
+            Their inputs count from the first pair.
         """
         if pairs is None:
             places = lobatto_with_weights(LAW_PAIRS)[0]
@@ -205,7 +181,8 @@ class FunctionTask(Task):
         turned = law.input_range * places
         output = law.output(turned)
         turned, output = turned - turned[0], output - output[0]
-        return cls(turned, output, sense=sense, norm=norm, law=law, travels=law.travels, link=link)
+        words = {"sense": sense, "norm": norm, "link": link}
+        return cls(turned, output, law=law, travels=law.travels, rates=rates, **words)  # type: ignore[arg-type]
 
     @classmethod
     def from_degrees(
@@ -213,6 +190,7 @@ class FunctionTask(Task):
         input_deg: npt.ArrayLike | None = None,
         output_deg: npt.ArrayLike | None = None,
         *,
+        input: npt.ArrayLike | None = None,  # noqa: A002  (the key of files)
         output: npt.ArrayLike | None = None,
         law: str | Callable[[FloatArray], FloatArray] | None = None,
         x: tuple[float, float] | None = None,
@@ -225,6 +203,7 @@ class FunctionTask(Task):
         sense: str = "given",
         norm: str = "rms",
         link: str = "output",
+        rate: npt.ArrayLike | None = None,
     ) -> FunctionTask:
         """Task with its angles in degrees, as problem files write it: pairs, or a law with its ranges.
 
@@ -237,6 +216,9 @@ class FunctionTask(Task):
         output_deg : array_like, deg, optional
             Rotation of link 4, or the coupler, from the first pair, one for each input; positive as the
             driver turns.
+        input : array_like, length, optional
+            Instead of angles, the lengthening of the cylinder under `[driver]` from the first pair: zero,
+            then growing. The cylinder acts on link 2.
         output : array_like, length, optional
             Instead, travel of a slide from the first pair.
         law : {"log10", "ln", "exp", "sin", "cos", "tan", "sqrt", "reciprocal", "power", "sampled"}, optional
@@ -256,6 +238,9 @@ class FunctionTask(Task):
         sampled : array_like, optional
             Of a sampled law, as Grashof saves one that was a function in Python: y at Chebyshev-Lobatto
             points of `x`.
+        rate : array_like, optional
+            Rows [input, lo, hi]: limits of the leverage ratio d(output)/d(input) at an input, in the units of
+            both lists.
 
         Examples
         --------
@@ -264,27 +249,33 @@ class FunctionTask(Task):
         >>> np.degrees(task.inputs).round(3).tolist()
         [0.0, 10.898, 28.532, 46.165, 57.063]
         """
-        table: dict[str, Any] = {INPUT: input_deg, OUTPUT_DEG: output_deg, OUTPUT: output}
+        table: dict[str, Any] = {INPUT_DEG: input_deg, INPUT: input, OUTPUT_DEG: output_deg, OUTPUT: output}
         stated: dict[str, Any] = {
             "x": x,
             "input_range_deg": input_range_deg,
             "output_range_deg": output_range_deg,
             "output_range": output_range,
         }
-        both = ("output_range", output_range_deg, output_range)
-        travels = _either(OUTPUT, output_deg, output) or _either(*both)
+        lengthens = either(INPUT, input_deg, input, "an input is an angle or the length of a cylinder")
+        slides = "an output turns or slides"
+        travels = either(OUTPUT, output_deg, output, slides)
+        travels = either("output_range", output_range_deg, output_range, slides) or travels
+        words = {"sense": sense, "norm": norm, "link": link}
         if law is None:
             others = {"exponent": exponent, "pairs": pairs, "sampled": sampled}
-            _refuse_beside(stated | others, "goes with function.law only")
-            _refuse_missing(table, OUTPUT, travels)
-            turned = np.radians(finite_numbers(input_deg, INPUT))
-            key, given = (OUTPUT, output) if travels else (OUTPUT_DEG, output_deg)
-            outputs = finite_numbers(given, key)
-            outputs = outputs if travels else np.radians(outputs)
-            return cls(turned, outputs, sense=sense, norm=norm, travels=travels, link=link)
-        _refuse_beside(table, "does not go with function.law; give pairs or a law")
-        _refuse_missing(stated, "output_range", travels)
+            refuse_beside(stated | others, "goes with function.law only")
+            keys = INPUT if lengthens else INPUT_DEG, OUTPUT if travels else OUTPUT_DEG
+            refuse_missing(table, *({INPUT_DEG, INPUT, OUTPUT_DEG, OUTPUT} - {*keys}))
+            given, outputs = (
+                np.radians(values) if key.endswith("_deg") else values
+                for key in keys
+                for values in [finite_numbers(table[key], key)]
+            )
+            rates = None if rate is None else rates_inside(rate, travels=travels, lengthens=lengthens)
+            return cls(given, outputs, travels=travels, lengthens=lengthens, rates=rates, **words)  # type: ignore[arg-type]
+        refuse_beside(table, "does not go with function.law; give pairs or a law")
         key = "output_range" if travels else "output_range_deg"
+        refuse_missing(stated, *({"output_range", "output_range_deg"} - {key}))
         ranges = [checks.finite_number(stated[name], f"function.{name}") for name in ("input_range_deg", key)]
         over = float(np.radians(ranges[0])), ranges[1] if travels else float(np.radians(ranges[1]))
         if callable(law):
@@ -292,15 +283,16 @@ class FunctionTask(Task):
         else:
             known = None if sampled is None else np.asarray(sampled, dtype=np.float64)
             made = FunctionLaw(law, stated["x"], *over, exponent=exponent, samples=known, travels=travels)
-        return cls.of_law(made, pairs=pairs, sense=sense, norm=norm, link=link)
+        rates = None if rate is None else rates_inside(rate, travels=travels, lengthens=False)
+        return cls.of_law(made, pairs=pairs, rates=rates, **words)
 
     def __len__(self) -> int:
         return len(self.inputs)
 
     @property
-    def timing(self) -> FloatArray:  # type: ignore[override]
-        """Driver rotation from the first pair, shape (N,), rad."""
-        return self.inputs
+    def timing(self) -> FloatArray | None:  # type: ignore[override]
+        """Driver rotation from the first pair, shape (N,), rad; None where a cylinder's length is stated."""
+        return None if self.lengthens else self.inputs
 
     @property
     def positions(self) -> FloatArray:
@@ -330,15 +322,20 @@ class FunctionTask(Task):
         """The task with a usual length of the ground; a travel has a size of its own."""
         return self if self.travels or length == self.length else replace(self, length=length)
 
+    def by_turns(self, turned: FloatArray) -> FunctionTask:
+        """The same with driver rotations (N,), rad, as inputs, without limits of rates."""
+        return replace(self, inputs=turned, lengthens=False, rates=None)
+
     def exact_for(self, freedoms: int) -> bool:
         """Whether every pair can be met: up to five, since the starts and three lengths are free.
 
         An inverted slider-crank, whose output is also a rotation, has one free length less. Of six-bars up to
-        nine.
+        nine. A cylinder adds three lengths, and so three pairs.
         """
         if freedoms > _FOUR_BAR:
             return len(self) <= MOST_OF_SIX_BARS
-        return len(self) <= (MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1)
+        most = MOST_EXACT if self.travels or freedoms > _SLIDING else MOST_EXACT - 1
+        return len(self) <= most + OF_TRIANGLE * self.lengthens
 
     def impossible(self, word: str) -> str:
         """Why a kind of linkage cannot perform it, in one line; empty if it may.
@@ -348,31 +345,21 @@ class FunctionTask(Task):
         >>> FunctionTask([0, 1, 2], [0, 1, 3], link="coupler").impossible("slider-crank")
         'function.link is "coupler"; mechanism must be four-bar or inverted-slider-crank'
         """
+        if self.lengthens and word not in ONE_LOOP:
+            return (
+                f"mechanism is {word}; with function.{INPUT}, a cylinder's length, "
+                f"it must be {listing(list(ONE_LOOP))}"
+            )
         if self.link == "output" or word in _OF_COUPLERS:
             return Task.impossible(self, word)
         return f'function.link is "{self.link}"; mechanism must be {listing(_OF_COUPLERS)}'
 
     def some(self, index: IntArray, positions: FloatArray, angles: FloatArray) -> FunctionTask:  # noqa: ARG002
         """Some of the pairs, from the first of them on."""
-        turned, output = self.inputs[index], self.outputs[index]
-        return replace(self, inputs=turned - turned[0], outputs=output - output[0], law=None)
-
-
-def _either(key: str, angles: object, travel: object) -> bool:
-    """Whether the output is given as travel; `ProblemError` if it is given as rotation, too."""
-    if angles is not None and travel is not None:
-        both = f"function.{key}_deg does not go with function.{key}"
-        raise ProblemError(f"{both}; an output turns or slides, give one of them")
-    return travel is not None
-
-
-def _refuse_beside(values: Mapping[str, object], why: str) -> None:
-    for name in (name for name, value in values.items() if value is not None):
-        raise ProblemError(f"function.{name} {why}")
-
-
-def _refuse_missing(values: Mapping[str, object], output: str, travels: bool) -> None:
-    other = f"{output}_deg" if travels else output
-    missing = [name for name, value in values.items() if value is None and name != other]
-    if missing:
-        raise ProblemError("\n".join(f"function.{name} is missing" for name in missing))
+        given, output = self.inputs[index], self.outputs[index]
+        rates = None
+        if self.rates is not None:
+            shifted = self.rates - [given[0], 0.0, 0.0]
+            within = (shifted[:, 0] >= 0) & (shifted[:, 0] <= given[-1] - given[0])
+            rates = shifted[within] if within.any() else None
+        return replace(self, inputs=given - given[0], outputs=output - output[0], law=None, rates=rates)

@@ -8,14 +8,12 @@ from dataclasses import replace
 from typing import ClassVar, Self, TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from grashof.problems.values.arrays import BoolArray, FloatArray, IntArray
 from grashof.problems.values.errors import listing
 from grashof.problems.values.extent import span
 from grashof.problems.values.linkages.mechanism import MECHANISMS, WORDS, Mechanism
-from grashof.problems.values.tasks.function_law import FunctionLaw
-from grashof.problems.values.units import Unit
+from grashof.problems.values.tasks.generated_output import GeneratedOutput
 from grashof.problems.values.value_bases import ReadOnly
 
 _SAME = 1e-12  # sizes, rad
@@ -25,7 +23,7 @@ USUAL_RATIO = 1.02  # of the length of a six-bar's curve to that of the spline t
 _Row = TypeVar("_Row")
 
 
-class Task(ReadOnly, ABC):
+class Task(GeneratedOutput, ReadOnly, ABC):
     """N targets that a linkage has to meet in order; base of `MotionTask`, `PathTask` and others.
 
     Each target is a row. Its columns are the position of the coupler point, the angle of the body, the
@@ -52,16 +50,6 @@ class Task(ReadOnly, ABC):
     body: FloatArray | None = None
     #: How far each angle may be missed, shape (N,), rad.
     angle_within: FloatArray | None = None
-    #: The link whose rotation is the output of a function: "output", the last one, or "coupler", link 3.
-    link: str = "output"
-    #: Whether the output is the travel of a slide.
-    travels: bool = False
-    #: Whether the opposite output is accepted, too: "given" or "either".
-    sense: str = "given"
-    #: The error to minimise where outputs are not met exactly: "rms" or "max".
-    norm: str = "rms"
-    #: The law of the outputs; without one the cubic spline through them is wanted.
-    law: FunctionLaw | None = None
     #: Swing of link 4 between its limit positions, rad.
     swing: float | None = None
     #: Stroke of a slide between its limit positions, length.
@@ -85,11 +73,6 @@ class Task(ReadOnly, ABC):
     @property
     def angles(self) -> FloatArray:
         """Angles of the body, shape (N,), rad."""
-        return np.full(len(self), np.nan)
-
-    @property
-    def outputs(self) -> FloatArray:
-        """Rotation of the output from the first target, positive as the driver turns, shape (N,), rad."""
         return np.full(len(self), np.nan)
 
     @property
@@ -304,95 +287,6 @@ class Task(ReadOnly, ABC):
     def described(self) -> str:
         """The kind of task as files state it, in a message."""
         return f'kind = "{self.kind}"'
-
-    def output_links(self, mechanism: Mechanism) -> tuple[int, ...]:
-        """The links of a linkage whose turning is its output: the last one, none where that slides."""
-        last = mechanism.loops[-1]
-        return (last.links[1],) if last.pinned else ()
-
-    def turning_link(self, mechanism: Mechanism) -> int:
-        """The number of the link whose rotation is the output of a function."""
-        return mechanism.loops[0].links[0] if self.link == "coupler" else mechanism.loops[-1].links[1]
-
-    @property
-    def output_unit(self) -> float:
-        """The unit of output errors: 1 rad, or a travel."""
-        return 1.0
-
-    @property
-    def counted_in(self) -> Unit:
-        """The unit of outputs and their errors in files and tables."""
-        return Unit.LENGTH if self.travels else Unit.ANGLE
-
-    @property
-    def output_words(self) -> str:
-        """The name of the output in a sentence."""
-        return "travel of the slide" if self.travels else f"{self.link} rotation"
-
-    @property
-    def error_field(self) -> str:
-        """The field of `Requirements` that limits the structural error."""
-        return "structural_error_max" if self.travels else "structural_error_max_deg"
-
-    def shown(self, output: float, length_unit: str) -> str:
-        """An output or its error, with its unit, as people read it.
-
-        Examples
-        --------
-        >>> from grashof.problems import FunctionTask
-        >>> FunctionTask([0, 1, 2], [0, 1, 3], travels=True).shown(0.25, "mm")
-        '0.25 mm'
-        """
-        unit = length_unit if self.travels else self.counted_in
-        return f"{self.counted_in.shown * output:.3g} {unit}".strip()
-
-    @property
-    def fits_range(self) -> bool:
-        """Whether the targets sample the full range of a law, from its first x to its last."""
-        return self.law is not None and abs(self.driver_turns[-1] - self.law.input_range) < 1e-9
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """First and last driver rotation of the range, from the first target, rad."""
-        if self.law is None:
-            return 0.0, float(self.driver_turns[-1])
-        before = float(self._before)
-        return 0.0 - before, self.law.input_range - before
-
-    @property
-    def beyond(self) -> tuple[float, float]:
-        """Driver rotation within the range before the first target and after the last, rad."""
-        if self.law is None:
-            return 0.0, 0.0
-        low, high = self.span
-        return 0.0 - low, max(0.0, high - float(self.driver_turns[-1]))
-
-    @property
-    def _before(self) -> float:
-        """Driver rotation from the beginning of a law to the first target."""
-        if self.law is None or self.fits_range:
-            return 0.0
-        # Chebyshev's spacing is symmetric.
-        return (self.law.input_range - float(self.driver_turns[-1])) / 2
-
-    def output(self, turned: npt.ArrayLike) -> FloatArray:
-        """Wanted output at driver rotations from the first target: of the law, or the cubic spline.
-
-        Examples
-        --------
-        >>> from grashof.problems import FunctionTask
-        >>> task = FunctionTask([0, 1, 2, 3], [0, 0.1, 0.8, 2.7])
-        >>> round(float(task.output(1.5)), 9)
-        0.3375
-        """
-        at = np.asarray(turned, dtype=np.float64)
-        if self.law is None:
-            from scipy.interpolate import CubicSpline  # here: few problems need it
-
-            found: FloatArray = CubicSpline(self.driver_turns, self.outputs)(at)
-            return found
-        before = self._before
-        return self.law.output(at + before) - self.law.output(np.array(before))
 
 
 def row_of(table: Mapping[type, _Row], task: Task) -> _Row:

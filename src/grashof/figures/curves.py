@@ -18,7 +18,6 @@ from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.study.kinds import forces_of, turning
 from grashof.study.quantities import by_range, dynamic_quantities, kinematic_quantities, table_of
-from grashof.study.section import FROM_FIRST_PAIR
 from grashof.study.study import Asked, LinkageStudy
 from grashof.study.sweep import Sweep, dead_positions_unwarned
 from grashof.synth import Candidate
@@ -230,16 +229,16 @@ def plot_function(task: Task, candidate: Candidate, *, ax: Sequence[Axes]) -> No
     output, error = ax
     curves = function_curves(candidate.linkage, task, candidate.verdict)
     if curves is not None:
-        places, shown = np.degrees(curves.turned), task.counted_in.shown
+        places, shown = task.counted_from.shown * curves.inputs, task.counted_in.shown
         output.plot(places, shown * curves.wanted, color=OUTPUT, linewidth=3, alpha=0.4, label="wanted")
         output.plot(places, shown * curves.generated, color=COUPLER, label="generated")
         error.plot(places, shown * curves.error, color=COUPLER)
-        at = function_curves(candidate.linkage, task, candidate.verdict, at=task.driver_turns)
+        at = function_curves(candidate.linkage, task, candidate.verdict, at=task.inputs)
         if at is not None and not task.fits_range:
             pairs: dict[str, Any] = {"marker": "o", "markersize": 4, "color": TARGET}
             pairs |= {"linestyle": "none", "markerfacecolor": "none"}
-            output.plot(np.degrees(task.driver_turns), shown * at.wanted, label="pairs", **pairs)
-            error.plot(np.degrees(task.driver_turns), shown * at.error, **pairs)
+            output.plot(task.counted_from.shown * at.inputs, shown * at.wanted, label="pairs", **pairs)
+            error.plot(task.counted_from.shown * at.inputs, shown * at.error, **pairs)
     unit = candidate.problem.length_unit
     _label(output, task.output_words, task, unit)
     _label(error, "structural error", task, unit)
@@ -249,10 +248,10 @@ def plot_function(task: Task, candidate: Candidate, *, ax: Sequence[Axes]) -> No
 
 def plot_wanted(axes: Axes, task: Task, length_unit: str) -> None:
     """The wanted function, with its pairs."""
-    turned, shown = np.linspace(*task.span, 361), task.counted_in.shown
-    axes.plot(np.degrees(turned), shown * task.output(turned), color=OUTPUT, label="wanted")
+    inputs, of_inputs, shown = np.linspace(*task.span, 361), task.counted_from.shown, task.counted_in.shown
+    axes.plot(of_inputs * inputs, shown * task.output(inputs), color=OUTPUT, label="wanted")
     axes.plot(
-        np.degrees(task.driver_turns), shown * task.outputs, linestyle="none", marker="o", color=TARGET,
+        of_inputs * task.inputs, shown * task.outputs, linestyle="none", marker="o", color=TARGET,
         markerfacecolor="none", label="pairs",
     )  # fmt: skip
     _label(axes, task.output_words, task, length_unit)
@@ -261,5 +260,5 @@ def plot_wanted(axes: Axes, task: Task, length_unit: str) -> None:
 
 def _label(axes: Axes, words: str, task: Task, length_unit: str) -> None:
     """Label both axes, the vertical one by words with the unit of the output."""
-    axes.set_xlabel(FROM_FIRST_PAIR)
+    axes.set_xlabel(task.input_axis(length_unit))
     axes.set_ylabel(f"{words} ({task.counted_in.of(length_unit)})")

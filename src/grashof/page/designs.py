@@ -214,9 +214,13 @@ def _function(problem: Problem, linkage: Linkage, design: Candidate) -> dict[str
         return {"function": None}
     columns, shown = asdict(curves), problem.task.counted_in.shown
     columns = {name: shown * values for name, values in columns.items()} | {
-        "turned": np.degrees(curves.turned)
+        "inputs": problem.task.counted_from.shown * curves.inputs
     }
-    names = {"title": problem.task.output_words, "unit": problem.task.counted_in.of(problem.length_unit)}
+    names = {
+        "title": problem.task.output_words,
+        "unit": problem.task.counted_in.of(problem.length_unit),
+        "over": problem.task.input_axis(problem.length_unit),
+    }
     return {"function": names | {name: compact(values.tolist()) for name, values in columns.items()}}
 
 

@@ -24,7 +24,7 @@ from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.checks import number_within
 from grashof.study.quantities import counted_on, counted_with
 from grashof.study.samples import Columns, curves, over_driver, table
-from grashof.study.section import FROM_FIRST_PAIR, Fact, Plot, Section, angle_fact
+from grashof.study.section import Fact, Plot, Section, angle_fact
 from grashof.study.study import LinkageStudy
 from grashof.study.sweep import INSET
 from grashof.study.turn import degrees, extreme_facts, turn_extremes
@@ -38,17 +38,17 @@ def function_section(study: LinkageStudy) -> Section | None:
     if problem is None or not problem.task.has_output.any():
         return None
     task = problem.task
-    verdict = verify(study.linkage, task, problem.requirements, problem=problem)
+    verdict = verify(study.linkage, task, problem.requirements, problem=problem, cylinder=study.spec.cylinder)
     curves = function_curves(study.linkage, task, verdict)
     if curves is None:
         return None
-    at_pairs = function_curves(study.linkage, task, verdict, at=task.driver_turns)
-    places = np.degrees(curves.turned)
+    at_pairs = function_curves(study.linkage, task, verdict, at=task.inputs)
+    places, over = task.counted_from.shown * curves.inputs, task.input_axis(problem.length_unit)
     shown = task.counted_in.shown
     unit = task.counted_in.of(problem.length_unit)
     output = {"wanted": shown * curves.wanted, "generated": shown * curves.generated}
     plots = tuple(
-        Plot(key, title, unit, lines, places, FROM_FIRST_PAIR, bounded=True)
+        Plot(key, title, unit, lines, places, over, bounded=True)
         for key, title, lines in (
             ("function-output", task.output_words, output),
             ("structural-error", "structural error", {"error": shown * curves.error}),
@@ -84,10 +84,12 @@ def _function_facts(task: Task, verdict: Verdict, unit: str, link: int) -> Itera
 
 def _pairs(task: Task, verdict: Verdict, at_pairs: FunctionCurves) -> pd.DataFrame:
     """A row for each pair."""
-    angles = {"input_deg": at_pairs.turned, "theta2_deg": verdict.theta2}
     outputs = {"wanted": at_pairs.wanted, "generated": at_pairs.generated, "error": at_pairs.error}
-    ending = "" if task.travels else "_deg"
-    columns = {name: np.degrees(values) for name, values in angles.items()}
+    ending, of_inputs = "" if task.travels else "_deg", "" if task.lengthens else "_deg"
+    columns = {
+        f"input{of_inputs}": task.counted_from.shown * at_pairs.inputs,
+        "theta2_deg": np.degrees(verdict.theta2),
+    }
     columns |= {f"{name}{ending}": task.counted_in.shown * values for name, values in outputs.items()}
     table = pd.DataFrame(columns)
     table.insert(0, "pair", np.arange(1, len(table) + 1))

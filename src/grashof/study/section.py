@@ -11,7 +11,6 @@ import pandas as pd
 from grashof.problems.values.arrays import FloatArray
 
 DRIVER_ANGLE = "driver angle theta2 (deg)"
-FROM_FIRST_PAIR = "driver rotation from the first pair (deg)"
 
 
 @dataclass(frozen=True, slots=True)

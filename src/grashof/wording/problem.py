@@ -307,8 +307,10 @@ def _way(task: Task, unit: str) -> tuple[str, str]:
 
 def _function(task: Task, unit: str) -> str:
     """A function by its pairs or its law, with its ranges and senses."""
-    first, last = np.degrees(task.span)
+    first, last = task.counted_from.shown * np.array(task.span)
     swept = f"driver over {last - first:g} deg"
+    if task.lengthens:
+        swept = f"cylinder longer by {last - first:g}{unit}"
     law, moved = task.law, task.link
     if law is None:
         said = f"function through {counted(len(task), 'pair')}, {swept}"

@@ -73,6 +73,7 @@ def bounds_of_pairs(scaled: ScaledProblem, proving: Proving, lower: float = 0.0)
     except StopRequested:
         why = "it was stopped"
     beyond = [name for name in stated if name not in _FORMS] + ["constraints"] * bool(scaled.constraints)
+    beyond += ["function.rate"] * (problem.task.rates is not None)
     return Bounds(
         lower=search.lower,
         upper=search.upper,
@@ -92,6 +93,7 @@ class Sense:
     """The four-bars whose output turns in one sense."""
 
     aims: FunctionAims
+    sense: int
     driver: int
     motion: Displacements
     limits: LoopLimits
@@ -113,7 +115,7 @@ class Sense:
             longer_ground=(limits.shortest,) if limits.shortest else (1, -1),
             one_branch=True,
         )
-        return cls(aims, driver, motion, loop, float(wanted.turned[0]))
+        return cls(aims, sense, driver, motion, loop, float(wanted.turned[0]))
 
     def rows_left(self, z: Span, c: Span, least: float) -> tuple[IntArray, FloatArray]:
         """Which pieces may hold a linkage that transmits more than `least`, rad, and their bounds."""
@@ -157,9 +159,8 @@ class Sense:
                     made.worst_cosine(TURN if self.aims.limits.over_cycle else self.aims.limits.span), 1.0
                 )
             )
-            kept = np.flatnonzero(
-                (transmitted > least) & (self.aims.limits_of(self.driver).of(made).value.min(axis=1) >= 0)
-            )
+            limits = self.aims.limits_of(self.driver, self.sense).of(made)
+            kept = np.flatnonzero((transmitted > least) & (limits.value.min(axis=1) >= 0))
         for k in kept[np.argsort(-transmitted[kept], kind="stable")[:JUDGED]]:
             with suppress(ProblemError):  # pivots that coincide
                 yield self.aims.linkage(made[k : k + 1], self.driver)

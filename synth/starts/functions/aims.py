@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from grashof.problems import (
+    CylinderSpec,
     Linkage,
     Problem,
     ProblemError,
@@ -17,12 +18,19 @@ from grashof.problems import (
     TransmissionOver,
 )
 from grashof.problems.values.arrays import FloatArray, Limits
+from grashof.problems.values.box import ANYWHERE, Box
+from grashof.problems.values.requirements.function_ground import FunctionGround
 from grashof.problems.values.requirements.link_ratios import greatest_logs
 from grashof.problems.values.tasks.function_law import lobatto_with_weights
+from grashof.synth.designs.candidate import Candidate
+from grashof.synth.programme.start import DrivenLinkage
 from grashof.synth.quantities.scaled_problem import ScaledProblem
+from grashof.synth.starts.functions.placing import distances, placed_cylinder, triangle_of
+from grashof.synth.theory.functions.by_cylinder import BY_CYLINDER, ByCylinder
 from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.limits import ShapeLimits, offset_rows
 from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.triangle import TriangleLimits, opening_slopes, turned_by
 
 SAMPLES = 41  # Chebyshev-Lobatto points of the range, of the greatest error
 DENSE = 1201  # places among which its extremes are looked for
@@ -54,6 +62,8 @@ class FunctionAims:
             raise ProblemError(f"problem.task is a {type(task).__name__}; it must be a FunctionTask")
         wanted = problem.requirements.resolved(task.size)
         kind, unit = scaled.kind.generators[task.link], task.output_unit
+        if task.lengthens:
+            kind, wanted = BY_CYLINDER[kind], _with_scale(wanted, float(task.inputs[-1]))
         names, sizes = kind.sizes(wanted, unit)
         rotatability, offset = wanted.rotatability or Rotatability.ANY, wanted.offset
         lengths = [_over(each, unit) for each in sizes]
@@ -66,15 +76,20 @@ class FunctionAims:
             shortest={Rotatability.CRANK_ROCKER: 1, Rotatability.DOUBLE_CRANK: -1}.get(rotatability, 0),
             offset=None if offset is None else offset_rows(lengths, _over(offset, unit)),
             stroke=(-np.inf, np.inf) if wanted.stroke is None else _over(wanted.stroke, unit),
+            rates=None if task.rates is None else _rates(task, task.rates, unit),
+            triangle=_triangle(problem, wanted) if task.lengthens else None,
         )
         exact = problem.requirements.is_exact(task)
         return cls(task, problem, kind, wanted, limits, dict(zip(names, sizes, strict=True)), unit, exact)
 
-    def limits_of(self, driver: int) -> ShapeLimits:
-        """Limits of the shapes whose linkages, or mirror images, turn their driver in a sense."""
-        if driver > 0 or self.limits.offset is None:
-            return self.limits
-        return replace(self.limits, offset=self.limits.offset * np.append(np.ones(len(self.sizes)), -1.0))
+    def limits_of(self, driver: int, sense: int) -> ShapeLimits:
+        """Limits of the shapes whose linkages, or mirror images, turn driver and output in their senses."""
+        limits = self.limits
+        if driver < 0 and limits.offset is not None:
+            limits = replace(limits, offset=limits.offset * np.append(np.ones(len(self.sizes)), -1.0))
+        if sense < 0 and limits.rates is not None:
+            limits = replace(limits, rates=limits.rates[:, [0, 2, 1]] * [1.0, -1.0, -1.0])
+        return limits
 
     @property
     def kinds(self) -> str:
@@ -84,6 +99,8 @@ class FunctionAims:
     @property
     def obstacle(self) -> str:
         """Why there can be no linkage; empty where there may be one."""
+        if self.triangle is not None and self.triangle.empty:
+            return "limits of the cylinder leave it no length"
         caps, names = self.limits.caps, tuple(self.sizes)
         low, high = self.sizes[names[0]]
         if low > high:
@@ -123,7 +140,7 @@ class FunctionAims:
     def pairs(self, sense: int) -> DesiredOutput:
         """The pairs, from the beginning of the range."""
         return DesiredOutput(
-            self.task.driver_turns - self.task.span[0],
+            self.task.inputs - self.task.span[0],
             sense * self.task.outputs / self.unit,
             self.task.weights,
         )
@@ -145,9 +162,50 @@ class FunctionAims:
         """The linkage of one generator, placed and scaled as limits have it."""
         return batch.linkage(self.wanted, self.unit, driver)
 
-    def generator(self, linkage: Linkage, driver: int, theta2: float) -> Generators:
-        """The generator that a linkage is, its driver at `theta2`, rad, at the first pair."""
-        return self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
+    def design(self, batch: Generators, driver: int) -> Linkage | DrivenLinkage | None:
+        """The linkage of one generator, with its cylinder; None where that has no base within its limits."""
+        linkage = self.linkage(batch, driver)
+        if not isinstance(batch, ByCylinder):
+            return linkage
+        found = placed_cylinder(batch, driver, linkage, self.kind.direction(self.wanted), self._base)
+        return None if found is None else DrivenLinkage(linkage, found)
+
+    def generator(self, design: Candidate) -> Generators | None:
+        """The generator that a design is; None without the cylinder that should drive it."""
+        linkage, verdict = design.linkage, design.verdict
+        driver, theta2 = verdict.direction, float(verdict.theta2[0])
+        if not issubclass(self.kind, ByCylinder):
+            return self.kind.of_linkage(linkage, self.unit, driver, theta2).begun(-self.task.span[0])
+        logs = None if verdict.cylinder is None else triangle_of(verdict.cylinder, linkage, theta2)
+        if logs is None:
+            return None
+        return self.kind.of(self.kind.by_angle.of_linkage(linkage, self.unit, driver, theta2), logs)
+
+    def under(self, triangle: FloatArray) -> FunctionAims:
+        """The same for a given triangle of the cylinder, logarithms (3,): a task in driver angles."""
+        kind, task = self.kind, self.task
+        if not issubclass(kind, ByCylinder):
+            raise TypeError("the inputs are angles")
+        rates = self.limits.rates
+        if rates is not None:
+            base, arm, length = np.exp(triangle)
+            slope = opening_slopes(base, arm, length + rates[:, 0])[2]
+            rates = np.column_stack([turned_by(triangle, rates[:, 0]), rates[:, 1:] / slope[:, None]])
+        by_angle = task.by_turns(turned_by(triangle, task.inputs))
+        limits = replace(self.limits, span=by_angle.span[1], rates=rates, triangle=None)
+        return replace(self, task=by_angle, kind=kind.by_angle, limits=limits)
+
+    @property
+    def triangle(self) -> TriangleLimits | None:
+        """Limits of the triangle of the cylinder; None where the inputs are angles."""
+        limits = self.limits.triangle
+        return limits if isinstance(limits, TriangleLimits) else None
+
+    @property
+    def _base(self) -> Box:
+        """Where the base of the cylinder may be."""
+        spec = self.problem.driver
+        return ANYWHERE if spec is None or spec.base is None else spec.base
 
 
 def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requirements) -> FloatArray:
@@ -160,6 +218,36 @@ def _caps(kind: type[Generators], sizes: Mapping[str, Limits], wanted: Requireme
         caps: FloatArray = np.minimum(most, np.log(high)[:, None] - np.log(low))
     room = (caps + caps.T) / 2
     return caps - np.where(room > -INSIDE, np.clip(room, 0.0, INSIDE), INSIDE)  # none where a ratio is fixed
+
+
+def _rates(task: Task, rates: FloatArray, unit: float) -> FloatArray:
+    """Limits of rates from the beginning of the range, in units of the output, kept by a margin."""
+    at, low, high = (rates - [task.span[0], 0.0, 0.0]).T
+    inside = np.minimum(INSIDE * unit / (task.span[1] - task.span[0]), (high - low) / 2)
+    return np.column_stack([at, (low + inside) / unit, (high - inside) / unit])
+
+
+def _triangle(problem: Problem, wanted: Requirements) -> TriangleLimits:
+    """Limits of the triangle of a problem's cylinder."""
+    spec, stroke = problem.driver or CylinderSpec(), float(problem.task.inputs[-1])
+    ground = FunctionGround.of(wanted)
+    closed = spec.closed or (0.0, np.inf)
+    least = stroke / (spec.ratio_max - 1)
+    return TriangleLimits(
+        stroke=stroke,
+        base=distances(ground.placed(ground.length)[0], spec.base or ANYWHERE),
+        closed=(max(closed[0], least * (1 + INSIDE)), closed[1]),
+        lever=float(np.radians(wanted.cylinder_angle_min_deg or 0.0)) + INSIDE,
+        ratio=wanted.link_ratio_max,
+    )
+
+
+def _with_scale(wanted: Requirements, stroke: float) -> Requirements:
+    """The requirements; where none limits r1, it is as long as the stroke of the cylinder."""
+    low, high = wanted.link_lengths[0]
+    ground = FunctionGround.of(wanted).lengths
+    free = max(low, ground[0]) <= 0 and min(high, ground[1]) == np.inf
+    return replace(wanted, r1=(stroke, stroke)) if free else wanted
 
 
 def _over(limits: Limits, unit: float) -> Limits:

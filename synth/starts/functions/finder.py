@@ -11,12 +11,13 @@ import numpy as np
 
 from grashof.problems import Linkage, ProblemError
 from grashof.synth.designs.candidate import Candidate
-from grashof.synth.programme.start import Proposal, Round
+from grashof.synth.programme.start import DrivenLinkage, Proposal, Round
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.finder import DesignFinder
 from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.exact import exact_functions
 from grashof.synth.starts.functions.optima import Optima
-from grashof.synth.starts.functions.pairs import KNOWN, exact_functions
+from grashof.synth.starts.functions.pairs import KNOWN
 from grashof.synth.theory.functions.fit import fitted
 from grashof.synth.theory.functions.optima import refined
 from grashof.synth.theory.functions.output import Generators
@@ -53,6 +54,8 @@ class Functions(DesignFinder):
         count, kind = len(self.aims.task), self.aims.kind
         if count >= kind.EXACT:
             have = "most sets of five have one, or three" if kind.EXACT == 5 else "most sets of four have one"
+            if self.aims.triangle is not None:
+                return f"{self.aims.kinds} through the {count} pairs were looked for under many cylinders"
             return f"all {self.aims.kinds} through the {count} pairs were looked at; {have}"
         return f"no more distinct {self.aims.kinds} go through the pairs under these requirements"
 
@@ -77,7 +80,7 @@ class Functions(DesignFinder):
             return None
         search = Optima.each(self.aims)[0]
         found = [(optimum.generator, search.driver) for optimum in search.quick_pass()]
-        return Round(self._linkages(found), {}, size=0)
+        return Round(self._designs(found), {}, size=0)
 
     def round(self, number: int, enough: int, rng: np.random.Generator, size: int, /) -> Round | None:
         """Exact designs at once; least errors angle by angle."""
@@ -112,7 +115,9 @@ class Functions(DesignFinder):
             for optimum in search.optima(starts, few=True)
         ]
 
-    def onward(self, designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /) -> list[Linkage]:
+    def onward(
+        self, designs: Sequence[Candidate], _misses: Sequence[Candidate] = (), /
+    ) -> list[Linkage | DrivenLinkage]:
         """The least errors that designs for some transmission angle lead to; the best to all its digits."""
         if self.aims.exact or not designs:
             return []
@@ -123,9 +128,9 @@ class Functions(DesignFinder):
         ]
         found.sort(key=lambda each: each[0].error)
         settled = [(search.settled(optimum), search) for optimum, search in found[:1]]
-        return self._linkages([(optimum.generator, search.driver) for optimum, search in found + settled])
+        return self._designs([(optimum.generator, search.driver) for optimum, search in found + settled])
 
-    def follow(self, design: Candidate) -> list[Linkage]:
+    def follow(self, design: Candidate) -> list[Linkage | DrivenLinkage]:
         """The generator that a design leads to: through all pairs, or of least error nearby."""
         found = list[tuple[Generators, int]]()
         for search, batch in self._again([design]):
@@ -134,15 +139,16 @@ class Functions(DesignFinder):
                 found.append((fitted(pairs, batch, search.limits.of, held=held)[0], search.driver))
             else:
                 found.append((refined(search.aim(), batch).generator, search.driver))
-        return self._linkages([each for each in found if len(each[0])])
+        return self._designs([each for each in found if len(each[0])])
 
     def _again(self, designs: Sequence[Candidate]) -> Iterator[tuple[Optima, Generators]]:
         """The generators of designs, by senses of output and driver."""
         every = Optima.each(self.aims)
         mine = list[list[Generators]]([] for _ in every)
         for one in designs:
-            driver = one.verdict.direction
-            batch = self.aims.generator(one.linkage, driver, float(one.verdict.theta2[0]))
+            driver, batch = one.verdict.direction, self.aims.generator(one)
+            if batch is None:
+                continue
             fit = [
                 search.aim().error(batch) if self.aims.mirrored or driver == search.driver else np.inf
                 for search in every
@@ -175,13 +181,13 @@ class Functions(DesignFinder):
     def _round(
         self, batch: Sequence[tuple[Generators, int]], *, skip: int = 0, together: bool = False
     ) -> Round:
-        linkages = self._linkages(batch)
-        return Round(linkages, {FINDS: len(linkages)}, skip=skip, together=together)
+        designs = self._designs(batch)
+        return Round(designs, {FINDS: len(designs)}, skip=skip, together=together)
 
-    def _linkages(self, batch: Sequence[tuple[Generators, int]]) -> list[Linkage]:
-        """Generators as linkages, but for pivots that coincide and lengths beyond the floats."""
-        linkages = list[Linkage]()
+    def _designs(self, batch: Sequence[tuple[Generators, int]]) -> list[Linkage | DrivenLinkage]:
+        """Generators as designs, but for pivots that coincide and lengths beyond the floats."""
+        found = list[Linkage | DrivenLinkage | None]()
         for one, driver in batch:
             with suppress(ProblemError):
-                linkages.append(self.aims.linkage(one, driver))
-        return linkages
+                found.append(self.aims.design(one, driver))
+        return [each for each in found if each is not None]

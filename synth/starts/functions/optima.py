@@ -10,8 +10,9 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.driven import driven_starts
 from grashof.synth.starts.functions.pairs import MET, ROUNDING
-from grashof.synth.theory.functions.fit import best_apart, fitted
+from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.optima import Aim, Optimum, refined, with_extremes
 from grashof.synth.theory.functions.output import Generators
@@ -44,7 +45,7 @@ class Optima:
         """One for every sense of output and driver; with a transmission angle, rad, if more than required."""
         least = max(aims.limits.transmission, transmission)
         return [
-            cls(aims, replace(aims.limits_of(driver), transmission=least), sense, driver, first)
+            cls(aims, replace(aims.limits_of(driver, sense), transmission=least), sense, driver, first)
             for sense, driver, first in aims.ways()
         ]
 
@@ -56,7 +57,7 @@ class Optima:
         full = limits.margin is not None or bool(limits.shortest)
         found: list[Generators] = []
         for _ in range(max(1, round(effort))):
-            kinds = [function_starts(aims.kind, desired, rng, self.first)]
+            kinds = [self._near(desired, rng)]
             if full:
                 cranks = crank_starts(aims.kind, desired, rng, CRANKS, self.first, limits.shortest)
                 kinds.append(cranks[limits.of(cranks).value.min(axis=1) > -0.1])
@@ -67,6 +68,12 @@ class Optima:
         batch = aims.kind.joined(found)
         square = desired.square(desired.errors(batch))
         return batch[best_apart(batch, np.nan_to_num(square, nan=np.inf), CELL)]
+
+    def _near(self, desired: DesiredOutput, rng: np.random.Generator) -> Generators:
+        """Generators near the desired output."""
+        if self.aims.triangle is not None:
+            return driven_starts(self.aims, desired, rng, 1.0)
+        return function_starts(self.aims.kind, desired, rng, self.first)
 
     def aim(self) -> Aim:
         """The error to be made least."""
@@ -92,7 +99,7 @@ class Optima:
     def quick_pass(self) -> Iterator[Optimum]:
         """A good optimum from few starts: there usually is one, before the search has begun."""
         rng, aim = np.random.default_rng(0), self.aim()
-        starts = function_starts(self.aims.kind, aim.desired, rng, self.first)[::SPARSE]
+        starts = self._near(aim.desired, rng)[::SPARSE]
         batch, square = fitted(
             aim.desired, starts, self.limits.of, pull=PULLS[0], held=self.first is not None, steps=QUICK_STEPS
         )

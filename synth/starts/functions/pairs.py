@@ -12,7 +12,6 @@ from grashof.synth.theory.functions.fit import DesiredOutput, best_apart, fitted
 from grashof.synth.theory.functions.limits import ShapeLimits
 from grashof.synth.theory.functions.output import Generators
 from grashof.synth.theory.functions.starts import function_starts
-from grashof.synth.theory.stopping import stop_requested
 
 GRID = 220  # start angles of driver and output each, of three pairs
 CURVE = 2000  # output angles at a fifth place, of four pairs
@@ -24,38 +23,13 @@ _ERRORS = tuple(f"{kind}_error_{name}" for kind in ("structural", "travel") for 
 ZOOMED, ZOOMS, ZOOM = 6, 3, 120  # exact designs about which others are tried, rounds, and trials of each
 
 
-def exact_functions(
-    aims: FunctionAims, rng: np.random.Generator, most: int, effort: float
-) -> list[tuple[Generators, int]]:
-    """Generators through all pairs that keep the limits, each with its driver's sense.
-
-    The most promising distinct ones come first.
-    """
-    found: list[tuple[FloatArray, Generators, int]] = []
-    for sense, driver, first in aims.ways():
-        batch = _through(aims, sense, driver, first, rng, effort)
-        if len(batch) and not stop_requested():
-            found.append((expected_score(aims, batch, sense), batch, driver))
-    if not found:
-        return []
-    score = np.concatenate([each for each, _, _ in found])
-    drivers = np.concatenate([np.full(len(batch), driver) for _, batch, driver in found])
-    batch = aims.kind.joined([each for _, each, _ in found])
-    cell = NEAR
-    best = best_apart(batch, -score, cell)
-    while len(best) > 4 * most:  # a curve or surface of designs: farther apart
-        cell *= 1.5
-        best = best_apart(batch, -score, cell)
-    return [(batch[k : k + 1], int(drivers[k])) for k in best[:most]]
-
-
-def _through(
+def through_pairs(
     aims: FunctionAims, sense: int, driver: int, first: float | None, rng: np.random.Generator, effort: float
 ) -> Generators:
-    """All that are found through the pairs and keep the limits."""
-    desired, kind, limits = aims.pairs(sense), aims.kind, aims.limits_of(driver)
-    turned, output = desired.turned - desired.turned[0], desired.output - desired.output[0]
-    count, pairs = len(turned), _Pairs(aims, sense, limits, desired, turned, output)
+    """All that are found through the pairs, their inputs angles, and keep the limits."""
+    pairs = Pairs.of(aims, sense, driver)
+    desired, kind, limits, turned, output = pairs.desired, aims.kind, pairs.limits, pairs.turned, pairs.output
+    count = len(turned)
     offset = aims.wanted.offset  # where it is given, no sweep would find it
     pinned = offset is not None and offset[0] == offset[1] and count < kind.EXACT
     if count > kind.EXACT or (first is not None and count > kind.LINEAR) or pinned:
@@ -79,7 +53,7 @@ def _through(
 
 
 @dataclass(frozen=True, slots=True)
-class _Pairs:
+class Pairs:
     """Generators through a few pairs, in one sense."""
 
     aims: FunctionAims
@@ -88,6 +62,13 @@ class _Pairs:
     desired: DesiredOutput
     turned: FloatArray  # from the first pair
     output: FloatArray
+
+    @classmethod
+    def of(cls, aims: FunctionAims, sense: int, driver: int) -> Pairs:
+        """Those of a task in its senses of output and driver."""
+        desired = aims.pairs(sense)
+        turned, output = desired.turned - desired.turned[0], desired.output - desired.output[0]
+        return cls(aims, sense, aims.limits_of(driver, sense), desired, turned, output)
 
     def through(self) -> Generators:
         """All generators through the greatest number of pairs that can be met."""

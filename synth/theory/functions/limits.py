@@ -18,7 +18,7 @@ LEAST_ANGLE = float(np.radians(0.3))  # least distance from a dead position
 class ShapeLimits:
     """Limits of a generator, zero or positive where they are kept."""
 
-    span: float  # rad, rotation of the driver from its first angle
+    span: float  # the last input, from the first driver angle on: rotation of the driver, rad, or a length
     # (n, n): greatest logarithm of length j over length k, of `Generators.lengths`
     caps: FloatArray = field(default_factory=lambda: np.full((4, 4), np.log(20.0)))
     transmission: float = 0.0  # rad, least min(mu, pi - mu)
@@ -29,6 +29,9 @@ class ShapeLimits:
     # (k, n + 1): sums of the lengths and the offset that have to be zero or positive; see `offset_rows`
     offset: FloatArray | None = None
     stroke: Limits = (-np.inf, np.inf)  # of the travel over a full turn, in units of the lengths
+    # (R, 3): inputs, with the least and the greatest d(output)/d(input) there, in units of the output
+    rates: FloatArray | None = None
+    triangle: Rows | None = None  # of a cylinder on the driver
 
     def of(self, batch: Limited) -> Dual:
         """Limits (M, L) with derivatives by the shape (M, L, K)."""
@@ -38,6 +41,13 @@ class ShapeLimits:
     def most_cosine(self) -> float:
         """Greatest absolute cosine of the transmission angle."""
         return float(np.cos(max(self.transmission, LEAST_ANGLE)))
+
+
+class Rows(Protocol):
+    """Limits of the triangle of a cylinder, as `TriangleLimits`."""
+
+    def rows(self, logs: Dual) -> Dual:
+        """Limits (M, L) with derivatives, zero or positive where they are kept."""
 
 
 class Limited(Protocol):
@@ -80,7 +90,7 @@ def linear_rows(rows: FloatArray, dimensions: Dual) -> Dual:
 
 
 def places_met(
-    first: FloatArray, span: float, along: Limits, *, over_cycle: bool = False
+    first: FloatArray, span: float | FloatArray, along: Limits, *, over_cycle: bool = False
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Where the transmission may be worst: at both ends, and at two angles if the motion passes there.
 
@@ -89,13 +99,13 @@ def places_met(
     turns = np.tile(np.array(along), (len(first), 1))
     if over_cycle:
         return turns, np.ones(turns.shape, dtype=bool), np.zeros(2)
-    places = np.concatenate([first[:, None] + [0.0, span], turns], axis=1)
+    places = np.column_stack([first, first + span, turns])
     passed = np.stack([passes(first, span, angle) for angle in along], axis=1)
     met = np.concatenate([np.ones_like(passed), passed], axis=1)
     return places, met, np.array([1.0, 1.0, 0.0, 0.0])
 
 
-def passes(first: FloatArray, span: float, angle: float) -> BoolArray:
+def passes(first: FloatArray, span: float | FloatArray, angle: float) -> BoolArray:
     """Whether a rotation from a first angle passes another one, modulo full turns."""
     inside: BoolArray = (angle - first) % (2 * np.pi) <= span
     return inside

@@ -1,4 +1,4 @@
-"""Function generators of any kind: their outputs along a rotation of the driver.
+"""Function generators of any kind: their outputs along a rotation of the driver, or of what turns it.
 
 The driver turns counter-clockwise. A kind is a class, a file each: `grashof.synth.theory.functions.four_bar`,
 `slider_crank` and `inverted`. All else of the search goes through `Generators`.
@@ -27,6 +27,8 @@ from grashof.synth.theory.functions.limits import (
     places_met,
     ratio_rows,
 )
+
+_STEP = 1e-3  # share of the range of the input, of differences
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,39 +114,57 @@ class Generators(ABC):
     def moves(self, crank: Vector, loop: Closed) -> list[Vector]:
         """Displacement of B by each number of the shape."""
 
-    def _closed(self, turned: FloatArray) -> tuple[Vector, Closed]:
-        """O2A, and the loop at driver rotations from the first angle."""
-        theta2, (_, r2, r3, r4) = self.shape[:, -1:] + turned, self.sizes_of(self.columns)
+    def turns(self, inputs: FloatArray) -> FloatArray:
+        """Driver rotations from the first angle at inputs (N,), (N,) or (M, N), rad; NaN where impossible."""
+        return inputs
+
+    def turn_rates(self, inputs: FloatArray) -> FloatArray:
+        """Derivatives of these rotations by the inputs."""
+        return np.ones_like(inputs)
+
+    def turned_by(self, inputs: FloatArray) -> list[FloatArray]:  # noqa: ARG002
+        """Derivatives (M, N) of these rotations by the last numbers of the shape before the first angle."""
+        return []
+
+    def _closed(self, inputs: FloatArray) -> tuple[Vector, Closed]:
+        """O2A, and the loop at inputs."""
+        theta2, (_, r2, r3, r4) = self.shape[:, -1:] + self.turns(inputs), self.sizes_of(self.columns)
         crank = r2 * Vector(np.cos(theta2), np.sin(theta2))
         return crank, self.dyad.closed(self.ground, crank, r3, r4, self.assembly[:, None])
 
-    def outputs(self, turned: FloatArray) -> FloatArray:
+    def outputs(self, inputs: FloatArray) -> FloatArray:
         """Angle of link 4 (rad) or place of the slide, shape (M, N); NaN where the loop is open.
 
-        `turned` (N,), rad, are growing driver rotations from the first angle.
+        `inputs` (N,) grow from the first driver angle: rotations of the driver, rad, or lengths.
         """
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            crank, loop = self._closed(turned)
+            crank, loop = self._closed(inputs)
             output: FloatArray = self.dyad.output(loop, crank)
         return output if self.ONE_SENSE else np.unwrap(output, axis=1)
 
-    def slopes(self, turned: FloatArray) -> FloatArray:
+    def slopes(self, inputs: FloatArray) -> FloatArray:
         """Derivatives of the output by the shape, shape (M, N, K); NaN in dead positions."""
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            crank, loop = self._closed(turned)
+            crank, loop = self._closed(inputs)
             lever = self.dyad.lever(loop)
             lever = np.where(lever == 0, np.nan, lever)
             slopes = [self.dyad.driven_by(loop, move) / lever for move in self.moves(crank, loop)]
+            slopes[-1:-1] = [slopes[-1] * turned for turned in self.turned_by(inputs)]
         return np.stack(np.broadcast_arrays(*slopes), axis=-1)
 
     def worst_cosine(self, span: float) -> FloatArray:
-        """Greatest absolute cosine of the transmission angle over a rotation, shape (M,); above 1: open."""
+        """Greatest absolute cosine of the transmission angle up to an input, shape (M,); above 1: open."""
         sizes = Sizes(*self.sizes_of(self.columns))
-        places, met, _ = places_met(self.first, span, self._on_ground)
+        places, met, _ = places_met(self.first, self._turn(span), self._on_ground)
         with np.errstate(divide="ignore", invalid="ignore"):
             cosine = self.dyad.cos_mu(sizes, self.dyad.reach(sizes, places - self.theta1))
         worst: FloatArray = np.where(met, np.abs(cosine), 0.0).max(axis=1)
         return worst
+
+    def _turn(self, span: float) -> FloatArray:
+        """Driver rotation up to an input, shape (M,) or of one number."""
+        turn: FloatArray = self.turns(np.array([span]))[..., 0]
+        return turn
 
     @property
     def _on_ground(self) -> Limits:
@@ -160,6 +180,8 @@ class Generators(ABC):
         logs = np.concatenate([np.zeros((len(self), 1)), self.shape[:, : self.LINKS]], axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             parts = [ratio_rows(logs, limits.caps, self.UNKNOWNS), self._transmission(limits, sizes)]
+            if limits.rates is not None:
+                parts.append(self._rate_rows(limits.rates, limits.span))
             if limits.offset is not None:
                 dimensions = joined_rows([0.0 * r4 + 1.0, *map(np.exp, shape[: self.LINKS]), r4])
                 parts.append(linear_rows(limits.offset, dimensions))
@@ -170,11 +192,28 @@ class Generators(ABC):
 
     def _transmission(self, limits: ShapeLimits, sizes: Sizes) -> Dual:
         along = self._on_ground
-        places, met, moving = places_met(self.first, limits.span, along, over_cycle=limits.over_cycle)
+        turn = self._turn(limits.span)
+        places, met, moving = places_met(self.first, turn, along, over_cycle=limits.over_cycle)
         slope = np.zeros((*places.shape, self.UNKNOWNS))
         slope[..., -1] = moving
+        if not limits.over_cycle:
+            for k, by_it in enumerate(reversed(self.turned_by(np.array([limits.span]))), start=2):
+                slope[:, 1, -k] = by_it[:, 0]  # of the place at the last input
         cosine = self.dyad.cos_mu(sizes, self.dyad.reach(sizes, Dual(places - self.theta1, slope)))
         return cosine_rows(cosine, met, limits.most_cosine)
+
+    def _rate_rows(self, rates: FloatArray, span: float) -> Dual:
+        """Limits of d(output)/d(input) at inputs, both times the span; derivatives by differences."""
+        at, low, high = rates.T
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rate = self.slopes(at)[..., -1] * self.turn_rates(at)
+
+        def slope() -> FloatArray:
+            ahead, behind = np.minimum(at + _STEP * span, span), np.maximum(at - _STEP * span, 0.0)
+            by_shape = (self.slopes(ahead) - self.slopes(behind)) / (ahead - behind)[:, None]
+            return span * np.concatenate([by_shape, -by_shape], axis=1)
+
+        return Dual(span * np.concatenate([rate - low, high - rate], axis=1), slope)
 
     @staticmethod
     def limited_stroke(sizes: Sizes, stroke: Limits) -> list[Dual]:  # noqa: ARG004
@@ -272,7 +311,7 @@ class Generators(ABC):
         """
 
     def extent(self, span: float, ground: float) -> FloatArray:
-        """Diagonal of the box around the pivots over a rotation, shape (M,), where O2O4 is `ground`."""
+        """Diagonal of the box around the pivots up to an input, shape (M,), where O2O4 is `ground`."""
         turned = np.linspace(0.0, span, 13)
         a = self.lengths[:, 1:2] * np.exp(1j * (self.shape[:, -1:] + turned))
         pivots = np.broadcast_to([0.0, self.sizes_of(self.columns)[0]], (len(self), 2))

@@ -133,7 +133,7 @@ class SliderCranks(Generators):
         side, shape = np.where(scale < 0, -1.0, 1.0), self.shape.copy()
         shape[:, :2] += more[:, None]
         shape[:, 2] *= side
-        shape[:, 3] += np.pi * (side < 0)
+        shape[:, -1] += np.pi * (side < 0)
         return type(self)(shape, side * self.assembly)
 
     @staticmethod

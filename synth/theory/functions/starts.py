@@ -9,6 +9,7 @@ from grashof.synth.theory.functions.fit import DesiredOutput
 from grashof.synth.theory.functions.output import Generators
 
 GRID = 40  # starts of driver and output each
+COARSE, FEW = 12, 6  # the same, and `SUBSETS`, where many tasks are tried
 ANYTHING = 20_000  # random linkages with a given driver angle; few of them close over the range
 SUBSETS = 30  # of as many pairs as can be met, through which exact linkages begin
 _SAME = 1e-9  # rad
@@ -48,6 +49,14 @@ def function_starts(
         each.ravel() for each in np.meshgrid(half, np.pi * (np.arange(GRID) + rng.random()) / GRID)
     )
     return kind.joined([_of_subsets(kind, desired, rng, subsets), on_grid(kind, desired, driver, place)])
+
+
+def few_starts(kind: type[Generators], desired: DesiredOutput, rng: np.random.Generator) -> Generators:
+    """The same from a coarse grid, and exact ones through a few sets of pairs."""
+    half = np.pi * np.arange(COARSE) / COARSE
+    shift = np.pi * rng.random(2) / COARSE
+    driver, place = (each.ravel() for each in np.meshgrid(half + shift[0], half + shift[1]))
+    return kind.joined([_of_subsets(kind, desired, rng, FEW), on_grid(kind, desired, driver, place)])
 
 
 def on_grid(

@@ -83,9 +83,9 @@ class SearchPage extends MovingPage {
   // Wanted and generated output of a function, and the error between them.
   outputs(design) {
     const empty = [null, null];
-    const none = { title: "output", unit: "", turned: [0, 1], wanted: empty, generated: empty, error: empty };
-    const { title, unit, turned, wanted, generated, error } = design.function || none;
-    const panel = { unit, places: turned, over: "driver rotation from the first pair (deg)" };
+    const none = { title: "output", unit: "", over: "", inputs: [0, 1], wanted: empty, generated: empty, error: empty };
+    const { title, unit, over, inputs, wanted, generated, error } = design.function || none;
+    const panel = { unit, places: inputs, over };
     const first = design.theta2[0];
     const marks = design.theta2.map((angle) => Math.abs(angle - first) * DEG);
     const series = [{ label: "wanted", values: wanted }, { label: "generated", values: generated }];

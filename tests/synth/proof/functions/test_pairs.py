@@ -19,7 +19,7 @@ from grashof.synth.proof.functions.few_pairs import Sense, bounds_of_pairs
 from grashof.synth.proof.functions.five_pairs import certified_functions
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.starts.functions.aims import FunctionAims
-from grashof.synth.starts.functions.pairs import exact_functions
+from grashof.synth.starts.functions.exact import exact_functions
 from grashof.synth.theory.burmester import Displacements
 from grashof.synth.theory.functions.four_bar import FourBars
 

@@ -1,0 +1,152 @@
+"""How link 2 turns with the input of a function: by an angle, or by the lengthening of a cylinder on it."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from grashof.problems import Cylinder, Linkage, Task
+from grashof.problems.values.arrays import TURN, FloatArray, Limits
+
+_ROUNDING = 1e-9  # rad, or share of the lengths: what misses a range by less is at its end
+
+
+class Input(ABC):
+    """What link 2 turns with, from the first target on. Starts are driver angles there, in rad."""
+
+    @abstractmethod
+    def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        """Rotation of link 2 in a sense from starts (...) at inputs (N,), (..., N), rad; NaN beyond reach."""
+
+    @abstractmethod
+    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        """Derivative of that rotation by the input, shape (N,), rad for a unit of the input."""
+
+    @abstractmethod
+    def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        """Derivative of the driver angle at inputs by the start, shape (N,)."""
+
+    @abstractmethod
+    def starts(self, reach: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        """Ranges of starts from which link 2 stays within angles `reach` while the input covers `span`."""
+
+    @abstractmethod
+    def starts_of_turn(self, turn: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        """The same where link 2 turns fully, and all angles of `turn` are possible."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByAngle(Input):
+    """The input is the rotation of link 2."""
+
+    def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        return np.broadcast_to(inputs, (*np.shape(starts), len(inputs)))
+
+    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        return np.ones(len(inputs))
+
+    def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        return np.ones(len(inputs))
+
+    def starts(self, reach: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        back, on = (-span[0], span[1]) if direction > 0 else (span[1], -span[0])
+        low, high = reach[0] + back, reach[1] - on
+        # A range that is as long as the linkage's own leaves one place; rounding must not lose it.
+        return [(min(low, high), max(low, high))] if high - low >= -_ROUNDING else []
+
+    def starts_of_turn(self, turn: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        return [turn]
+
+
+@dataclass(frozen=True, slots=True)
+class ByLength(Input):
+    """The input is the lengthening of a cylinder on link 2, from its length at the first target.
+
+    In the triangle of O2, the cylinder's base at the distance b and its pivot at the arm c, the cosine of the
+    angle at O2 is (b^2 + c^2 - L^2) / (2 b c): link 2 turns away from the base while the cylinder lengthens.
+    `zero` is the driver angle at which the arm points to the base.
+    """
+
+    base: float
+    arm: float
+    zero: float
+
+    @classmethod
+    def of(cls, linkage: Linkage, cylinder: Cylinder) -> ByLength | None:
+        """That of a cylinder on link 2; None of any other, or of one that does not turn it."""
+        o2, point = np.asarray(linkage.o2, dtype=np.float64), np.asarray(cylinder.point)
+        out = np.asarray(cylinder.base) - o2
+        base, arm = float(np.hypot(*out)), float(np.hypot(*point))
+        if cylinder.link != 2 or not (base > 0 and arm > 0):
+            return None
+        return cls(base, arm, float(np.arctan2(out[1], out[0]) - np.arctan2(point[1], point[0])))
+
+    def turned(self, starts: FloatArray, direction: int, inputs: FloatArray) -> FloatArray:
+        first = self._opening(np.asarray(starts), direction)
+        opened = self._at(self._length(first)[..., None] + inputs) - first[..., None]
+        return np.where(inputs == 0, 0.0 * first[..., None], opened)
+
+    def rate(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        length, opening = self._along(start, direction, inputs)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(length / (self.base * self.arm * np.sin(opening)))
+
+    def moved_by_start(self, start: float, direction: int, inputs: FloatArray) -> FloatArray:
+        length, opening = self._along(start, direction, inputs)
+        first = self._opening(np.array(start), direction)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moved: FloatArray = length * np.sin(first) / (self._length(first) * np.sin(opening))
+        return moved
+
+    def starts(self, reach: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        found = list[Limits]()
+        nearest = round((reach[0] + reach[1]) / 2 / TURN - self.zero / TURN)
+        for zero in (self.zero + TURN * (nearest + k) for k in (-1, 0, 1)):
+            low, high = (
+                max(reach[0], min(zero, zero + direction * np.pi)),
+                min(reach[1], max(zero, zero + direction * np.pi)),
+            )
+            if low >= high:
+                continue
+            least, most = sorted(self._length(np.array([low, high]) - zero).tolist())
+            last = most - span[1]
+            if last - least >= -_ROUNDING * most:
+                ends = zero + direction * self._at(np.array([least, max(last, least)]))
+                found.append((float(ends.min()), float(ends.max())))
+        return found
+
+    def starts_of_turn(self, turn: Limits, direction: int, span: Limits) -> Sequence[Limits]:
+        ends = sorted((self.zero, self.zero + direction * np.pi))
+        return self.starts((ends[0], ends[1]), direction, span)
+
+    def _along(self, start: float, direction: int, inputs: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lengths and openings at inputs."""
+        length = self._length(self._opening(np.array(start), direction)) + inputs
+        return length, self._at(length)
+
+    def _opening(self, theta2: FloatArray, direction: int) -> FloatArray:
+        """Angle at O2 from base to pivot in a sense; NaN where the cylinder shortens in that sense."""
+        opening = direction * (theta2 - self.zero)
+        opening = opening - TURN * np.round(opening / TURN)
+        inside = np.where(np.abs(opening) < _ROUNDING, 0.0, opening)
+        return np.where(inside >= 0, inside, np.where(inside <= -np.pi + _ROUNDING, np.pi, np.nan))
+
+    def _length(self, opening: FloatArray) -> FloatArray:
+        length: FloatArray = np.hypot(self.base - self.arm * np.cos(opening), self.arm * np.sin(opening))
+        return length
+
+    def _at(self, length: FloatArray) -> FloatArray:
+        """Opening at a length, rad; NaN where the cylinder is too short or too long."""
+        cosine = (self.base**2 + self.arm**2 - length**2) / (2 * self.base * self.arm)
+        within = np.abs(cosine) <= 1 + _ROUNDING
+        return np.where(within, np.arccos(np.clip(cosine, -1.0, 1.0)), np.nan)
+
+
+def input_of(linkage: Linkage, task: Task, cylinder: Cylinder | None) -> Input | None:
+    """What link 2 turns with in a task; None where a cylinder should turn it and none does."""
+    if not task.lengthens:
+        return ByAngle()
+    return None if cylinder is None else ByLength.of(linkage, cylinder)

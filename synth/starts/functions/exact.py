@@ -1,0 +1,42 @@
+"""Function generators through all pairs, the most promising ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.starts.functions.aims import FunctionAims
+from grashof.synth.starts.functions.driven import through_by_cylinder
+from grashof.synth.starts.functions.pairs import NEAR, expected_score, through_pairs
+from grashof.synth.theory.functions.fit import best_apart
+from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.stopping import stop_requested
+
+
+def exact_functions(
+    aims: FunctionAims, rng: np.random.Generator, most: int, effort: float
+) -> list[tuple[Generators, int]]:
+    """Generators through all pairs that keep the limits, each with its driver's sense.
+
+    The most promising distinct ones come first.
+    """
+    found: list[tuple[FloatArray, Generators, int]] = []
+    for sense, driver, first in aims.ways():
+        batch = (
+            through_pairs(aims, sense, driver, first, rng, effort)
+            if aims.triangle is None
+            else through_by_cylinder(aims, sense, driver, rng, effort)
+        )
+        if len(batch) and not stop_requested():
+            found.append((expected_score(aims, batch, sense), batch, driver))
+    if not found:
+        return []
+    score = np.concatenate([each for each, _, _ in found])
+    drivers = np.concatenate([np.full(len(batch), driver) for _, batch, driver in found])
+    batch = aims.kind.joined([each for _, each, _ in found])
+    cell = NEAR
+    best = best_apart(batch, -score, cell)
+    while len(best) > 4 * most:  # a curve or surface of designs: farther apart
+        cell *= 1.5
+        best = best_apart(batch, -score, cell)
+    return [(batch[k : k + 1], int(drivers[k])) for k in best[:most]]

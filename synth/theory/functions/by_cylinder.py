@@ -1,0 +1,139 @@
+"""Function generators whose driver a cylinder turns: their input is its lengthening.
+
+The shape has three more numbers, before the first driver angle: the logarithms of the distances of base and
+pivot from O2 and of the first length of the cylinder, in the unit of the inputs. The driver turns away from
+the base while the cylinder lengthens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from grashof.problems import Requirements
+from grashof.problems.values.arrays import FloatArray
+from grashof.synth.loop.dual import Dual
+from grashof.synth.theory.functions.four_bar import CouplerFourBars, FourBars
+from grashof.synth.theory.functions.inverted import InvertedSliderCranks
+from grashof.synth.theory.functions.limits import ShapeLimits, joined_rows
+from grashof.synth.theory.functions.output import Generators
+from grashof.synth.theory.functions.slider_crank import SliderCranks
+from grashof.synth.theory.functions.triangle import opening, opening_slopes
+
+_OF_TRIANGLE = 3
+
+
+class ByCylinder(Generators):
+    """Generators of a kind, `by_angle`, with the triangle of their cylinder."""
+
+    __slots__ = ()
+
+    by_angle: ClassVar[type[Generators]]
+
+    @classmethod
+    def of(cls, batch: Generators, triangles: FloatArray) -> Self:
+        """Generators (M,) with a triangle each, or all with the same, (M, 3) or (3,), in logarithms."""
+        logs = np.broadcast_to(triangles, (len(batch), _OF_TRIANGLE))
+        return cls(np.column_stack([batch.shape[:, :-1], logs, batch.shape[:, -1]]), batch.assembly)
+
+    @property
+    def itself_by_angle(self) -> Generators:
+        """The same without their cylinders."""
+        kept = [*range(self.by_angle.UNKNOWNS - 1), self.UNKNOWNS - 1]
+        return self.by_angle(self.shape[:, kept], self.assembly)
+
+    @property
+    def triangle(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Base, arm and first length, each of shape (M, 1)."""
+        base, arm, length = np.exp(self.shape[:, -1 - _OF_TRIANGLE : -1]).T[..., None]
+        return base, arm, length
+
+    @classmethod
+    def sizes_of(cls, shape: Sequence[Any]) -> tuple[Any, Any, Any, Any]:
+        return cls.by_angle.sizes_of([*shape[: -1 - _OF_TRIANGLE], shape[-1]])
+
+    def turns(self, inputs: FloatArray) -> FloatArray:
+        base, arm, length = self.triangle
+        return opening(base, arm, length + inputs) - opening(base, arm, length)
+
+    def turn_rates(self, inputs: FloatArray) -> FloatArray:
+        base, arm, length = self.triangle
+        return opening_slopes(base, arm, length + inputs)[2]
+
+    def turned_by(self, inputs: FloatArray) -> list[FloatArray]:
+        base, arm, length = self.triangle
+        there, first = (opening_slopes(base, arm, length + each) for each in (inputs, 0.0))
+        return [
+            each * (after - before)
+            for each, after, before in zip((base, arm, length), there, first, strict=True)
+        ]
+
+    def limited(self, limits: ShapeLimits) -> Dual:
+        rows = super().limited(limits)
+        if limits.triangle is None:
+            return rows
+        columns = slice(self.UNKNOWNS - 1 - _OF_TRIANGLE, self.UNKNOWNS - 1)
+        every = np.broadcast_to(np.eye(self.UNKNOWNS)[columns], (len(self), _OF_TRIANGLE, self.UNKNOWNS))
+        return joined_rows([rows, limits.triangle.rows(Dual(self.shape[:, columns], every))])
+
+    def linkage(self, wanted: Requirements, unit: float, driver: int) -> Any:
+        return self.itself_by_angle.linkage(wanted, unit, driver)
+
+    def extent(self, span: float, ground: float) -> FloatArray:
+        alone, turned = self.itself_by_angle, self.turns(np.array([span]))[:, 0]
+        every = [alone[k : k + 1].extent(float(turn), ground) for k, turn in enumerate(turned)]
+        return np.concatenate([*every, np.empty(0)])
+
+
+class FourBarsByCylinder(ByCylinder, FourBars):
+    """Four-bars whose link 4 follows the cylinder's length."""
+
+    __slots__ = ()
+    by_angle, UNKNOWNS, EXACT = FourBars, FourBars.UNKNOWNS + _OF_TRIANGLE, FourBars.EXACT + _OF_TRIANGLE
+
+
+class CouplerFourBarsByCylinder(ByCylinder, CouplerFourBars):
+    """Four-bars whose coupler follows the cylinder's length."""
+
+    __slots__ = ()
+    by_angle, UNKNOWNS, EXACT = (
+        CouplerFourBars,
+        FourBars.UNKNOWNS + _OF_TRIANGLE,
+        FourBars.EXACT + _OF_TRIANGLE,
+    )
+
+
+class SliderCranksByCylinder(ByCylinder, SliderCranks):
+    """Slider-cranks whose slide follows the cylinder's length."""
+
+    __slots__ = ()
+    by_angle, UNKNOWNS, EXACT = (
+        SliderCranks,
+        SliderCranks.UNKNOWNS + _OF_TRIANGLE,
+        SliderCranks.EXACT + _OF_TRIANGLE,
+    )
+
+
+class InvertedSliderCranksByCylinder(ByCylinder, InvertedSliderCranks):
+    """Inverted slider-cranks whose block follows the cylinder's length."""
+
+    __slots__ = ()
+    by_angle = InvertedSliderCranks
+    UNKNOWNS = InvertedSliderCranks.UNKNOWNS + _OF_TRIANGLE
+    EXACT = InvertedSliderCranks.EXACT + _OF_TRIANGLE
+
+
+BY_CYLINDER: Mapping[type[Generators], type[ByCylinder]] = MappingProxyType(
+    {
+        each.by_angle: each
+        for each in (
+            FourBarsByCylinder,
+            CouplerFourBarsByCylinder,
+            SliderCranksByCylinder,
+            InvertedSliderCranksByCylinder,
+        )
+    }
+)
