@@ -1,6 +1,7 @@
 """How designs are found: starts, the CasADi programme, Ipopt, verification, ranking."""
 
 from grashof.synth.designs.candidate import Candidate
+from grashof.synth.designs.efforts import place_parts
 from grashof.synth.proof.claims.proof import Claim, Proof
 from grashof.synth.prove import prove
 from grashof.synth.results.result import Result
@@ -8,4 +9,14 @@ from grashof.synth.search.run import Progress
 from grashof.synth.synthesize import synthesize
 from grashof.synth.track import track
 
-__all__ = ["Candidate", "Claim", "Progress", "Proof", "Result", "prove", "synthesize", "track"]
+__all__ = [
+    "Candidate",
+    "Claim",
+    "Progress",
+    "Proof",
+    "Result",
+    "place_parts",
+    "prove",
+    "synthesize",
+    "track",
+]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from dataclasses import replace
 
+from grashof.synth.designs.efforts import with_parts
 from grashof.synth.designs.families import listed
 from grashof.synth.proof.claims.bounds import Bounds
 from grashof.synth.proof.claims.proof import best_listed, proof_of
@@ -19,7 +20,11 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
+from grashof.synth.theory.stopping import overdue
 
+PLACED = (
+    24  # designs that get struts and springs: the first of a list, which begins with the best of families
+)
 _LOG = logging.getLogger(__name__)
 
 
@@ -37,9 +42,12 @@ def conclude(
     explanation = explain(scaled, ledgers[-1], chosen, run)
     if explanation.note:
         _LOG.info("explanation: %s", explanation.note)
-    run.ended()
     problem, ledger = scaled.problem, ledgers[-1]
     designs = listed(problem, chosen.designs or explanation.designs)
+    designs = tuple(
+        with_parts(each) if k < PLACED and not overdue() else each for k, each in enumerate(designs)
+    )
+    run.ended()
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
         designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))

@@ -152,6 +152,7 @@ class Problem(ReadOnly):
                 checks.positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             for row in (row for word in self.mechanism for row in ROWS[word]):
                 wrong += misplaced(self.dynamics, row)
+            wrong += self.dynamics.beside_task
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
             if not self.dynamics.acts:
                 wrong.append(
@@ -375,6 +376,7 @@ _NEEDED: dict[Needs, tuple[Callable[[Problem], bool], str]] = {
         lambda problem: problem.driver is not None and problem.dynamics is not None,
         "{both}",
     ),
+    Needs.EFFORT: (lambda problem: getattr(problem.dynamics, "effort", None) is not None, "no effort"),
     Needs.OUTPUTS: (lambda problem: bool(problem.task.has_output.any()), _NO_OUTPUT),
     Needs.ROTATION: (
         lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,
