@@ -1,4 +1,5 @@
 from .designs.candidate import Candidate
+from .designs.efforts import place_parts
 from .pipeline import synthesize
 from .proof.claims.proof import Claim, Proof
 from .proving import prove
@@ -6,4 +7,4 @@ from .results.result import Result
 from .search.run import Progress
 from .tracking import track
 
-__all__ = ["Candidate", "Claim", "Progress", "Proof", "Result", "prove", "synthesize", "track"]
+__all__ = ["Candidate", "Claim", "Progress", "Proof", "Result", "place_parts", "prove", "synthesize", "track"]

@@ -19,7 +19,7 @@ from grashof.problems.values.linkages.mechanism import MECHANISMS
 from grashof.problems.values.specs.dynamics_of_kind import without_place
 
 # Joints by their links, which distinguish them in any kind of linkage.
-_JOINTS = {joint.links: Joint(k) for row in MECHANISMS for k, joint in enumerate(row.every_joint)}
+JOINT_OF = {joint.links: Joint(k) for row in MECHANISMS for k, joint in enumerate(row.every_joint)}
 TRAVEL_ROUNDING = 1e-9  # share of the greatest travel by which it may pass the rows of a load
 
 
@@ -106,7 +106,7 @@ def stated_loads(spec: DynamicsSpec, metre: float, clock: Clock | None = None) -
             *(Spring(*_ends(each.between), 0.0, 0.0, each.damping) for each in spec.dampers),
         ),
         torsion_springs=tuple(
-            TorsionSpring(_JOINTS[each.between], each.stiffness / metre**2, np.radians(each.free_angle_deg))
+            TorsionSpring(JOINT_OF[each.between], each.stiffness / metre**2, np.radians(each.free_angle_deg))
             for each in spec.torsion_springs
         ),
         friction=friction,

@@ -15,6 +15,7 @@ from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motion
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
 from grashof.analysis.judge.dwell_output import made_band
+from grashof.analysis.judge.effort_travel import effort_deviation
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict
@@ -195,13 +196,11 @@ def _cylinder(name: str, values: Values) -> float:
 
 
 def _cylinder_column(name: str, values: Values) -> float:
-    cylinder = values.verdict.cylinder
-    return np.nan if cylinder is None else cylinder.columns[name]
+    return np.nan if (driven := values.verdict.cylinder) is None else driven.columns[name]
 
 
 def _of_dwell(name: str, values: Values) -> float:
-    dwell = values.verdict.dwell
-    return np.nan if dwell is None else getattr(dwell, name)
+    return np.nan if (dwell := values.verdict.dwell) is None else getattr(dwell, name)
 
 
 def _band_made(values: Values) -> float:
@@ -286,6 +285,7 @@ MEASURES: dict[str, Callable[[Values], float]] = {
     "frechet": lambda values: values.curve_distances[1],
     **{name: partial(_cylinder_column, name) for name in Cylinder.COLUMNS},
     **{f"cylinder_{name}": partial(_cylinder, name) for name in ("closed", "stroke", "angle_min", *_RATES)},
+    "effort_deviation": lambda values: effort_deviation(values.linkage, values.problem, values.verdict),
     "cylinder_force_max": lambda values: cylinder_force_peak(values.linkage, values.problem, values.verdict),
     **{
         quantity.key: partial(_made, quantity.key)

@@ -11,6 +11,7 @@ from grashof.analysis.judge.two_outputs import TwoOutputs
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray
+from grashof.problems.values.dynamics.effort import EffortSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,8 @@ class Verdict:
         Empty for a design that meets all requirements.
     cylinder : Cylinder, optional
         That drives it, where one does.
+    effort : EffortSpec, optional
+        The effort with its struts and springs placed, where they are.
     output_error : ndarray, shape (N,), rad
         Of the output of a function at its pairs; empty for other tasks.
     structural_error_max, structural_error_rms, structural_error_at : float, rad
@@ -112,6 +115,7 @@ class Verdict:
     dwell: DwellFigures | None = None
     length_ratio: float = np.nan
     outputs: TwoOutputs | None = None
+    effort: EffortSpec | None = None
 
     @property
     def ok(self) -> bool:

@@ -18,7 +18,7 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.pycode import ModuleAnalyzer
 
-from grashof.problems.files.problem_schema import BoxTable
+from grashof.problems.files.place_schema import BoxTable
 from grashof.problems.files.tables import Table
 from grashof.problems.schema.docstrings import code
 from grashof.problems.schema.keys import linkage_tables, problem_tables

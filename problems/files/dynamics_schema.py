@@ -9,8 +9,9 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
+from grashof.problems.files.effort_schema import EffortTable
 from grashof.problems.files.spreadsheet import Names, number_table
-from grashof.problems.files.tables import TWO, SpecTable, Table, keys_of, listed, spec_table
+from grashof.problems.files.tables import TWO, NestedTable, Table, keys_of, listed, spec_table
 from grashof.problems.values.checks import located_in
 from grashof.problems.values.dynamics import load_specs
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
@@ -35,17 +36,7 @@ _ROD_LOADS: dict[str, _Kinds] = {
 _MOTION: dict[str, _Kinds] = {"time": ((("time", "time_s"), ("angle", "angle_deg")),)}
 
 
-class _Nested(SpecTable):
-    """A table of numbers, lists and places, which become tuples."""
-
-    @classmethod
-    def argument(cls, given: Any) -> Any:
-        if isinstance(given, Table):
-            return given.value()
-        return tuple(cls.argument(each) for each in given) if isinstance(given, list) else given
-
-
-class _FromFile(_Nested):
+class _FromFile(NestedTable):
     """A table whose `values` may be in a CSV file that a key names; its columns depend on their variable."""
 
     columns: ClassVar[Mapping[str, _Kinds]]
@@ -137,7 +128,7 @@ class MotorTable(_FromFile):
 
 
 @keys_of(load_specs.Place, {"at": _POINT})
-class PlaceTable(_Nested):
+class PlaceTable(NestedTable):
     suggested = False
 
 
@@ -155,7 +146,7 @@ _LINKS = _SECTION | {"masses": (1, 1, 1), "inertias": (1, 1, 1)}
     },
     ("speed_rpm", "gravity", "mass_per_length", "density", "masses", "inertias", "centres", "payload"),
 )
-class DynamicsTable(_Nested):
+class DynamicsTable(NestedTable):
     # Whether there is a section is checked with the complete file.
     beside = MappingProxyType({"*": _SECTION, **dict.fromkeys(("masses", "inertias", "centres"), _LINKS)})
 
@@ -193,14 +184,15 @@ _Machine = create_model(
     __base__=Table,
     dynamics=_one(DynamicsTable),
     loads=_some(LoadTable),
-    springs=_some(spec_table(load_specs.SpringSpec, _Nested, {"between": _BETWEEN})),
-    dampers=_some(spec_table(load_specs.DamperSpec, _Nested, {"between": _BETWEEN})),
-    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, _Nested, {"between": _JOINT})),
-    counterweights=_some(spec_table(load_specs.CounterweightSpec, _Nested, {"at": _POINT})),
-    friction=_one(spec_table(load_specs.FrictionSpec, _Nested, _ONE_OR_EACH)),
+    springs=_some(spec_table(load_specs.SpringSpec, NestedTable, {"between": _BETWEEN})),
+    dampers=_some(spec_table(load_specs.DamperSpec, NestedTable, {"between": _BETWEEN})),
+    torsion_springs=_some(spec_table(load_specs.TorsionSpringSpec, NestedTable, {"between": _JOINT})),
+    counterweights=_some(spec_table(load_specs.CounterweightSpec, NestedTable, {"at": _POINT})),
+    friction=_one(spec_table(load_specs.FrictionSpec, NestedTable, _ONE_OR_EACH)),
     motor=_one(MotorTable),
-    section=_one(spec_table(SectionSpec, _Nested)),
-    strength=_one(spec_table(StrengthSpec, _Nested)),
+    section=_one(spec_table(SectionSpec, NestedTable)),
+    strength=_one(spec_table(StrengthSpec, NestedTable)),
+    effort=_one(EffortTable),
 )
 
 
@@ -214,5 +206,5 @@ class MachineTables(_Machine):  # type: ignore[misc, valid-type]
             return None
         own = {} if self.dynamics is None else self.dynamics.given()
         return DynamicsSpec(
-            **own, **{name: _Nested.argument(getattr(self, name)) for name in names if name != "dynamics"}
+            **own, **{name: NestedTable.argument(getattr(self, name)) for name in names if name != "dynamics"}
         )

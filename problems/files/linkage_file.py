@@ -186,6 +186,7 @@ def _candidate(path: Path, which: str) -> tuple[LinkageSpec, dict[str, Any]]:
     problem = _listed_problem(content, path)
     dynamics = ((spec if problem is None else problem).dynamics or DynamicsSpec()).turning(direction)
     with checks.located_in(f"{path}#{which}"):
+        dynamics = _with_parts(dynamics, design)
         return replace(spec, dynamics=dynamics, problem=problem), design
 
 
@@ -210,6 +211,23 @@ def _design(design: dict[str, Any], document: dict[str, Any], path: Path) -> tup
     title, source = f"{spec.title}: design {design['rank']}", checks.readable(str(path))
     linkage = spec.linkage.changed(**angles)
     return replace(spec, linkage=linkage, title=title, source=source, cylinder=cylinder), direction
+
+
+def _with_parts(dynamics: DynamicsSpec, design: dict[str, Any]) -> DynamicsSpec:
+    """The dynamics with the travel of a design, and the struts and springs that a list states of it."""
+    from grashof.problems.files.effort_schema import parts_from
+
+    effort, given = dynamics.effort, design.get("parts")
+    if effort is None:
+        return dynamics
+    if given is not None:
+        effort = replace(effort, parts=parts_from(given))
+    ends = design.get("theta2")
+    if isinstance(ends, list) and len(ends) > 1 and ends[0] != ends[-1]:
+        angles = [checks.finite_number(angle, "theta2") for angle in (ends[0], ends[-1])]
+        first, last = np.degrees(angles).tolist()
+        effort = replace(effort, travel_deg=(first, last))
+    return replace(dynamics, effort=effort)
 
 
 def _names(word: str, stated: Any) -> dict[str, bool]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from grashof.problems.files.problem_writing import Tables, degrees_of, toml_text
+from grashof.problems.files.problem_writing import Tables, degrees_of, dynamics_tables, toml_text
 from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.specs.linkage_spec import LinkageSpec
 
@@ -63,6 +63,6 @@ def _tables(spec: LinkageSpec, dyad: Mapping[str, Any]) -> Tables:
         yield "pumping_unit", spec.pumping_unit.stated
     if spec.dynamics is not None:
         usual = {each.name: each.default for each in fields(DynamicsSpec) if each.default is not MISSING}
-        own, *others = spec.dynamics.tables.items()
+        own, *others = dynamics_tables(spec.dynamics, spec.length_unit)
         yield own[0], {key: x for key, x in own[1].items() if key == "speed_rpm" or x != usual[key]}
         yield from others

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import fields, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Tag, ValidationInfo, create_model, field_validator
 from pydantic_core import PydanticCustomError
@@ -14,8 +14,8 @@ from pydantic_core import PydanticCustomError
 from grashof.problems.files import tables
 from grashof.problems.files.dynamics_schema import MachineTables
 from grashof.problems.files.named_files import with_files
-from grashof.problems.files.task_schema import TASKS, Corners, Drawn, Pair, SceneTable
-from grashof.problems.values.box import Box
+from grashof.problems.files.place_schema import Place
+from grashof.problems.files.task_schema import TASKS, Corners, Pair, SceneTable
 from grashof.problems.values.checks import near_miss, noted, refused
 from grashof.problems.values.dynamics.dynamics_spec import metres
 from grashof.problems.values.dynamics.manufacturing import Manufacturing
@@ -23,7 +23,6 @@ from grashof.problems.values.dynamics.wanted_torque import ROW, WantedTorque
 from grashof.problems.values.errors import ProblemError
 from grashof.problems.values.linkages.cylinder import CARRIERS, CylinderSpec
 from grashof.problems.values.linkages.mechanisms import ANY_KINDS, mechanisms
-from grashof.problems.values.region import Region, place
 from grashof.problems.values.requirements.limit_kinds import Kind
 from grashof.problems.values.requirements.modes import Rotatability
 from grashof.problems.values.requirements.objective import GOALS, Objective
@@ -57,44 +56,6 @@ def _ill_matched(document: dict[str, Any]) -> Iterator[str]:
         with noted(wrong):
             metres(unit)
     yield from wrong
-
-
-_SIDES = {"x": (Pair | None, None), "y": (Pair | None, None)}
-_CORNERS = {"inside": (Drawn | None, None), "on": (Corners | None, None)}
-
-
-@tables.keys_of(Box, _SIDES | _CORNERS, [*_SIDES, *_CORNERS])
-class BoxTable(tables.SpecTable):
-    """Where a joint may be: an upright rectangle whose sides may be open, a polygon, or a line segment."""
-
-    suggested: ClassVar[bool] = False  # x and y do not show where they belong
-    described_by: ClassVar[tuple[type, ...]] = (Region,)
-
-    @field_validator("x", "y", mode="before", check_fields=False)
-    @classmethod
-    def _line(cls, given: Any) -> Any:
-        """A number alone is a side of no width."""
-        return [given, given] if tables.tag(given) == tables.NUMBER else given
-
-    @classmethod
-    def make(cls, **given: Any) -> Box:
-        return place(**given)
-
-
-def _at(point: list[float]) -> Box:
-    """The box of a single point."""
-    if len(point) != 2:
-        raise PydanticCustomError(tables.WRONG, _PLACE_SHAPES)
-    x, y = point
-    return Box((x, x), (y, y))
-
-
-_PLACE_SHAPES = "[x, y], { x = [lo, hi], y = [lo, hi] }, { inside = corners } or { on = ends }"
-Place = Annotated[
-    Annotated[BoxTable, AfterValidator(BoxTable.value), Tag(tables.TABLE)]
-    | Annotated[list[float], AfterValidator(_at), Tag(tables.LIST), tables.TWO],
-    tables.either(_PLACE_SHAPES),
-]
 
 
 _AREAS = "a list of polygons, each a list of corners [x, y], or a .dxf or .svg file"

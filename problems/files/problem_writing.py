@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.box import Box
+from grashof.problems.values.dynamics.dynamics_spec import DynamicsSpec
 from grashof.problems.values.errors import shown_key
 from grashof.problems.values.linkages.mechanisms import kinds_text
 from grashof.problems.values.region import Region
@@ -73,12 +74,26 @@ def _tables(problem: Problem) -> Tables:
     if problem.by_objective:
         yield "objective", {"maximise": problem.objective.stated}
     if problem.dynamics is not None:
-        yield from problem.dynamics.tables.items()
+        yield from dynamics_tables(problem.dynamics, problem.length_unit)
     if problem.torque is not None:
         yield "torque", problem.torque.stated
     if problem.manufacturing is not None:
         yield "manufacturing", asdict(problem.manufacturing)
     yield "search", asdict(problem.search)
+
+
+def dynamics_tables(spec: DynamicsSpec, length_unit: str) -> Iterator[tuple[str, Any]]:
+    """The tables of dynamics; usual sizes of parts, which files have by default, are left out."""
+    # Here, not above: worker processes import this module, and need not pay for pydantic.
+    from grashof.problems.files.effort_schema import HAVE_USUAL, usual_sizes
+
+    for name, table in spec.tables.items():
+        if name == "effort":
+            for part in table.get("parts", []):
+                usual = usual_sizes(part["kind"], length_unit) if part["kind"] in HAVE_USUAL else ()
+                if part["sizes"] == [size.stated for size in usual]:
+                    del part["sizes"]
+        yield name, table
 
 
 def _given(table: Mapping[str, Any]) -> dict[str, Any]:

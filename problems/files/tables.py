@@ -74,7 +74,8 @@ def stated(
     Names of other files are relative to the folder; without one they are refused.
     """
     try:
-        return table.model_validate(document, context={"folder": folder})
+        unit = document.get("length_unit")
+        return table.model_validate(document, context={"folder": folder, "length_unit": unit})
     except ValidationError as refused:
         errors = refused.errors(include_url=False)
     # A missing key comes last: most often it is in the file, misspelt, and that error is clearer.
@@ -253,6 +254,17 @@ class SpecTable(Table):
         return self.make(**self.given())
 
 
+class NestedTable(SpecTable):
+    """A table of numbers, lists and places, which become tuples."""
+
+    @classmethod
+    def argument(cls, given: Any) -> Any:
+        """A table as its value, a list as a tuple of values."""
+        if isinstance(given, Table):
+            return given.value()
+        return tuple(cls.argument(each) for each in given) if isinstance(given, list) else given
+
+
 AnySpecTable = TypeVar("AnySpecTable", bound=SpecTable)
 _AS_DECLARED = (bool, int, float, str, int | None, float | None, str | None)
 
@@ -282,7 +294,7 @@ def spec_table(
             optional = default is None and given is not Any
             given = (given | None if optional else given, ... if default is Parameter.empty else default)
         keys[name] = given
-    own = base.__name__.startswith("_")  # a base of several tables
+    own = base is NestedTable or base.__name__.startswith("_")  # a base of several tables
     name = f"{spec.__name__.removesuffix('Spec')}Table" if own else base.__name__
     table = create_model(name, __base__=base, __doc__=doc, **keys)
     table.spec = spec

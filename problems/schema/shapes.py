@@ -10,8 +10,8 @@ from grashof.problems.files.dynamics_schema import MotorTable
 from grashof.problems.files.linkage_schema import FILES as KINDS
 from grashof.problems.files.linkage_schema import DyadTable
 from grashof.problems.files.named_files import FILES
+from grashof.problems.files.place_schema import BoxTable
 from grashof.problems.files.problem_schema import (
-    BoxTable,
     CylinderTable,
     ObjectiveTable,
     ProblemFile,

@@ -176,12 +176,13 @@ def analyse(linkage: LinkageName, options: AnalyseOptions) -> None:
     """
     from grashof.output.analysis_files import print_report, write_report
     from grashof.survey import Asked, report_on
+    from grashof.synth import place_parts
 
     spec = load_linkage_spec(linkage)
     folder = options.out or Path(f"{spec.name}-analysis")
     check_writable(folder, record=ANALYSIS_RECORD)
     try:
-        report = report_on(spec, Asked(**options.asked()))
+        report = report_on(place_parts(spec), Asked(**options.asked()))
     except AssemblyError as error:  # lengths so unlike that every position is dead but for rounding
         raise ProblemError(f"{spec.name}: its lengths are too unlike to be analysed: {error}") from None
     files = write_report(folder, report, pictures=options.pictures)

@@ -127,7 +127,7 @@ def alike(one: Verdict, other: Verdict, size: float) -> bool:
             return False
         if mine is not None and not near(np.hstack(astuple(mine)), np.hstack(astuple(theirs)), scale):
             return False
-    apart = ("defects", "grashof_class", "cylinder", *figures)
+    apart = ("defects", "grashof_class", "cylinder", "effort", *figures)
     names = (each.name for each in fields(Verdict) if each.name not in apart)
     return one.grashof_class is other.grashof_class and all(
         near(getattr(one, name), getattr(other, name), scales.get(name, 1.0)) for name in names

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from grashof.problems import Problem
+from grashof.problems.values.requirements.quantities import Needs
 from grashof.synth.designs.candidate import Candidate
 from grashof.synth.designs.families import listed
 from grashof.synth.proof.claims.bounds import Bounds
@@ -21,7 +22,11 @@ from grashof.synth.search.finder import finder_for
 from grashof.synth.search.history import RunHistory, StopCondition, now
 from grashof.synth.search.ledger import CHOICE, LISTED, Ledger
 from grashof.synth.search.run import Run
+from grashof.synth.theory.stopping import overdue
 
+PLACED = (
+    24  # designs that get struts and springs: the first of a list, which begins with the best of families
+)
 _LOG = logging.getLogger(__name__)
 
 
@@ -39,9 +44,9 @@ def conclude(
     found, nearest, note = _explained(scaled, ledgers[-1], chosen, run)
     if note:
         _LOG.info("explanation: %s", note)
-    run.ended()
     problem, ledger = scaled.problem, ledgers[-1]
-    designs = listed(problem, found)
+    designs = _with_parts(listed(problem, found))
+    run.ended()
     if atlas is not None:
         regions = atlas.regions_of(scaled, designs)
         designs = tuple(replace(each, region=one) for each, one in zip(designs, regions, strict=True))
@@ -106,6 +111,15 @@ def _explained(
 
     found = explain(scaled, ledger, chosen, run)
     return found.designs, found.nearest, found.note
+
+
+def _with_parts(designs: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    """The designs, the first of them with struts and springs where the problem states an effort."""
+    if not designs or not designs[0].problem.states(Needs.EFFORT):
+        return designs
+    from grashof.synth.designs.efforts import with_parts
+
+    return tuple(with_parts(each) if k < PLACED and not overdue() else each for k, each in enumerate(designs))
 
 
 def _advice(problem: Problem) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from grashof.problems.values.checks import bounded, from_zero, pair, positive_bounded
+from grashof.problems.values.dynamics.effort import EffortSpec
 from grashof.problems.values.dynamics.load_specs import (
     CounterweightSpec,
     DamperSpec,
@@ -86,6 +87,8 @@ class DynamicsSpec(TableValue):
         Of the bars; `density` needs it, and strength.
     strength : StrengthSpec, optional
         Of the bars and pins.
+    effort : EffortSpec, optional
+        By which a hand moves the linkage, and the struts and springs that give it.
 
     Raises
     ------
@@ -116,6 +119,7 @@ class DynamicsSpec(TableValue):
     motor: MotorSpec | None = None
     section: SectionSpec | None = None
     strength: StrengthSpec | None = None
+    effort: EffortSpec | None = None
 
     def __post_init__(self) -> None:
         self._check_masses()
@@ -186,6 +190,13 @@ class DynamicsSpec(TableValue):
             if load.values is not None and load.over == "time"
             if load.values[0][0] > 0 or not load.values[-1][0] >= duration * (1 - 1e-12)
         ]
+
+    @property
+    def beside_task(self) -> list[str]:
+        """Errors of what a problem states by its task."""
+        if self.effort is None or self.effort.travel_deg is None:
+            return []
+        return ["effort.travel_deg does not go with a problem; it travels from the first target to the last"]
 
     @property
     def turn_time(self) -> float:

@@ -22,7 +22,7 @@ TURNING = ("theta2", "theta4", "theta6")  # over angles, in deg: a full turn
 OVER = (*TURNING, "travel", "time")
 # The joints by the links that they join: of linkages of one loop, and of any; how many a linkage may have.
 JOINTS = tuple(joint.links for joint in MECHANISMS[0].every_joint)
-_ANY_JOINTS = tuple(joint.links for row in MECHANISMS for joint in row.every_joint)
+ANY_JOINTS = tuple(joint.links for row in MECHANISMS for joint in row.every_joint)
 _COUNTS = {len(row.every_joint) for row in MECHANISMS}
 # Of friction in a slide, one number each.
 SLIDE_KEYS = ("slide_mu", "slide_length", "slide_viscous", "slide_force")
@@ -173,7 +173,7 @@ class TorsionSpringSpec(TableValue):
         if len(links) == 2 and links[0] == links[1]:
             raise ProblemError(f"between joins link {links[0]} to itself; it must be two links of a joint")
         free = bounded(self.free_angle_deg, "free_angle_deg")
-        turned = links[::-1] in _ANY_JOINTS
+        turned = links[::-1] in ANY_JOINTS
         set_fields(
             self,
             between=links[::-1] if turned else links,

@@ -48,6 +48,7 @@ class Needs(Enum):
     DWELL_OF_LINK = "a dwell of a link that swings"
     DWELL_OF_SLIDE = "a dwell of a slide"
     TWO_OUTPUTS = "two strokes"
+    EFFORT = "effort"
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +176,8 @@ _FITTED = "minimised by least squares: root mean square of positions and angles 
 RMS = " (root mean square)"
 _ALL = f"error of positions and angles{RMS}"
 _WORST = "worst transmission angle over the"
+_EFFORT = "with the struts and springs that are placed, at every temperature; 0 where it is as wanted"
+_EFFORT = "with the struts and springs that are placed, at every temperature; 0 where it is as wanted"
 _LEVER = (
     "between cylinder and arm; on coupler and slider 90 deg less that between cylinder and path of its pivot"
 )
@@ -340,6 +343,10 @@ MEASURED: dict[str, Quantity] = {
             )
             for name, unit, words in (("angle", Unit.ANGLE, "direction"), ("rate", Unit.RATIO, "rate"))
             for end, extreme in (("min", "least"), ("max", "greatest"))
+        ),
+        Quantity(
+            "effort_deviation", "effort deviation", Unit.FORCE, Scope.TASK, needs=Needs.EFFORT, digits=3,
+            about=_EFFORT, full="greatest deviation from the wanted effort",
         ),
     )
 }  # fmt: skip

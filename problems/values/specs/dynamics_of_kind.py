@@ -56,6 +56,9 @@ def _links(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     for name, pairs in (("springs", springs), ("dampers", dampers)):
         ends = ((i, end, place) for i, pair in enumerate(pairs) for end, place in enumerate(pair))
         held += [(f"{name}[{i}].between[{end}]", place.link, 1) for i, end, place in ends]
+    for key, number in () if spec.effort is None else spec.effort.links.items():
+        if isinstance(number, int):  # not the body
+            held.append((key.removesuffix(".link"), number, 2 if key.startswith("effort.on") else 1))
     for where, number, least in held:
         allowed = [link.number for link in kind.links if link.number >= least]
         if number not in allowed:
@@ -77,11 +80,11 @@ def _over(kind: Mechanism, but: str = "") -> list[str]:
 
 def _joints(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
     joints = kind.every_joint
-    for index, spring in enumerate(spec.torsion_springs):
+    for where, between in _about_joints(spec):
         pairs = [list(joint.links) for joint in joints]
-        if list(spring.between) not in pairs:
+        if list(between) not in pairs:
             wanted = f"two links of a joint: {listing(pairs, 'or')}"
-            yield str(wrong_value(f"torsion_springs[{index}].between", list(spring.between), wanted))
+            yield str(wrong_value(f"{where}.between", list(between), wanted))
     for key in _INSTEAD if spec.friction is not None else ():
         each = getattr(spec.friction, key)
         if len(each) not in (1, len(joints)):
@@ -100,10 +103,19 @@ def _loads(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
 
 
 def _torsion_springs(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:
-    for index, spring in enumerate(spec.torsion_springs):
-        if spring.between in kind.slides:
-            given = f"torsion_springs[{index}].between is {list(spring.between)}"
+    for where, between in _about_joints(spec):
+        if between in kind.slides:
+            given = f"{where}.between is {list(between)}"
             yield f"{given}; {with_article(kind.word)} has a slide there, so it must be at a pin"
+
+
+def _about_joints(spec: DynamicsSpec) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Torsion springs by their places in a file, and their links."""
+    for index, spring in enumerate(spec.torsion_springs):
+        yield f"torsion_springs[{index}]", spring.between
+    for index, part in enumerate(() if spec.effort is None else spec.effort.parts):
+        if part.turns:
+            yield f"effort.parts[{index}]", part.joint
 
 
 def _friction(spec: DynamicsSpec, kind: Mechanism) -> Iterator[str]:

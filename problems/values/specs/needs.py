@@ -27,6 +27,10 @@ NEEDED: dict[Needs, tuple[Callable[[Any], bool], str]] = {
         lambda problem: problem.driver is not None and problem.dynamics is not None,
         "{both}",
     ),
+    Needs.EFFORT: (
+        lambda problem: getattr(problem.dynamics, "effort", None) is not None,
+        "effort is missing",
+    ),
     Needs.OUTPUTS: (lambda problem: bool(problem.task.has_output.any()), NO_OUTPUT),
     Needs.ROTATION: (
         lambda problem: bool(problem.task.has_output.any()) and not problem.task.travels,

@@ -158,6 +158,7 @@ class Problem(ReadOnly):
                 checks.positive_number(self.dynamics.speed_rpm, "dynamics.speed_rpm")
             for row in (row for word in self.mechanism for row in ROWS[word]):
                 wrong += misplaced(self.dynamics, row)
+            wrong += self.dynamics.beside_task
             wrong += self.dynamics.too_short(self.dynamics.turn_time, "a turn of the driver")
             if not self.dynamics.acts:
                 wrong.append(

@@ -180,6 +180,7 @@ def _design(candidate: Candidate, keys: Mapping[str, str]) -> dict[str, Any]:
         **angle_error,
         **output_error,
         **_driven(candidate),
+        **({} if verdict.effort is None else {"parts": verdict.effort.stated["parts"]}),
         **{name: x if np.isfinite(x := candidate.values[key]) else None for name, key in keys.items()},
     }
 

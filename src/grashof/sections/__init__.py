@@ -12,6 +12,7 @@ from grashof.sections.balancing import balancing
 from grashof.sections.coupler import coupler_plane, hodographs
 from grashof.sections.cylinder import cylinder
 from grashof.sections.drive import energy_section, flywheel, motor
+from grashof.sections.effort import effort
 from grashof.sections.fits import fits
 from grashof.sections.free_driver import equilibrium, release
 from grashof.sections.joint_forces import equations, pin_forces
@@ -50,6 +51,7 @@ SECTIONS = (
     SectionRow(differences),
     SectionRow(mechanical_advantage, output_turns),
     SectionRow(cylinder),
+    SectionRow(effort),
     SectionRow(pin_forces),
     SectionRow(equations),
     SectionRow(hodographs),

@@ -25,6 +25,8 @@ from grashof.problems import (
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
+from grashof.problems.values.dynamics.effort import EffortSpec
+from grashof.problems.values.dynamics.struts import BODY
 from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
@@ -35,6 +37,7 @@ from grashof.problems.values.tasks.dwell_task import SWING_WITHIN
 from grashof.problems.values.tasks.task import row_of
 from grashof.problems.values.units import Unit
 from grashof.synth.designs.candidate import Candidate, same_error
+from grashof.synth.designs.efforts import with_parts
 from grashof.synth.designs.families import caution
 from grashof.synth.designs.judging import driven_verdict
 from grashof.synth.designs.ranking import pareto_goals
@@ -109,6 +112,7 @@ def summary(problem: Problem) -> list[str]:
         lines.append(f"  made to within {made.length_tolerance:g}{unit}{band}")
     if problem.dynamics is not None:
         lines.append(f"  {_driven(problem.dynamics)}")
+        lines += [f"  {_effort(effort)}"] if (effort := problem.dynamics.effort) is not None else []
     if problem.torque is not None:
         lines.append(f"  {_torque(problem.torque)}")
     if problem.driver is not None:
@@ -227,6 +231,22 @@ def _driven(spec: DynamicsSpec) -> str:
     every = [_links(spec), *_acting(spec)]
     every += [f"payload {spec.payload:g} kg"] if spec.payload else []
     return f"dynamics: {', '.join(every)}; driver {_motor(spec)}; gravity {x:g}, {y:g} m/s2"
+
+
+def _effort(spec: EffortSpec) -> str:
+    """What is wanted of the effort, and the parts that are to give it."""
+    words = [f"effort on {'link ' if spec.on.link != BODY else 'the '}{spec.on.link}"]
+    if spec.wanted is not None:
+        words.append(f"as wanted in {counted(len(spec.wanted), 'row')}")
+    if spec.band is not None:
+        words.append(f"{spec.band[0]:g} to {spec.band[1]:g} N")
+    if spec.stays_deg is not None:
+        words.append(f"stays from {spec.stays_deg[0]:g} to {spec.stays_deg[1]:g} deg")
+    if spec.closes_below_deg is not None:
+        words.append(f"closes below {spec.closes_below_deg:g} deg")
+    words.append(f"at {listing([f'{each:g}' for each in spec.temperatures_c], 'and')} deg C")
+    words += [f"{part.count} x {part.kind} of {counted(len(part.sizes), 'size')}" for part in spec.parts]
+    return "; ".join(words)
 
 
 def _cylinder(spec: CylinderSpec, unit: str) -> str:
@@ -373,7 +393,8 @@ def judged_for(problem: Problem, spec: LinkageSpec) -> Candidate:
         )
     of = problem.for_kind(spec.linkage.mechanism.word)
     verdict = driven_verdict(ScaledProblem.of(of), spec.linkage, known=spec.cylinder)
-    return Candidate(spec.linkage, verdict, of, 0, 0)
+    known = None if spec.dynamics is None else spec.dynamics.effort
+    return with_parts(Candidate(spec.linkage, verdict, of, 0, 0), known)
 
 
 def class_text(candidate: Candidate) -> str:

@@ -1,0 +1,240 @@
+"""Struts and springs for an effort: their sizes, and where they may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from grashof.problems.values import checks
+from grashof.problems.values.arrays import Limits
+from grashof.problems.values.box import Box
+from grashof.problems.values.dynamics.load_specs import ANY_JOINTS
+from grashof.problems.values.errors import ProblemError, wrong_value
+from grashof.problems.values.region import Region
+from grashof.problems.values.value_bases import TableValue, check_fields, set_fields
+
+BODY = "body"
+TORSION, GAS = "torsion", "gas"
+# Sense of the force between the ends of a part: +1 pushes them apart.
+STRAIGHT = {GAS: 1, "compression": 1, "tension": -1}
+KINDS = (*STRAIGHT, TORSION)
+STATED_C, ZERO_C = 20.0, -273.15  # at which forces are stated, and absolute zero, deg C
+_TURN = 360.0
+ORIGIN = Box((0.0, 0.0), (0.0, 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class EffortPlace(TableValue):
+    """A point of a link, or the area that it may lie in.
+
+    Parameters
+    ----------
+    link : int or "body"
+        1 (the ground, whose frame is the global one) to 4; of a six-bar to 6; or the guided body, whose
+        frame is at P and turned by `body_angle` against the link of P.
+    at : Box, length
+        In that frame; a box of no width is a point.
+    """
+
+    link: int | str
+    at: Box = ORIGIN
+
+    def __post_init__(self) -> None:
+        check_fields(self, link=_link, at=_area)
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The keys with their values, as a file has them."""
+        at: Any = list(self.point) if self.is_point else {"x": list(self.at.x), "y": list(self.at.y)}
+        return {"link": self.link, "at": at}
+
+    @property
+    def is_point(self) -> bool:
+        """Whether it is a single point."""
+        return self.at.x[0] == self.at.x[1] and self.at.y[0] == self.at.y[1]
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """The point, or the least corner of the area."""
+        return self.at.x[0], self.at.y[0]
+
+    def placed(self, u: float, v: float) -> EffortPlace:
+        """The point (u, v) of the same link."""
+        return replace(self, at=Box((u, u), (v, v)))
+
+
+@dataclass(frozen=True, slots=True)
+class PartSize(TableValue):
+    """A size of a strut or spring, as a supplier's table states it.
+
+    Parameters
+    ----------
+    name : str
+        Of the size.
+    extended : float, length
+        Greatest length from pivot to pivot; of struts and straight springs.
+    stroke : float, length
+        Greatest length less the least.
+    force_extended : float, N
+        Force at the greatest length, at 20 deg C.
+    force_compressed : float, N
+        Force at the least length, at 20 deg C; it changes evenly between the two.
+    moment : float, N m
+        Of a torsion spring: moment at its greatest turn; it grows evenly from the free angle.
+    turn_deg : float, deg
+        Of a torsion spring: greatest turn from the free angle, either way.
+    friction : float, N
+        Force against its motion; of a torsion spring a moment, N m.
+    """
+
+    name: str = ""
+    extended: float = 0.0
+    stroke: float = 0.0
+    force_extended: float = 0.0
+    force_compressed: float = 0.0
+    moment: float = 0.0
+    turn_deg: float = 0.0
+    friction: float = 0.0
+
+    def __post_init__(self) -> None:
+        numbers = (*STRAIGHT_KEYS, *TORSION_KEYS, "friction")
+        check_fields(self, name=checks.plain_text, **dict.fromkeys(numbers, checks.from_zero))
+        checks.number_within(self.turn_deg, 0.0, _TURN / 2, "turn_deg")
+        if self.stroke >= self.extended > 0:
+            raise ProblemError(
+                f"stroke is {self.stroke:.15g}; it must be less than extended, {self.extended:.15g}"
+            )
+
+    @property
+    def compressed(self) -> float:
+        """The least length."""
+        return self.extended - self.stroke
+
+
+STRAIGHT_KEYS = ("extended", "stroke", "force_extended", "force_compressed")
+TORSION_KEYS = ("moment", "turn_deg")
+
+
+@dataclass(frozen=True, slots=True)
+class PartSpec(TableValue):
+    """A strut or spring, of a size to be chosen, between places to be found.
+
+    Parameters
+    ----------
+    kind : {"gas", "compression", "tension", "torsion"}
+        A gas strut, whose force grows with the absolute temperature; a spring that pushes, or pulls; or a
+        torsion spring.
+    between : pair of EffortPlace or int
+        Its two ends; of a torsion spring the two links of a joint, as `TorsionSpringSpec` has them.
+    sizes : tuple of PartSize
+        To choose from.
+    count : int
+        Number of equal ones side by side.
+    free_angle_deg : pair of float, deg, optional
+        Of a torsion spring: limits of the angle of the second link less that of the first where it is slack.
+    """
+
+    kind: str
+    between: tuple[EffortPlace | int, EffortPlace | int]
+    sizes: tuple[PartSize, ...]
+    count: int = 1
+    free_angle_deg: Limits | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self, kind=partial(checks.one_of, words=KINDS), count=_count)
+        set_fields(self, between=_joint(self.between) if self.turns else _ends(self.between))
+        if self.turns != (self.free_angle_deg is not None):
+            state = "is missing; a torsion spring needs it" if self.turns else "goes with torsion alone"
+            raise ProblemError(f"free_angle_deg {state}")
+        if self.free_angle_deg is not None:
+            limits = checks.limits(self.free_angle_deg, "free_angle_deg", least=-_TURN, most=_TURN)
+            set_fields(self, free_angle_deg=limits)
+        sizes = tuple(self.sizes) if isinstance(self.sizes, Sequence) else ()
+        if not sizes or not all(isinstance(size, PartSize) for size in sizes):
+            raise wrong_value("sizes", self.sizes, "a list of one size or more")
+        own, other = (TORSION_KEYS, STRAIGHT_KEYS) if self.turns else (STRAIGHT_KEYS, TORSION_KEYS)
+        for index, size in enumerate(sizes):
+            for key in own[:2]:
+                if not getattr(size, key) > 0:
+                    raise ProblemError(f"sizes[{index}].{key} is missing; kind {self.kind} needs it")
+            if not self.turns and not size.force_extended + size.force_compressed > 0:
+                raise ProblemError(
+                    f"sizes[{index}] has no force; it must have force_extended or force_compressed"
+                )
+            for key in other:
+                if getattr(size, key):
+                    raise ProblemError(f"sizes[{index}].{key} does not go with kind {self.kind}")
+        set_fields(self, sizes=sizes)
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is a torsion spring."""
+        return self.kind == TORSION
+
+    @property
+    def sense(self) -> int:
+        """+1 where it pushes its ends apart, -1 where it pulls."""
+        return STRAIGHT.get(self.kind, 1)
+
+    @property
+    def places(self) -> tuple[EffortPlace, ...]:
+        """Its two ends; none of a torsion spring."""
+        return tuple(each for each in self.between if isinstance(each, EffortPlace))
+
+    @property
+    def joint(self) -> tuple[int, int]:
+        """The two links of a torsion spring."""
+        return _joint(self.between)
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether nothing is left to choose."""
+        angle = self.free_angle_deg
+        fixed = all(each.is_point for each in self.places) and (angle is None or angle[0] == angle[1])
+        return len(self.sizes) == 1 and fixed
+
+    def warmth(self, temperature_c: float) -> float:
+        """Force at a temperature over that at 20 deg C: the ratio of absolute temperatures of a gas."""
+        return (temperature_c - ZERO_C) / (STATED_C - ZERO_C) if self.kind == GAS else 1.0
+
+
+def _link(link: object, where: str) -> object:
+    if link == BODY or (isinstance(link, int) and not isinstance(link, bool)):
+        return link
+    raise wrong_value(where, link, 'the number of a link, or "body"')
+
+
+def _area(at: object, where: str) -> Box:
+    if isinstance(at, Region) or not isinstance(at, Box):
+        raise wrong_value(where, at, "a point [u, v] or a box")
+    if not np.isfinite([*at.x, *at.y]).all():
+        raise ProblemError(
+            f"{where} has an open side; it must be {{ x = …, y = … }}, each a number or [lo, hi]"
+        )
+    return at
+
+
+def _count(count: object, where: str) -> int:
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= 100:
+        raise wrong_value(where, count, "a whole number from 1 to 100")
+    return count
+
+
+def _joint(between: object) -> tuple[int, int]:
+    links = tuple(between) if isinstance(between, Sequence) else ()
+    if links not in ANY_JOINTS:
+        raise wrong_value("between", list(links), "two links of a joint, such as [1, 4]")
+    return links[0], links[1]
+
+
+def _ends(between: object) -> tuple[EffortPlace, EffortPlace]:
+    ends = tuple(between) if isinstance(between, Sequence) else ()
+    if len(ends) != 2 or not all(isinstance(end, EffortPlace) for end in ends):
+        raise wrong_value("between", between, "two places, such as { link = 1, at = { x = [0, 1], y = 2 } }")
+    if ends[0].link == ends[1].link:
+        raise ProblemError(f"between joins link {ends[0].link} to itself; it must be places of two links")
+    return ends[0], ends[1]

@@ -1,0 +1,253 @@
+"""A linkage at samples of its travel, and the effort that parts of some sizes at some places leave there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from grashof.analysis.effort.case import EffortCase
+from grashof.analysis.effort.parts import place_on
+from grashof.problems import Linkage
+from grashof.problems.values.arrays import ComplexArray, FloatArray, IntArray
+from grashof.problems.values.dynamics.struts import BODY, EffortPlace, PartSpec
+
+_ABOUT_STROKES = 49  # samples over the travel, on which strokes are kept
+INSET = 1e-6  # share of a stroke by which it is tightened, so that the judge finds it kept
+_SAMPLES, _LEAST = 41, 7  # over what is wanted of the entire travel, and of any part of it
+
+
+class Frame(NamedTuple):
+    """The frame of a link at I samples: origin and unit vector of u, and their velocities."""
+
+    origin: ComplexArray
+    axis: ComplexArray
+    drift: ComplexArray
+    turn: FloatArray
+
+
+class Area(NamedTuple):
+    """The places of an end in the frame of a link: corner + s along + t across, s and t in [0, 1]."""
+
+    link: int
+    corner: complex
+    along: complex
+    across: complex
+
+    @classmethod
+    def of(cls, linkage: Linkage, place: EffortPlace) -> Area:
+        """The area of a place; that of the guided body is turned and moved onto the link that carries it."""
+        (left, right), (low, high) = place.at.x, place.at.y
+        corner, along, across = complex(left, low), complex(right - left), 1j * (high - low)
+        if place.link != BODY:
+            return cls(int(place.link), corner, along, across)
+        turned = np.exp(1j * float(linkage.body_angle))
+        moved = complex(*linkage.coupler_point)
+        return cls(linkage.mechanism.carries, moved + turned * corner, turned * along, turned * across)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A part with its sizes as arrays (R,), and its areas; of torsion springs the angle of the joint (I,)."""
+
+    spec: PartSpec
+    warmth: FloatArray  # (T,)
+    force: FloatArray  # (R,): of all side by side, at the greatest length; per deg of a torsion spring
+    slope: FloatArray  # (R,): force more for a unit of length less
+    longest: FloatArray
+    shortest: FloatArray
+    friction: FloatArray
+    ends: tuple[Area, ...] = ()
+    angle: FloatArray | None = None  # deg, from the middle of its free angles
+    turn: FloatArray | None = None
+
+    @property
+    def unknowns(self) -> int:
+        """The number of unknowns: two for each end, or the free angle."""
+        return 2 * len(self.ends) or 1
+
+
+class Found(NamedTuple):
+    """Of K candidates: excess (K, M) over what is wanted, N, and margins (K, P, 2 I) of strokes, shares."""
+
+    excess: FloatArray
+    margins: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Aim:
+    """What is wanted at I samples: limits of the effort, N, and how it follows from the power of parts."""
+
+    frames: dict[int, Frame]
+    parts: tuple[Part, ...]
+    without: FloatArray  # (I,): effort in the sense in which it is limited
+    per: FloatArray  # (I,): effort for a unit of power, with that sense
+    least: FloatArray
+    most: FloatArray
+    friction: FloatArray  # (I,): of the joints
+    times: FloatArray  # (I,): number of times that friction is added to limits
+    scale: float = field(default=1.0)  # N
+
+    @classmethod
+    def of(cls, case: EffortCase) -> Aim:
+        """The aim of a linkage over its travel; its parts need not be placed."""
+        bare = EffortCase(
+            case.linkage, replace(case.dynamics, effort=replace(case.spec, parts=())), case.metre, case.travel
+        )
+        places, limits = _samples(case)
+        state = bare.at(places)
+        virtual, rest, sense = bare.motion(places)
+        link, point = place_on(case.linkage, case.spec.on)
+        hand = _complex(virtual.point(link, point).velocity) * sense
+        if isinstance(case.spec.direction, str):
+            along = np.abs(hand)
+        else:
+            towards = complex(*case.spec.direction)
+            along = np.real(hand * np.conj(towards / abs(towards)))
+        least, most, times, opening = limits
+        counted = np.where(opening, state.sense, 1.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            per = np.where(along != 0, counted / along, 0.0)
+        ends = {place.link for part in case.spec.parts for place in part.places}
+        links = {case.linkage.mechanism.carries if end == BODY else int(end) for end in ends}
+        frames = {}
+        for each in links:
+            origin = virtual.point(each, (0.0, 0.0))
+            axis = np.exp(1j * rest.frame_angle(each)) if each > 1 else np.ones(len(places), dtype=complex)
+            turn = sense * virtual.angular(each).omega if each > 1 else np.zeros(len(places))
+            drift = np.broadcast_to(_complex(origin.velocity) * sense, axis.shape)
+            frames[each] = Frame(np.broadcast_to(_complex(origin.position), axis.shape), axis, drift, turn)
+        known = np.isfinite(state.without)
+        without = np.where(known, counted * state.without, 0.0)
+        scale = float(np.abs(without).max(initial=0.0)) or 1.0
+        parts = tuple(_part(part, bare, places) for part in case.spec.parts)
+        return cls(frames, parts, without, per, least, most, state.friction, times, scale)
+
+    @property
+    def unknowns(self) -> int:
+        """The number of unknowns of all parts, each from 0 to 1."""
+        return sum(part.unknowns for part in self.parts)
+
+    def thinned(self, step: int) -> Aim:
+        """The same at every `step`-th sample."""
+        rows = slice(None, None, step)
+        frames = {
+            link: Frame(each.origin[rows], each.axis[rows], each.drift[rows], each.turn[rows])
+            for link, each in self.frames.items()
+        }
+        parts = tuple(
+            replace(
+                part,
+                angle=None if part.angle is None else part.angle[rows],
+                turn=None if part.turn is None else part.turn[rows],
+            )
+            for part in self.parts
+        )
+        arrays = {
+            name: getattr(self, name)[rows]
+            for name in ("without", "per", "least", "most", "friction", "times")
+        }
+        return replace(self, frames=frames, parts=parts, **arrays)
+
+    def lengths(self, part: int, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lengths of a part and their rates, (K, I), of unknowns (K, n); of torsion springs turns, deg."""
+        one = self.parts[part]
+        first = sum(each.unknowns for each in self.parts[:part])
+        if one.angle is not None and one.turn is not None:
+            low, high = one.spec.free_angle_deg or (0.0, 0.0)
+            free = (high - low) * (x[:, first, None] - 0.5)
+            return (one.angle - free + 180) % 360 - 180, np.broadcast_to(one.turn, (len(x), len(one.turn)))
+        out: Any = 0.0j
+        speed: Any = 0.0j
+        for end, (area, sign) in enumerate(zip(one.ends, (-1, 1), strict=True)):
+            s, t = (x[:, first + 2 * end + axis, None] for axis in (0, 1))
+            frame = self.frames[area.link]
+            arm = (area.corner + s * area.along + t * area.across) * frame.axis
+            out = out + sign * (frame.origin + arm)
+            speed = speed + sign * (frame.drift + 1j * frame.turn * arm)
+        length = np.abs(out)
+        rate = np.real(np.conj(out) * speed) / np.maximum(length, 1e-300)
+        return length, rate
+
+    def at(self, x: FloatArray, rows: IntArray) -> Found:
+        """Excess and margins of candidates: unknowns (K, n) and sizes (K, P) by their rows."""
+        known = [self.lengths(part, x) for part in range(len(self.parts))]
+        return self.of_lengths(known, rows)
+
+    def of_lengths(self, known: Sequence[tuple[FloatArray, FloatArray]], rows: IntArray) -> Found:
+        """The same of parts whose lengths and rates are known."""
+        count = len(rows)
+        temperatures = {len(part.warmth) for part in self.parts} or {1}
+        gained = np.zeros((count, max(temperatures), len(self.without)))
+        friction = np.broadcast_to(self.friction, (count, len(self.without)))
+        margins = np.empty((count, len(self.parts), 2 * len(self.without)))
+        for number, (part, (length, rate)) in enumerate(zip(self.parts, known, strict=True)):
+            row = rows[:, number]
+            force, slope, longest, shortest, rubbed = (
+                each[row][:, None]
+                for each in (part.force, part.slope, part.longest, part.shortest, part.friction)
+            )
+            pushed = (
+                part.spec.sense * (force + slope * (longest - length)) * rate
+                if part.angle is None
+                else -force * length * rate
+            )
+            gained = gained + part.warmth[:, None] * pushed[:, None]
+            friction = friction + rubbed * np.abs(rate) * np.abs(self.per)
+            stroke = longest - shortest
+            margins[:, number] = np.concatenate(
+                [(longest - length) / stroke, (length - shortest) / stroke], axis=1
+            )
+        effort = self.without - self.per * gained
+        loss = (self.times * friction)[:, None]
+        over = np.maximum(effort - self.most + loss, self.least - effort + loss)
+        return Found(over.reshape(count, -1), margins - INSET)
+
+
+def _samples(case: EffortCase) -> tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
+    """Places of all that is wanted and of strokes; limits, times of friction, whether of opening."""
+    travel, parts = case.travel, []
+    share = (1 - np.cos(np.linspace(0, np.pi, _ABOUT_STROKES))) / 2
+    everywhere = travel.start + (travel.end - travel.start) * share
+    none = np.full(len(everywhere), np.inf)
+    parts.append((everywhere, -none, none, 0 * share, 0 * share))
+    for demand in case.spec.demands:
+        if demand.start > case.total_deg:
+            continue
+        first, last = case.place_at(demand.start), case.place_at(demand.end)
+        span = (min(demand.end, case.total_deg) - demand.start) / case.total_deg
+        count = max(_LEAST, int(np.ceil(_SAMPLES * span)))
+        share = (1 - np.cos(np.linspace(0, np.pi, count))) / 2
+        places = first + (last - first) * share
+        end = demand.end if np.isfinite(demand.end) else demand.start + 1
+        angles = case.angle_deg(places)
+        least, most = (np.interp(angles, (demand.start, end), side) for side in (demand.least, demand.most))
+        same = np.ones(len(places))
+        parts.append((places, least, most, demand.friction * same, demand.opening * same))
+    places, least, most, times, opening = (np.concatenate(each) for each in zip(*parts, strict=True))
+    return places, (least, most, times, opening)
+
+
+def _part(part: PartSpec, case: EffortCase, places: FloatArray) -> Part:
+    warmth = np.unique([part.warmth(each) for each in case.spec.temperatures_c])[[0, -1]]
+    sizes = part.sizes
+    friction = np.array([part.count * size.friction for size in sizes])
+    if not part.turns:
+        longest, stroke, last, first = np.array(
+            [(s.extended, s.stroke, s.force_extended, s.force_compressed) for s in sizes]
+        ).T
+        ends = tuple(Area.of(case.linkage, place) for place in part.places)
+        slope = part.count * (first - last) / stroke
+        return Part(part, warmth, part.count * last, slope, longest, longest - stroke, friction, ends)
+    turned, rate = case.joint_turn(part.joint, places)
+    low, high = part.free_angle_deg or (0.0, 0.0)
+    turned = (turned - (low + high) / 2 + 180) % 360 - 180
+    moment = np.array([part.count * size.moment / size.turn_deg for size in sizes]) / case.metre
+    most = np.array([size.turn_deg for size in sizes])
+    return Part(part, warmth, moment, 0 * moment, most, -most, friction / case.metre, angle=turned, turn=rate)
+
+
+def _complex(vectors: FloatArray) -> ComplexArray:
+    return np.asarray(vectors[..., 0] + 1j * vectors[..., 1])
