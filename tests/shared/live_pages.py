@@ -41,3 +41,19 @@ def keys(found: State) -> list[int]:
 
 def stated(designs: Any) -> list[dict[str, Any]]:
     return [{"mechanism": each.linkage.mechanism.word, **each.linkage.stated} for each in designs]
+
+
+def place_of(page: Page, handle: str) -> tuple[float, float]:
+    """Middle of a handle on the page, px."""
+    found = f"document.querySelector(`[data-handle='{handle}'] .reach`).getBoundingClientRect()"
+    x, y = page.evaluate(f"() => {{ const r = {found}; return [r.x + r.width / 2, r.y + r.height / 2]; }}")
+    return x, y
+
+
+def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> None:
+    """A handle is dragged by px."""
+    x, y = place_of(page, handle)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + by[0], y + by[1], steps=steps)
+    page.mouse.up()

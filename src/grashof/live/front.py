@@ -9,7 +9,8 @@ from grashof.page.render import DRAWING, page_of, script_of, text_of
 
 SCRIPTS = (
     *DRAWING,
-    *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/handles.js"),
+    *("picture.js", "curves.js", "table.js", "compare.js", "saving.js", "live/task.js", "live/places.js"),
+    "live/handles.js",
     *("live/backdrop.js", "live/form.js", "live/listing.js", "live/transport.js", "live/commands.js"),
     *("live/sharing.js", "live/live.js"),
 )

@@ -18,7 +18,7 @@ from grashof.problems.values.checks import file_name, located_in
 from grashof.problems.values.errors import wrong_value
 
 KINDS = ("track", "search", "file", "outline")
-FILES = ("problem", "list", "designs", "report", "dxf", "linkage", "link")
+FILES = ("problem", "list", "designs", "report", "dxf", "linkage", "link", "problem-link")
 TOP = 50  # families in a list, as `grashof solve` has them
 MOST_BYTES = 1_000_000  # of a request
 MOST_TARGETS = 200

@@ -44,19 +44,24 @@ def saved(job: Job, problem: Problem, there: Mapping[int, Candidate], found: Res
     rank = 1 + list(there).index(key) if key in there else 0
     if wanted == "problem":
         return Saved(f"{job.name}.toml", TOML, problem_toml(problem))
-    if wanted == "link":
-        linkage = "" if design is None else _linkage_file(problem, design, rank)
-        link = design_link(SharedDesign(job.name, job.document, linkage), job.options["address"])
-        return Saved(f"{job.name}.txt", "text/plain", link)
+    if wanted == "problem-link":
+        return _link(job)
     if not there:
         raise ProblemError("there is no design to save")
     if wanted in _LISTS:
         return _of_list(job.name, *_LISTS[wanted], found or Result(problem, tuple(there.values())))
     if design is None:
-        raise ProblemError("choose a verified design first; this file is of one of them")
-    if wanted == "linkage":
-        return Saved(f"{job.name}-{design.id}.toml", TOML, _linkage_file(problem, design, rank))
-    return _plates(job.name, problem, design)
+        raise ProblemError("choose a verified design first")
+    if wanted == "dxf":
+        return _plates(job.name, problem, design)
+    linkage = _linkage_file(problem, design, rank)
+    return _link(job, linkage) if wanted == "link" else Saved(f"{job.name}-{design.id}.toml", TOML, linkage)
+
+
+def _link(job: Job, linkage: str = "") -> Saved:
+    """A link to the problem, with a linkage file for it."""
+    link = design_link(SharedDesign(job.name, job.document, linkage), job.options["address"])
+    return Saved(f"{job.name}.txt", "text/plain", link)
 
 
 def _of_list(problem_name: str, name: str, kind: str, result: Result) -> Saved:

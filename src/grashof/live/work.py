@@ -126,10 +126,7 @@ def _track(job: Job, _stop: object, send: Callable[[Line], object]) -> None:
 def _search(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) -> None:
     problem, shown = _problem(job), Shown.read(job.shown)
     _tell_problem(problem, send)
-    given = _given(job, problem)
-    if given is not None and not moves(given):
-        send(error_line(f"the design of the link cannot be shown with this task: {_defects(given)}"))
-        given = None
+    given = _given(job, problem, send)
     next_at = 0.0
 
     def listed(designs: Sequence[Candidate]) -> None:
@@ -154,10 +151,19 @@ def _search(job: Job, stop: Callable[[], bool], send: Callable[[Line], object]) 
         send(_found_line(problem, shown, result, given))
 
 
-def _given(job: Job, problem: Problem) -> Candidate | None:
-    """The linkage of a link, judged for its problem."""
-    text = job.options.get("given")
-    return judged_for(problem, linkage_spec_of(text, "the link", job.name)) if text else None
+def _given(job: Job, problem: Problem, send: Callable[[Line], object]) -> Candidate | None:
+    """The linkage of a link, judged for its problem; None, with a line of the reason, where it cannot be."""
+    if not (text := job.options.get("given")):
+        return None
+    try:
+        given = judged_for(problem, linkage_spec_of(text, "the link", job.name))
+    except ProblemError as error:
+        send(error_line(*str(error).splitlines()))
+        return None
+    if moves(given):
+        return given
+    send(error_line(f"the design of the link cannot be drawn: {_defects(given).partition('; ')[0]}"))
+    return None
 
 
 def _with(given: Candidate | None, found: Sequence[Candidate]) -> Sequence[Candidate]:

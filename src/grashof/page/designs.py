@@ -22,8 +22,9 @@ from grashof.analysis.judge.over_task import driver_law, motion_ends
 from grashof.analysis.judge.wanted_torque import places_of
 from grashof.analysis.mechanism.mobility import range_index
 from grashof.drawing.scene import Scene, bodies_of
+from grashof.page.regions import regions_of
 from grashof.page.render import compact, plain
-from grashof.problems import Cylinder, DynamicsSpec, FourBar, Linkage, Problem, Region, Task, catalogue, load
+from grashof.problems import Cylinder, DynamicsSpec, Linkage, Problem, Task, catalogue, load
 from grashof.problems.files.published import published
 from grashof.problems.values.arrays import TURN, FloatArray
 from grashof.problems.values.dynamics.dynamics_spec import metres
@@ -41,22 +42,13 @@ _ROUNDING = 1e-12  # of a turn
 def scene_of(problem: Problem) -> dict[str, Any]:
     """A problem as the scripts draw it: lengths in its unit, angles in rad, null where free."""
     wanted = problem.requirements
-    boxes = {name: box for name in FourBar.mechanism.pivots if (box := getattr(wanted, name)) is not None}
     return {
         **_targets_of(problem.task),
         "unit": problem.length_unit,
         "outlines": [corners.tolist() for corners in problem.outlines],
         "keepOut": [corners.tolist() for corners in wanted.keep_out],
         "keptOut": list(wanted.keep_out_for),
-        "regions": [
-            {
-                "name": ", ".join(name.upper() for name, other in boxes.items() if other == box),
-                "x": list(map(plain, np.array(box.x, dtype=float))),
-                "y": list(map(plain, np.array(box.y, dtype=float))),
-                **({"corners": box.corners.tolist()} if isinstance(box, Region) else {}),
-            }
-            for box in dict.fromkeys(boxes.values())
-        ],
+        "regions": regions_of(problem),
         "published": _published(problem),
     }
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from live_pages import linkages, problem_of, searched, stated
+from live_pages import drag, linkages, problem_of, searched, stated
 from shown_pages import box_of, state
 
 from grashof import load, synthesize
@@ -16,20 +15,6 @@ from grashof.problems.files.problem_writing import problem_toml
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
-
-
-def place_of(page: Page, handle: str) -> tuple[float, float]:
-    found = f"document.querySelector(`[data-handle='{handle}'] .reach`).getBoundingClientRect()"
-    x, y = page.evaluate(f"() => {{ const r = {found}; return [r.x + r.width / 2, r.y + r.height / 2]; }}")
-    return x, y
-
-
-def drag(page: Page, handle: str, by: tuple[float, float], steps: int = 5) -> None:
-    x, y = place_of(page, handle)
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + by[0], y + by[1], steps=steps)
-    page.mouse.up()
 
 
 @pytest.mark.slow
@@ -94,7 +79,7 @@ def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
     stage = box_of(page.locator("#stage"))
     page.locator("[data-mode='area']").click()
     page.mouse.click(stage["x"] + 120, stage["y"] + stage["height"] - 150)
-    page.locator("[data-mode='region o2 o4']").click()
+    page.locator("[data-mode='region']").click()
     page.mouse.click(stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2)
     page.locator("[data-mode='add']").click()
     page.mouse.click(stage["x"] + 80, stage["y"] + 200)
@@ -113,27 +98,6 @@ def test_areas_regions_and_targets_are_added_and_removed(page: Page) -> None:
     assert len(after["motion"]["poses"]) == 4
     assert "o2" not in after["requirements"]
     problem_from(after, "luggage")
-
-
-@pytest.mark.slow
-def test_a_path_is_drawn_by_hand(page: Page) -> None:
-    assert page.locator("[data-mode=draw]").is_hidden()  # poses have no path to draw
-    page.locator("[data-menu=open] summary").click()
-    page.locator("[name=catalogue]").select_option("path-vertical-line")
-    page.wait_for_function("() => window.grashof.state().document.kind === 'path'")
-    searched(page)
-    stage = box_of(page.locator("#stage"))
-    page.locator("[data-mode='draw']").click()
-    left, middle = stage["x"] + 150, stage["y"] + stage["height"] / 2
-    page.mouse.move(left, middle - 56)
-    page.mouse.down()
-    for k in range(30):
-        page.mouse.move(left + 10 * k, middle - (k - 15) ** 2 / 4)
-    page.mouse.up()
-    points = state(page)["document"]["path"]["points"]
-    assert len(points) == 12
-    steps = [((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5 for a, b in pairwise(points)]
-    assert max(steps) < 1.1 * min(steps)
 
 
 @pytest.mark.slow

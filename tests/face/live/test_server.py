@@ -185,7 +185,7 @@ def test_a_design_is_shared_as_a_link_or_as_the_file_that_show_prints(client: Cl
     lists = [line for line in given if line["kind"] == "list"]
     assert [lists[0]["designs"][0]["linkage"]] == [design["linkage"]]  # before any is searched for
     assert linkages(given) == linkages(found)  # which have it already
-    (alone, _) = client.ask("file", page="nobody", file="link", address="http://127.0.0.1:9/")
+    (alone, _) = client.ask("file", page="nobody", file="problem-link", address="http://127.0.0.1:9/")
     assert read_link(alone["text"]).linkage == ""
 
 

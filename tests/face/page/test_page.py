@@ -167,7 +167,7 @@ def test_the_scene_is_the_problem() -> None:
     problem = load("path-ellipse")
     scene = Parts(page_of(Result(problem, note="none"))).data["scene"]
     assert scene["points"] == problem.task.positions.tolist()
-    assert scene["regions"] == [{"name": "O2, O4", "x": [-80, 80], "y": [-80, 80]}]
+    assert scene["regions"] == [{"name": "O2, O4 region", "x": [-80, 80], "y": [-80, 80]}]
     assert scene["published"]["label"] == "Lin, GA-DE 2010"
     gap = np.array(scene["published"]["path"])[:, None] - problem.task.positions
     assert np.hypot(*np.moveaxis(gap, -1, 0)).min(axis=0).max() < 0.5

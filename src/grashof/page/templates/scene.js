@@ -23,6 +23,7 @@ function posesOf(scene, design) {
 // Everything that has to be seen of a scene with some designs; `close`: the targets without the linkage.
 function pointsToSee(scene, designs, close) {
   const points = [...(scene.outlines || []).flat(), ...(scene.points || [])];
+  if (!close) points.push(...(scene.regions || []).flatMap(({ corners }) => corners || [])); // boxes may be huge
   for (const design of designs.length ? designs : [null]) {
     for (const pose of posesOf(scene, design)) {
       if (!pose) continue;

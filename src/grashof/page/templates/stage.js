@@ -166,6 +166,7 @@ class Stage {
     for (const corners of scene.keepOut || []) {
       add(this.svg, "path", { d: through(corners.map(this.at), true), class: "kept-out" });
     }
+    const names = [];
     for (const { name, x, y, corners } of scene.regions || []) {
       const seen = (place, most) => Math.min(Math.max(place, -beyond), most + beyond);
       const [left, bottom] = this.at([x[0] === null ? -Infinity : x[0], y[0] === null ? -Infinity : y[0]]);
@@ -183,15 +184,23 @@ class Stage {
         ? `M${px(x0)} ${px(y0)}m-7 0h14m-7 -7v14`
         : `M${px(x0)} ${px(y0)}H${px(x1)}V${px(y1)}H${px(x0)}Z`;
       add(this.svg, "path", { d: shape, class: "region" });
-      const place = {
-        x: Math.min(Math.max(x0 + 4, 40), width - 70),
-        y: Math.min(Math.max(y0 + 13, 26), height - 20),
-      };
-      add(this.svg, "text", { ...place, class: "region-name" }, `${name} region`);
+      const highest = corners && corners.map(this.at).reduce((one, other) => (other[1] < one[1] ? other : one));
+      this.regionName(name, highest || [x0, y0], names);
     }
     for (const corners of scene.outlines || []) {
       add(this.svg, "path", { d: through(corners.map(this.at)), class: "outline" });
     }
+  }
+
+  // At a corner of the region, within the drawing, below the names that are there already.
+  regionName(name, [left, top], names) {
+    const wide = 6 * name.length;
+    const x = Math.min(Math.max(left + 4, 40), Math.max(this.svg.clientWidth - 10 - wide, 40));
+    let y = Math.min(Math.max(top + 13, 26), this.svg.clientHeight - 20);
+    const covers = (other) => Math.abs(other.y - y) < 12 && x < other.x + other.wide && other.x < x + wide;
+    while (names.some(covers)) y += 12;
+    names.push({ x, y, wide });
+    add(this.svg, "text", { x, y, class: "region-name" }, name);
   }
 
   targets() {

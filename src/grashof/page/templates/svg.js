@@ -80,12 +80,13 @@ function repaint(plot) {
   return true;
 }
 
-// Calls back now and whenever the width of an element changes.
+// Calls back now and whenever the size of an element changes.
 function onResize(node, callback) {
-  let width = 0;
+  let [width, height] = [0, 0];
   new ResizeObserver(() => {
-    if (Math.abs(node.clientWidth - width) < 1 || node.clientWidth === 0) return;
-    width = node.clientWidth;
+    const { clientWidth, clientHeight } = node;
+    if (clientWidth === 0 || (Math.abs(clientWidth - width) < 1 && Math.abs(clientHeight - height) < 1)) return;
+    [width, height] = [clientWidth, clientHeight];
     callback();
   }).observe(node);
 }

@@ -1,4 +1,6 @@
 // Buttons, menus and keys of the live page.
+const MOST_POINTS = 200; // of a path, as `MOST_TARGETS` in `requests.py`
+
 class Commands {
   root; live;
 
@@ -12,6 +14,14 @@ class Commands {
     on("[data-mode]", "click", ({ currentTarget }) => this.mode(currentTarget.dataset.mode));
     on("[data-save]", "click", ({ currentTarget }) => this.save(currentTarget.dataset.save));
     on("[name=snap]", "change", ({ target }) => (live.handles.snaps = target.checked));
+    on("[name=count]", "change", ({ target }) => {
+      const count = Math.round(Number(target.value));
+      live.handles.count = Math.min(Math.max(Number.isFinite(count) ? count : FREEHAND, FEWEST.path), MOST_POINTS);
+      target.value = String(live.handles.count);
+    });
+    on("[name=joints]", "change", ({ target }) => (live.handles.joints = target.value.split(" ")));
+    on("[name=shape]", "change", ({ target }) => (live.handles.shape = target.value));
+    on("[data-remove]", "click", () => live.handles.removeChosen());
     on("[name=paths]", "change", () => live.stage.draw());
     on("[name=ghosts]", "change", ({ target }) => {
       live.stage.ghosts = target.checked;

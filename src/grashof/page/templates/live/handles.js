@@ -1,26 +1,39 @@
 // The parts of a task that can be dragged on the drawing: targets, angles, corners, regions.
 const ARM = 46; // px: how far from a target the handle of its angle is
-const FREEHAND = 12; // points that a line drawn by hand becomes
+const FREEHAND = 12; // points that a line drawn by hand becomes, by default
 
 class Handles {
-  stage; onMode; snaps; task; onPlace;
+  stage; onMode; onFocus; snaps; task; onPlace; count; joints; shape;
 
-  constructor(stage, task, { onMode }) {
-    Object.assign(this, { stage, task, onMode, mode: "move", snaps: false, held: null, focused: null, line: null, onPlace: null });
+  constructor(stage, task, { onMode, onFocus }) {
+    Object.assign(this, { stage, task, onMode, onFocus, mode: "move", snaps: false, held: null, focused: null, line: null, onPlace: null });
+    Object.assign(this, { count: FREEHAND, joints: ["o2", "o4"], shape: "box", pointer: null });
     this.layer = element("g", { class: "handles" });
     stage.drawnOver = () => this.draw();
     const { svg } = stage;
     svg.addEventListener("pointerdown", (event) => this.down(event), { capture: true });
-    svg.addEventListener("pointermove", (event) => this.moved(event));
-    for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => this.up());
+    svg.addEventListener("pointermove", (event) => event.pointerId === this.pointer && this.moved(event));
+    for (const end of ["pointerup", "pointercancel"]) {
+      svg.addEventListener(end, (event) => event.pointerId === this.pointer && this.up(end === "pointerup"));
+    }
     svg.addEventListener("keydown", (event) => this.key(event), { capture: true });
     document.addEventListener("focusin", ({ target }) => {
       const handle = target.closest("[data-handle]");
-      this.focused = handle ? handle.dataset.handle : null;
+      if (!target.closest("[data-remove]")) this.focus(handle ? handle.dataset.handle : null);
     });
     document.addEventListener("pointerdown", ({ target }) => {
-      if (!svg.contains(target)) this.focused = null;
+      if (!svg.contains(target) && !target.closest("[data-remove]")) this.focus(null);
     });
+  }
+
+  focus(name) {
+    this.focused = name;
+    this.onFocus(this.chosen());
+  }
+
+  // The handle that keys and the button to remove concern.
+  chosen() {
+    return (this.focused && this.list().find(({ name }) => name === this.focused)) || null;
   }
 
   setMode(mode) {
@@ -54,7 +67,7 @@ class Handles {
 
   // Every handle: name, place, look, and the effect on the task of moving it to a place.
   list() {
-    return [...this.ofTargets(), ...this.ofPolygons(), ...this.ofRegions(), ...this.ofBody()];
+    return [...this.ofTargets(), ...this.ofPolygons(), ...this.ofPlaces(), ...this.ofBody()];
   }
 
   ofTargets() {
@@ -83,64 +96,26 @@ class Handles {
   }
 
   ofPolygons() {
-    const { task } = this;
-    return task.polygons.flatMap(([words, corners, closed]) =>
-      corners.map((at, k) => ({
-        name: `${words} ${k}`,
-        words: `corner ${k + 1} of ${words}`,
-        at,
-        style: "corner",
-        move: (place) => (corners[k] = place),
-        remove: () => (corners.length > (closed ? 3 : 2) ? corners.splice(k, 1) : task.removePolygon(corners)),
-      })),
-    );
+    const rounded = (place) => this.rounded(place);
+    return this.task.polygons.flatMap(({ words, list, k, closed }) => {
+      const put = (corners) => (list[k] = corners);
+      const remove = () => list.splice(k, 1);
+      return cornerHandles({ words, corners: list[k], closed, fewest: closed ? 3 : 2, put, remove }, this.stage, rounded);
+    });
   }
 
-  ofRegions() {
-    const { task } = this;
-    return task.regions.flatMap(([names, box]) => {
-      const words = `${names.map((name) => name.toUpperCase()).join(", ")} region`;
-      const remove = () => names.forEach((name) => delete task.requirements[name]);
-      if (Array.isArray(box)) {
-        const move = (place) => task.setRegion(names, place);
-        return [{ name: `${words} 0`, words, at: box, style: "corner", move, remove }];
-      }
-      const { x, y } = box;
-      if (!x || !y) return [];
-      const corner = (i, j) => ({
-        name: `${words} ${i}${j}`,
-        words: `corner of ${words}`,
-        at: [x[i], y[j]],
-        style: "corner",
-        remove,
-        move: ([u, v]) => {
-          const sides = { x: [...x], y: [...y] };
-          sides.x[i] = i ? Math.max(u, x[0]) : Math.min(u, x[1]);
-          sides.y[j] = j ? Math.max(v, y[0]) : Math.min(v, y[1]);
-          task.setRegion(names, sides);
-        },
-      });
-      return [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-    });
+  ofPlaces() {
+    return placesOf(this.task).flatMap((place) => placeHandles(place, this.stage, (at) => this.rounded(at)));
   }
 
   // Corners of the body, where it stands at the first pose.
   ofBody() {
-    const { body } = this.task.document.motion || {};
+    const { motion } = this.task.document;
     const [pose] = this.task.targets;
-    if (!body || !pose || pose.x === null || pose.angle === null) return [];
-    const [cos, sin] = [Math.cos(pose.angle / DEG), Math.sin(pose.angle / DEG)];
-    return bodyAt(body, [pose.x, pose.y], pose.angle / DEG).map((at, k) => ({
-      name: `body ${k}`,
-      words: `corner ${k + 1} of the body`,
-      at,
-      style: "corner",
-      move: ([x, y]) => {
-        const [dx, dy] = [x - pose.x, y - pose.y];
-        body[k] = this.rounded([dx * cos + dy * sin, dy * cos - dx * sin]);
-      },
-      remove: () => body.length > 3 && body.splice(k, 1),
-    }));
+    if (!motion || !motion.body || !pose || pose.x === null || pose.y === null || pose.angle === null) return [];
+    const put = (corners) => (motion.body = corners);
+    const body = { words: "the body", corners: motion.body, closed: true, fewest: 3, frame: bodyFrame(pose), put, remove: () => {} };
+    return cornerHandles(body, this.stage, (place) => this.rounded(place));
   }
 
   draw() {
@@ -159,9 +134,10 @@ class Handles {
     const group = element("g", { class: `handle ${style}`, tabindex: 0, role: "button", "aria-label": words });
     group.dataset.handle = name;
     const [x, y] = this.stage.at(at);
-    if (from) add(group, "path", { d: through([from, at].map(this.stage.at)) });
-    add(group, "circle", { cx: px(x), cy: px(y), r: 13, class: "reach" });
+    if (from) add(group, "path", { d: through([from, at].map(this.stage.at)), class: "arm" });
+    add(group, "circle", { cx: px(x), cy: px(y), r: style === "insert" ? 8 : 13, class: "reach" });
     if (style === "corner") add(group, "rect", { x: px(x - 4), y: px(y - 4), width: 8, height: 8 });
+    else if (style === "insert") add(group, "path", { d: `M${px(x - 4)} ${px(y)}h8m-4 -4v8` });
     else add(group, "circle", { cx: px(x), cy: px(y), r: style === "angle" ? 5 : 6.5 });
     group.classList.toggle("locked", this.isLocked(name));
     add(group, "title", {}, this.isLocked(name) ? `${words}, locked` : words);
@@ -178,15 +154,16 @@ class Handles {
     const place = stage.back(stage.pointer(event));
     const grip = event.target.closest("[data-handle]");
     if (this.mode === "move") {
-      const handle = grip && this.list().find(({ name }) => name === grip.dataset.handle);
+      const handle = grip && this.nearest(place);
       if (!handle) return;
-      this.focused = handle.name;
-      grip.focus({ preventScroll: true });
+      this.focus(handle.name);
+      this.find(handle.name).focus({ preventScroll: true });
       if (this.isLocked(handle.name)) return this.taken(event);
       const off = handle.turn ? [0, 0] : [handle.at[0] - place[0], handle.at[1] - place[1]];
-      this.held = { name: handle.name, off };
+      this.held = { name: handle.becomes || handle.name, off };
       stage.hold();
       task.begin();
+      if (handle.becomes) this.grow(handle);
     } else if (this.mode === "draw") {
       this.line = [place];
     } else if (this.mode === "add") {
@@ -197,11 +174,25 @@ class Handles {
     this.taken(event);
   }
 
+  // A side becomes two, with a corner that the hand holds from now on.
+  grow(handle, place = handle.at) {
+    this.focused = handle.becomes;
+    this.task.change(() => handle.move(this.rounded(place)));
+    this.focus(handle.becomes);
+  }
+
   // The hand has taken something: nobody else does.
   taken(event) {
+    this.pointer = event.pointerId;
     event.preventDefault();
     event.stopPropagation();
     this.stage.svg.setPointerCapture(event.pointerId);
+  }
+
+  // Of handles that cover each other.
+  nearest([x, y]) {
+    const away = ({ at }) => Math.hypot(at[0] - x, at[1] - y);
+    return this.list().reduce((best, other) => (away(other) < away(best) ? other : best));
   }
 
   // The first click of an area or outline begins it with three corners about the place.
@@ -216,21 +207,37 @@ class Handles {
         (task.requirements.keep_out ||= []).push([corner(x - r, y - r), corner(x + r, y - r), corner(x + r, y + r), corner(x - r, y + r)]);
       } else if (this.mode === "outline") {
         ((document.scene ||= {}).outlines ||= []).push([corner(x - r, y), corner(x + r, y)]);
-      } else if (this.mode.startsWith("region")) {
-        const names = this.mode.split(" ").slice(1);
-        task.setRegion(names, { x: [corner(x - r, y)[0], corner(x + r, y)[0]], y: [corner(x, y - r)[1], corner(x, y + r)[1]] });
-      }
+      } else if (this.mode === "region") task.setPlace(this.joints, this.placeAt(place, r));
     });
     this.setMode("move");
+  }
+
+  // A new place of the chosen shape about a point, in the frame of its joints.
+  placeAt([x, y], r) {
+    const [pose] = this.task.targets;
+    const frame = this.joints[0].endsWith("_on_body") && pose && pose.angle !== null ? bodyFrame(pose) : STILL;
+    const [u, v] = frame.back([x, y]);
+    const at = (...place) => this.rounded(place);
+    const corners = [at(u - r, v - r), at(u + r, v - r), at(u + r, v + r), at(u - r, v + r)];
+    const shapes = {
+      box: { x: [corners[0][0], corners[2][0]], y: [corners[0][1], corners[2][1]] },
+      polygon: { inside: corners },
+      line: { on: [at(u - r, v), at(u + r, v)] },
+      point: at(u, v),
+    };
+    return shapes[this.shape];
   }
 
   moved(event) {
     const { stage, task } = this;
     const place = stage.at && stage.back(stage.pointer(event));
     if (this.line) {
-      const [x, y] = stage.at(this.line.at(-1));
-      const [u, v] = stage.at(place);
-      if (Math.hypot(u - x, v - y) > 3) this.line.push(place);
+      const between = event.getCoalescedEvents ? event.getCoalescedEvents() : [];
+      for (const each of between.length ? between : [event]) {
+        const next = stage.back(stage.pointer(each));
+        const [[x, y], [u, v]] = [this.line.at(-1), next].map(stage.at);
+        if (Math.hypot(u - x, v - y) > 3) this.line.push(next);
+      }
       this.draw();
     }
     if (!this.held) return;
@@ -244,24 +251,26 @@ class Handles {
     });
   }
 
-  up() {
+  // The hand lets go, or the browser takes the pointer from it, which leaves a drawn line unused.
+  up(done) {
+    this.pointer = null;
     if (this.held) {
       this.held = null;
       this.task.end();
     }
     if (this.line) {
-      const points = this.line;
+      const { points, closed } = sampled(this.line, this.count);
+      const path = withoutRepeats(points.map((point) => this.rounded(point)));
+      const enough = this.line.length > 4 && path.length >= FEWEST.path + Number(closed);
       this.line = null;
-      if (points.length > 4) {
-        this.task.edit(() => this.task.setPath(resampled(points, FREEHAND).map((point) => this.rounded(point))));
-      }
+      if (done && enough) this.task.edit(() => this.task.setPath(path, closed));
       this.setMode("move");
     }
   }
 
   // Arrow keys move the handle with the focus by a step, with shift ten times; Delete removes it, L locks it.
   key(event) {
-    const handle = this.focused && this.list().find(({ name }) => name === this.focused);
+    const handle = this.chosen();
     if (event.key === "Escape" && this.mode !== "move") return this.setMode("move");
     if (!handle || event.ctrlKey || event.metaKey || event.altKey) return;
     const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -271,10 +280,21 @@ class Handles {
       stage.hold();
       const [dx, dy] = ways[event.key];
       const step = this.step() * times;
-      task.edit(() => {
-        if (handle.turn) handle.turn(this.turned(handle.degrees + (dy - dx) * times * (this.snaps ? 5 : 1)));
-        else handle.move(this.rounded([handle.at[0] + dx * step, handle.at[1] + dy * step]));
-      });
+      const next = [handle.at[0] + dx * step, handle.at[1] + dy * step];
+      if (handle.becomes) {
+        task.begin();
+        this.grow(handle, next);
+        task.end();
+      } else {
+        task.edit(() => {
+          if (handle.turn) handle.turn(this.turned(handle.degrees + (dy - dx) * times * (this.snaps ? 5 : 1)));
+          else handle.move(this.rounded(next));
+        });
+      }
+    } else if (handle.becomes && ["Enter", " ", "Insert"].includes(event.key)) {
+      task.begin();
+      this.grow(handle);
+      task.end();
     } else if (event.key === "Delete" || event.key === "Backspace") this.remove(handle);
     else if (event.key === "l" || event.key === "L") this.toggleLock(handle.target);
     else return;
@@ -287,6 +307,12 @@ class Handles {
     this.stage.hold();
     if (handle.target !== undefined) this.task.edit(() => this.task.removeTarget(handle.target));
     else if (handle.remove) this.task.edit(handle.remove);
+    this.onFocus(this.chosen());
+  }
+
+  removeChosen() {
+    const handle = this.chosen();
+    if (handle) this.remove(handle);
   }
 
   toggleLock(target) {

@@ -4,16 +4,19 @@ const OTHERS = 10; // designs whose paths are drawn beside the chosen one
 const AGAIN = 2000; // ms after which a server that does not answer is asked again
 
 class Live extends MovingPage {
-  transport; root; version; lost; preferred; transmission; velocity; torque; columns; given;
+  transport; root; version; lost; preferred; transmission; velocity; torque; columns; given; pictured;
 
   constructor(root, transport, link) {
     super({}, { root });
     Object.assign(this, { root, transport, designs: [], chosen: null, preferred: null, version: 0, listed: null, busy: null, lost: [] });
     Object.assign(this, { trackDue: false, searchDue: false, published: null, columns: [], compared: [], timer: null });
-    Object.assign(this, { given: null, refusedAt: null });
+    Object.assign(this, { given: null, refusedAt: null, pictured: "" });
     this.task = new Task({ onChange: (what) => this.changed(what) });
     this.stage.beside = () => this.paths();
-    this.handles = new Handles(this.stage, this.task, { onMode: (mode) => this.showMode(mode) });
+    this.handles = new Handles(this.stage, this.task, {
+      onMode: (mode) => this.showMode(mode),
+      onFocus: (handle) => ($("[data-remove]", root).disabled = !handle || !(handle.remove || handle.target !== undefined)),
+    });
     this.backdrop = new Backdrop(this.stage);
     this.stage.behind = this.backdrop;
     this.form = new Form($(".asked", root), this.task, { onFocusTarget: (k) => this.handles.toggleLock(k) });
@@ -71,10 +74,11 @@ class Live extends MovingPage {
     $("[data-redo]", this.root).disabled = !this.task.future.length;
     $("[data-title]", this.root).textContent = this.task.document.title || this.task.name;
     $("[data-mode=add]", this.root).hidden = !this.task.list;
-    $("[data-mode=draw]", this.root).hidden = this.task.kind !== "path";
-    const before = JSON.stringify(this.stage.scene);
+    for (const option of $("[name=joints]", this.root).options) option.hidden = option.value.endsWith("body") && this.task.kind !== "motion";
+    const before = this.pictured;
     this.stage.scene = sceneOf(this.task, this.published);
-    if (opened || looks || before !== JSON.stringify(this.stage.scene)) this.stage.draw();
+    this.pictured = JSON.stringify(this.stage.scene); // its lists are those of the task, which change
+    if (opened || looks || before !== this.pictured) this.stage.draw();
     const document = JSON.stringify(this.task.document);
     if (document === this.asked) return;
     this.asked = document;
@@ -282,6 +286,7 @@ class Live extends MovingPage {
     for (const button of $$("[data-mode]", this.root)) {
       button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
     }
+    for (const options of $$("[data-when]", this.root)) options.hidden = options.dataset.when !== mode;
   }
 
   tell(words) {
@@ -300,6 +305,7 @@ class Live extends MovingPage {
     this.refusedAt = lines.length ? this.version : null;
     node.textContent = lines.join("\n");
     node.hidden = !lines.length;
+    this.form.root.classList.toggle("refused", lines.length > 0);
   }
 
   refused(lines) {
@@ -321,42 +327,9 @@ class Live extends MovingPage {
     const rows = [...this.listing.rows.keys()];
     const { theta2 } = this.stage;
     const { document } = this.task;
-    return { version, listed, chosen, lost, designs, rows, compared, theta2, busy: busy && busy.what, document };
+    const { scene } = this.stage;
+    return { scene, version, listed, chosen, lost, designs, rows, compared, theta2, busy: busy && busy.what, document };
   }
-}
-
-// A task as the drawing has it: as Python's `scene_of`.
-function sceneOf(task, published) {
-  const { scene = {}, requirements = {}, length_unit: unit = "" } = task.document;
-  const rows = task.targets;
-  const table = task.document[task.kind] || {};
-  const closed = Boolean(table.closed);
-  const shown =
-    task.kind === "motion"
-      ? { poses: rows.map(({ x, y, angle }) => [x, y, angle === null ? null : angle / DEG]), body: table.body || null }
-      : { points: rows.map(({ x, y }) => [x, y]) };
-  const regions = task.regions.map(([names, box]) => {
-    const corners = box.inside || box.on;
-    if (Array.isArray(corners)) {
-      const [x, y] = [0, 1].map((axis) => {
-        const side = corners.map((corner) => corner[axis]);
-        return [Math.min(...side), Math.max(...side)];
-      });
-      return { name: names.map((name) => name.toUpperCase()).join(", "), x, y, corners };
-    }
-    const { x, y } = Array.isArray(box) ? { x: [box[0], box[0]], y: [box[1], box[1]] } : box;
-    return { name: names.map((name) => name.toUpperCase()).join(", "), x: x || [null, null], y: y || [null, null] };
-  });
-  return {
-    ...(task.list ? shown : { points: [] }),
-    closed,
-    unit,
-    outlines: scene.outlines || [],
-    keepOut: requirements.keep_out || [],
-    keptOut: requirements.keep_out_for || ["o2", "o4"],
-    regions,
-    published: published || null,
-  };
 }
 
 function startLive(root, token, link = "") {

@@ -1,5 +1,5 @@
 // Texts to copy: a link to the chosen design, its linkage file, the problem file; and links to open.
-const COPIED = { link: "The link", linkage: "The design", problem: "The problem" };
+const COPIED = { link: "The link to the design", "problem-link": "The link to the problem", linkage: "The design", problem: "The problem" };
 
 class Sharing {
   live; commands; panel; text;

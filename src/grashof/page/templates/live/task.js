@@ -1,6 +1,6 @@
 // The task of a live page as its problem file: changes by hand, undo and redo.
 const HISTORY = 200; // steps back, at most
-const REGIONS = ["o2", "o4", "d", "a", "b"];
+const OF_ALL = ["o2", "o4", "a", "b", "keep_out", "link_length", "link_ratio_max", "transmission_min_deg", "size"]; // requirements
 const FEWEST = { motion: 2, path: 3 };
 
 class Task {
@@ -127,13 +127,17 @@ class Task {
     return place;
   }
 
-  // A path in place of the one there is; closed where it ends near its beginning.
-  setPath(points) {
-    const [first, last] = [points[0], points.at(-1)];
-    const length = points.slice(1).reduce((sum, p, k) => sum + Math.hypot(p[0] - points[k][0], p[1] - points[k][1]), 0);
-    const closed = Math.hypot(first[0] - last[0], first[1] - last[1]) < length / 10;
-    const path = closed ? [...points.slice(0, -1), [...first]] : points;
-    this.document.path = { points: path, closed };
+  // A path in place of the targets there are. Another kind of task becomes one, with what all kinds may ask for.
+  setPath(points, closed) {
+    const { document } = this;
+    if (this.kind !== "path") {
+      const { requirements = {}, scene, length_unit, search } = document;
+      const kept = Object.entries(requirements).filter(([key]) => OF_ALL.includes(key));
+      if (requirements.keep_out_for) kept.push(["keep_out_for", requirements.keep_out_for.filter((part) => part !== "body")]);
+      const path = { kind: "path", length_unit, scene, requirements: Object.fromEntries(kept), search };
+      this.document = JSON.parse(JSON.stringify(path)); // without those that are not stated
+    }
+    this.document.path = { points, closed };
     this.locked.clear();
   }
 
@@ -141,35 +145,16 @@ class Task {
     return (this.document.requirements ||= {});
   }
 
-  // Lists of corners that can be dragged, as [name, corners, closed].
+  // Lists of corners that can be dragged: words, the list they are in, their number in it, and whether they are closed.
   get polygons() {
     const { scene = {}, requirements = {} } = this.document;
-    return [
-      ...(requirements.keep_out || []).map((corners, k) => [`area ${k + 1}`, corners, true]),
-      ...(scene.outlines || []).map((corners, k) => [`outline ${k + 1}`, corners, false]),
-    ];
+    const entries = (list, words, closed) => (list || []).map((_, k) => ({ words: `${words} ${k + 1}`, list, k, closed }));
+    return [...entries(requirements.keep_out, "area", true), ...entries(scene.outlines, "outline", false)];
   }
 
-  removePolygon(corners) {
-    for (const list of [this.requirements.keep_out || [], (this.document.scene || {}).outlines || []]) {
-      if (list.includes(corners)) list.splice(list.indexOf(corners), 1);
-    }
-  }
-
-  // Boxes of pivots, those that are the same as one: [names, box].
-  get regions() {
-    const found = new Map();
-    for (const name of REGIONS) {
-      const box = (this.document.requirements || {})[name];
-      if (!box) continue;
-      const key = JSON.stringify(box);
-      found.set(key, [...(found.get(key) || []), name]);
-    }
-    return [...found].map(([key, names]) => [names, JSON.parse(key)]);
-  }
-
-  setRegion(names, box) {
-    for (const name of names) this.requirements[name] = structuredClone(box);
+  // Joints with a place of their own: "o2", or "a_on_body".
+  setPlace(keys, place) {
+    for (const key of keys) this.requirements[key] = structuredClone(place);
   }
 }
 
@@ -180,17 +165,35 @@ function distanceToLeg([x, y], from, to) {
   return Math.hypot(from.x + at * dx - x, from.y + at * dy - y);
 }
 
-// So many points at equal distances along a line that a hand drew.
-function resampled(points, count) {
+// A line drawn by hand as a number of points at equal distances along it; closed where it ends near its beginning,
+// and then with the first point again as the last.
+function sampled(drawn, count) {
+  const ends = [drawn[0], drawn.at(-1)];
+  const closed = distance(...ends) < lengthsOf(drawn).at(-1) / 10;
+  const line = closed ? [...drawn, drawn[0]] : drawn;
+  const points = resampled(line, closed ? count + 1 : count);
+  return { points: closed ? [...points.slice(0, -1), points[0]] : points, closed };
+}
+
+const distance = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
+
+// Lengths of a line up to each of its points.
+function lengthsOf(line) {
   const lengths = [0];
-  for (let k = 1; k < points.length; k += 1) {
-    lengths.push(lengths[k - 1] + Math.hypot(points[k][0] - points[k - 1][0], points[k][1] - points[k - 1][1]));
-  }
+  for (let k = 1; k < line.length; k += 1) lengths.push(lengths[k - 1] + distance(line[k - 1], line[k]));
+  return lengths;
+}
+
+function resampled(line, count) {
+  const lengths = lengthsOf(line);
   return Array.from({ length: count }, (_, n) => {
     const wanted = (lengths.at(-1) * n) / (count - 1);
     const beyond = lengths.findIndex((length) => length >= wanted);
     const k = beyond < 0 ? lengths.length - 1 : Math.max(beyond, 1);
     const share = (wanted - lengths[k - 1]) / (lengths[k] - lengths[k - 1] || 1);
-    return points[k].map((value, axis) => points[k - 1][axis] + share * (value - points[k - 1][axis]));
+    return line[k].map((value, axis) => line[k - 1][axis] + share * (value - line[k - 1][axis]));
   });
 }
+
+// Points that differ from the one before: those of a coarse grid may be the same.
+const withoutRepeats = (points) => points.filter((point, k) => k === 0 || String(point) !== String(points[k - 1]));

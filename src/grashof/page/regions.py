@@ -1,0 +1,69 @@
+"""Where joints may be, for the drawings of a page: boxes, polygons and segments, each in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from grashof.page.render import plain
+from grashof.problems import Box, Problem, Region, Task
+from grashof.problems.values.arrays import FloatArray
+
+PIVOTS = ("o2", "o4", "d", "a", "b")  # those that are the same are drawn as one, in this order
+
+
+def regions_of(problem: Problem) -> list[dict[str, Any]]:
+    """Every region that a problem states, as the scripts draw it, with null for an open side.
+
+    Those on the body stand where the first pose has it; they are left out where it is incomplete, and so are
+    those with an open side.
+    """
+    wanted = problem.requirements
+    boxes = {name: box for name in PIVOTS if (box := getattr(wanted, name)) is not None}
+    found = []
+    for box in dict.fromkeys(boxes.values()):
+        names = ", ".join(name.upper() for name, other in boxes.items() if other == box)
+        found.append(_drawn(f"{names} region", box))
+    found += [*_at_targets(problem), *_on_body(problem)]
+    if problem.driver is not None and problem.driver.base is not None:
+        found.append(_drawn("region of the cylinder's base", problem.driver.base))
+    return found
+
+
+def _at_targets(problem: Problem) -> Iterator[dict[str, Any]]:
+    for each in problem.requirements.at:
+        targets = f"target{'s' * (len(each.targets) > 1)} {', '.join(map(str, each.targets))}"
+        for name, joint in {"a": "A", "b": "B", "instant_centre": "instant centre"}.items():
+            if (box := getattr(each, name)) is not None:
+                yield _drawn(f"{joint} region at {targets}", box)
+
+
+def _on_body(problem: Problem) -> Iterator[dict[str, Any]]:
+    for name in ("a", "b"):
+        box = getattr(problem.requirements, f"{name}_on_body")
+        corners = None if box is None else _at_first_pose(problem.task, box)
+        if corners is not None:
+            sides = np.stack([corners.min(axis=0), corners.max(axis=0)]).T.tolist()
+            words = f"{name.upper()} region on the body"
+            yield {"name": words, "x": sides[0], "y": sides[1], "corners": corners.tolist()}
+
+
+def _at_first_pose(task: Task, box: Box) -> FloatArray | None:
+    """Corners (M, 2) of a place on the body; None where they are not known."""
+    if isinstance(box, Region):
+        corners = box.corners
+    else:
+        (left, right), (low, high) = box.x, box.y
+        corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    if not np.isfinite([*corners.ravel(), *task.positions[0], task.angles[0]]).all():
+        return None
+    pose = complex(*task.positions[0]) + corners @ np.array([1, 1j]) * np.exp(1j * task.angles[0])
+    return np.column_stack([pose.real, pose.imag])
+
+
+def _drawn(name: str, box: Box) -> dict[str, Any]:
+    corners = {"corners": box.corners.tolist()} if isinstance(box, Region) else {}
+    sides = {axis: list(map(plain, np.array(getattr(box, axis), dtype=float))) for axis in ("x", "y")}
+    return {"name": name, **sides, **corners}
