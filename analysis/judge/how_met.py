@@ -9,12 +9,12 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from grashof.analysis.curves.coupler_curve import closed_length
-from grashof.analysis.judge.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.function_output import met_as_function
+from grashof.analysis.judge.meeting.dwell_output import DwellFigures, least_band
 from grashof.analysis.judge.meeting.points import met_in_order, met_in_time, met_singly
 from grashof.analysis.judge.meeting.poses import nearest_to_poses, poses_in_order
 from grashof.analysis.judge.meeting.task_motion import Targets, TaskMotion, task_motion
-from grashof.analysis.judge.two_outputs import TwoOutputs, two_outputs
+from grashof.analysis.judge.meeting.two_outputs import TwoOutputs, two_outputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.mobility import branch_index
 from grashof.analysis.mechanism.stroke import output_stroke

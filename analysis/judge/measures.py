@@ -14,8 +14,8 @@ from grashof.analysis.curves.curve_distance import curve_distances
 from grashof.analysis.cylinder.lengths import CylinderFigures
 from grashof.analysis.judge.coupler_motion import CouplerMotion, coupler_motion
 from grashof.analysis.judge.cylinder_drive import cylinder_force_peak, figures_of
-from grashof.analysis.judge.dwell_output import made_band
 from grashof.analysis.judge.effort_travel import effort_deviation
+from grashof.analysis.judge.meeting.dwell_output import made_band
 from grashof.analysis.judge.over_task import TORQUE, OverTask, motion_ends, over_task, task_peaks
 from grashof.analysis.judge.tolerance import robustness
 from grashof.analysis.judge.verdict import Enclosure, Verdict

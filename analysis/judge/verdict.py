@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grashof.analysis.judge.dwell_output import DwellFigures
-from grashof.analysis.judge.two_outputs import TwoOutputs
+from grashof.analysis.judge.meeting.dwell_output import DwellFigures
+from grashof.analysis.judge.meeting.two_outputs import TwoOutputs
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder
 from grashof.problems.values.arrays import FloatArray, IntArray

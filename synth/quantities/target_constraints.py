@@ -12,7 +12,6 @@ import numpy as np
 from grashof.analysis.judge.design import Constraint, Design
 from grashof.problems import Box, Problem, Region
 from grashof.problems.values.arrays import Limits
-from grashof.problems.values.linkages.mechanisms import INVERTED, SLIDER_CRANK
 from grashof.problems.values.requirements.distances import ends_of
 from grashof.problems.values.requirements.named_limits import NamedLimits
 from grashof.problems.values.requirements.target_limits import TargetLimits
@@ -163,10 +162,10 @@ def _held(design: Design, k: int) -> tuple[Any, Any]:
     moves along the rod.
     """
     a, b = design.a[k], design.b[k]
-    if design.mechanism == INVERTED:
+    if design.r3 is None:
         rod = _from(a, b)
         return _from(a, design.o4), (-rod[1], rod[0])
-    if design.mechanism == SLIDER_CRANK:
+    if design.slide_angle is not None:
         return _from(a, b), (-np.sin(design.slide_angle), np.cos(design.slide_angle))
     return _from(a, b), _from(design.o4, b)
 

@@ -13,8 +13,8 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from grashof.analysis import Verdict
-from grashof.analysis.judge.dwell_output import DwellFigures
-from grashof.analysis.judge.two_outputs import TwoOutputs
+from grashof.analysis.judge.meeting.dwell_output import DwellFigures
+from grashof.analysis.judge.meeting.two_outputs import TwoOutputs
 from grashof.analysis.judge.verdict import Defect
 from grashof.analysis.mechanism.first_loop import GrashofClass
 from grashof.problems import Cylinder, Linkage, Objective, Problem, SixBar

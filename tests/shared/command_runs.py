@@ -1,4 +1,4 @@
-"""Shared by tests of the command line: the command in this process, and in one of its own."""
+"""Shared by tests of the command line: the command here and in a process of its own, a small problem."""
 
 import subprocess
 import sys
@@ -7,6 +7,17 @@ from pathlib import Path
 from typing import Any
 
 Grashof = Callable[..., Any]  # the fixture of this name
+# Solved in no time.
+BASE = """\
+kind = "path"
+length_unit = "mm"
+[path]
+points = [[0, 0], [1, 1], [2, 0]]
+[search]
+starts = 1
+enough = 1
+effort = 0.2
+"""
 COMMAND = [sys.executable, "-c", "from grashof.cli import main; main()"]
 
 

@@ -337,9 +337,7 @@ class Requirements(ReadOnly):
     @property
     def limited(self) -> dict[str, Limit]:
         """The limits that are stated, by field."""
-        return {
-            name: limited for name, limited in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)
-        }
+        return {name: each for name, each in LIMITS.items() if getattr(self, name) not in (None, ANYWHERE)}
 
     @property
     def named(self) -> dict[str, NamedLimits]:

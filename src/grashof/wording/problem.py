@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from grashof.problems import (
-    CylinderSpec,
     DwellTask,
-    DynamicsSpec,
     FunctionTask,
     LinkageSpec,
     MotionTask,
@@ -21,12 +19,9 @@ from grashof.problems import (
     StrokeTask,
     TandemTask,
     Task,
-    WantedTorque,
 )
 from grashof.problems.values.arrays import FloatArray
 from grashof.problems.values.checks import counted
-from grashof.problems.values.dynamics.effort import EffortSpec
-from grashof.problems.values.dynamics.struts import BODY
 from grashof.problems.values.errors import listing
 from grashof.problems.values.linkages.mechanism import ONE_LOOP
 from grashof.problems.values.linkages.mechanisms import has_one_loop, kinds_text
@@ -44,6 +39,7 @@ from grashof.synth.designs.ranking import pareto_goals
 from grashof.synth.quantities.scaled_problem import ScaledProblem
 from grashof.synth.results.trade_offs import FACTORS
 from grashof.synth.search.finder import asked_first
+from grashof.wording.loads import cylinder_text, effort_text, loads_text, torque_text
 from grashof.wording.numbers import value_text
 
 # Quantities that a verdict reports besides missed requirements, where they have a value.
@@ -53,8 +49,6 @@ _KEYS = (
     "swing_4", "swing_6", "time_ratio_4", "time_ratio_6", "synchrony_error",
     "driver_rotation", "output_swing", "stroke", "time_ratio", "size", "torque_peak", "torque_deviation",
 )  # fmt: skip
-
-FEW_ROWS = 4  # of a wanted torque, all of which a summary states
 
 
 def ends_with_enough(problem: Problem) -> bool:
@@ -111,12 +105,12 @@ def summary(problem: Problem) -> list[str]:
         band = "" if problem.task.dwell is not None else f", band {made.band:g}{unit}"
         lines.append(f"  made to within {made.length_tolerance:g}{unit}{band}")
     if problem.dynamics is not None:
-        lines.append(f"  {_driven(problem.dynamics)}")
-        lines += [f"  {_effort(effort)}"] if (effort := problem.dynamics.effort) is not None else []
+        lines.append(f"  {loads_text(problem.dynamics)}")
+        lines += [f"  {effort_text(effort)}"] if (effort := problem.dynamics.effort) is not None else []
     if problem.torque is not None:
-        lines.append(f"  {_torque(problem.torque)}")
+        lines.append(f"  {torque_text(problem.torque)}")
     if problem.driver is not None:
-        lines.append(f"  {_cylinder(problem.driver, unit)}")
+        lines.append(f"  {cylinder_text(problem.driver, unit)}")
     return [*lines, f"  best: {_best(problem)}", f"  search: {_search(problem)}"]
 
 
@@ -215,77 +209,6 @@ def _search(problem: Problem) -> str:
     enough = f", {search.enough} designs" if ends_with_enough(problem) else ""
     effort = f", effort {search.effort:g}" if search.effort != 1 else ""
     return f"up to {search.starts} starts{enough}, seed {search.seed}{effort}"
-
-
-def _torque(torque: WantedTorque) -> str:
-    """A wanted drive torque."""
-    places = {"driver": "{:g} deg", "share": "share {:g}", "target": "target {:g}"}[torque.over]
-    ends = [f"{value:g} N m at {places.format(place)}" for place, value in torque.wanted]
-    few = ends if len(ends) <= FEW_ROWS else [ends[0], "...", ends[-1]]
-    counted_as = f"; the greatest counts as {torque.weight:g} sizes" if torque.weight else ""
-    return f"wanted torque: {', '.join(few)}{counted_as}"
-
-
-def _driven(spec: DynamicsSpec) -> str:
-    x, y = spec.gravity
-    every = [_links(spec), *_acting(spec)]
-    every += [f"payload {spec.payload:g} kg"] if spec.payload else []
-    return f"dynamics: {', '.join(every)}; driver {_motor(spec)}; gravity {x:g}, {y:g} m/s2"
-
-
-def _effort(spec: EffortSpec) -> str:
-    """What is wanted of the effort, and the parts that are to give it."""
-    words = [f"effort on {'link ' if spec.on.link != BODY else 'the '}{spec.on.link}"]
-    if spec.wanted is not None:
-        words.append(f"as wanted in {counted(len(spec.wanted), 'row')}")
-    if spec.band is not None:
-        words.append(f"{spec.band[0]:g} to {spec.band[1]:g} N")
-    if spec.stays_deg is not None:
-        words.append(f"stays from {spec.stays_deg[0]:g} to {spec.stays_deg[1]:g} deg")
-    if spec.closes_below_deg is not None:
-        words.append(f"closes below {spec.closes_below_deg:g} deg")
-    words.append(f"at {listing([f'{each:g}' for each in spec.temperatures_c], 'and')} deg C")
-    words += [f"{part.count} x {part.kind} of {counted(len(part.sizes), 'size')}" for part in spec.parts]
-    return "; ".join(words)
-
-
-def _cylinder(spec: CylinderSpec, unit: str) -> str:
-    """The limits of the driving cylinder."""
-    words = [f"driven by a cylinder on {' or '.join(spec.on)}"]
-    if spec.closed is not None:
-        words.append(f"closed {spec.closed[0]:g} to {spec.closed[1]:g}{unit}")
-    words.append(f"open up to {spec.ratio_max:g} times that")
-    if spec.base is not None:
-        (left, right), (low, high) = spec.base.x, spec.base.y
-        words.append(f"base x {left:g} to {right:g}, y {low:g} to {high:g}{unit}")
-    return "; ".join(words)
-
-
-def _links(spec: DynamicsSpec) -> str:
-    if spec.masses is not None:
-        centres = "" if spec.centres is None else ", centres given"
-        return f"links of {', '.join(f'{m:g}' for m in spec.masses)} kg{centres}"
-    if spec.mass_per_length is not None:
-        return f"uniform links of {spec.mass_per_length:g} kg a length unit"
-    return "massless links" if spec.density is None else f"uniform links of {spec.density:g} kg/m3"
-
-
-def _acting(spec: DynamicsSpec) -> Iterator[str]:
-    """Numbers of loads besides weight."""
-    names = {"loads": "load", "springs": "spring", "dampers": "damper", "counterweights": "counterweight"}
-    names |= {"torsion_springs": "torsion spring"}
-    for key, noun in names.items():
-        if entries := getattr(spec, key):
-            yield counted(len(entries), noun)
-    if spec.friction is not None:
-        yield "friction"
-
-
-def _motor(spec: DynamicsSpec) -> str:
-    if spec.motor is not None and spec.motor.values is not None:
-        return f"by a table of {spec.turn_time:g} s"
-    profile = "" if spec.motor is None or spec.motor.steady else f"from rest to rest ({spec.motor.profile}) "
-    return f"{profile}at {spec.speed_rpm:g} rpm"
 
 
 def _targets(task: Task, unit: str) -> str:

@@ -7,7 +7,7 @@ from body_plans import plan_of
 from random_linkages import six_bars
 
 from grashof.analysis import verify
-from grashof.analysis.judge.dwell_output import least_band, made_band
+from grashof.analysis.judge.meeting.dwell_output import least_band, made_band
 from grashof.problems import DwellTask, Requirements, SixBar, load_linkage
 
 GRID = 720

@@ -10,7 +10,7 @@ from random_linkages import six_bars
 
 from grashof.analysis import verify
 from grashof.analysis.judge.measures import Values
-from grashof.analysis.judge.two_outputs import two_outputs
+from grashof.analysis.judge.meeting.two_outputs import two_outputs
 from grashof.problems import DynamicsSpec, LinkSwing, Problem, Requirements, SixBar, TandemTask
 
 TURN = 2 * np.pi

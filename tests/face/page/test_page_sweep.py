@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from command_runs import BASE
 from page_parts import RECORD
 from shown_pages import state, without_complaints
-from sweep_base import BASE
 
 from grashof.sweep import Sweep, load_study, sweep
 from grashof.sweep.page import sweep_page

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from sweep_base import BASE
+from command_runs import BASE
 
 from grashof.sweep.task import solve_task
 

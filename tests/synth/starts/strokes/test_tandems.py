@@ -8,7 +8,7 @@ from random_linkages import six_bars
 
 from grashof.analysis import solve_kinematics, worst_transmission_cycle
 from grashof.analysis.judge.measures import Values
-from grashof.analysis.judge.two_outputs import two_outputs
+from grashof.analysis.judge.meeting.two_outputs import two_outputs
 from grashof.analysis.judge.verify import verify
 from grashof.problems import Box, LinkSwing, Problem, Requirements, SixBar, TandemTask
 from grashof.problems.values.arrays import FloatArray
