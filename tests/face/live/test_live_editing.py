@@ -17,7 +17,7 @@ from grashof.problems.files.on_disk import document_of
 from grashof.problems.files.problem_schema import problem_from
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Browser, Page
 
 PLACES = """
 kind = "motion"
@@ -165,11 +165,12 @@ def test_hands_at_random_leave_a_problem_or_its_error(places: Page) -> None:
         names = places.evaluate(
             "[...document.querySelectorAll('[data-handle]')].map((e) => e.dataset.handle)"
         )
-        handle = random.choice([name for name in names if "region" in name or "area" in name])
+        kinds = ("O2 region", "area") if step % 2 else ("region",)
+        handle = random.choice([name for name in names if any(kind in name for kind in kinds)])
         x, y = place_of(places, handle)
         to = [stage["x"] + stage["width"] * random.random(), stage["y"] + stage["height"] * random.random()]
         drag(places, handle, (to[0] - x, to[1] - y), steps=2)
-        if step % 4 == 3:
+        if step % 8 == 7:
             places.keyboard.press("Delete")
         try:
             problem_from(state(places)["document"], "task")
@@ -230,6 +231,39 @@ def test_a_closed_path_is_drawn_by_hand(page: Page) -> None:
     assert max(steps) < 1.08 * min(steps)  # chords of an ellipse, the one that closes it among them
     assert page.locator("[name=closed]").is_checked()
     assert problem_from(state(page)["document"], "drawn").task.closed
+
+
+@pytest.mark.slow
+def test_a_finger_draws_a_path(browser: Browser, served: str) -> None:
+    """The page neither scrolls below it nor takes a second finger for the first."""
+    page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    try:
+        page.goto(served)
+        page.wait_for_function("() => window.grashof && window.grashof.state().document.kind")
+        page.locator("[data-mode='draw']").tap()
+        page.locator("#stage").scroll_into_view_if_needed()
+        stage = box_of(page.locator("#stage"))
+        hand = page.context.new_cdp_session(page)
+
+        def touch(kind: str, *places: tuple[float, float]) -> None:
+            at = [{"x": stage["x"] + x, "y": stage["y"] + y, "id": k} for k, (x, y) in enumerate(places)]
+            hand.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": at})
+
+        line = [(60 + 8 * k, 60 + 8 * k) for k in range(25)]
+        touch("touchStart", line[0])
+        for place in line[:12]:
+            touch("touchMove", place)
+        touch("touchStart", line[11], (200, 60))
+        for place in line[12:]:
+            touch("touchMove", place, (200, 60))
+        touch("touchEnd")
+        found = state(page)["document"]
+        assert found["kind"] == "path"
+        points = np.array(found["path"]["points"])
+        assert len(points) == 12
+        assert np.ptp(points @ [1, 1]) < 0.05 * np.ptp(points @ [1, -1])  # y runs upwards
+    finally:
+        page.close()
 
 
 @pytest.mark.slow

@@ -172,11 +172,11 @@ def test_a_drawing_and_a_photo_lie_behind_scaled_by_two_points(page: Page, tmp_p
     (tmp_path / "broken.png").write_text("no picture")
     page.locator("[name=photo]").set_input_files(tmp_path / "broken.png")
     page.wait_for_function(
-        "() => document.querySelector('[data-notice]').textContent.includes('not a picture')"
+        "() => document.querySelector('[data-warning]').textContent.includes('not a picture')"
     )
     (tmp_path / "broken.dxf").write_text("no drawing")
     page.locator("[name=drawing]").set_input_files(tmp_path / "broken.dxf")
-    page.wait_for_function("() => document.querySelector('[data-notice]').textContent.includes('not a DXF')")
+    page.wait_for_function("() => document.querySelector('[data-warning]').textContent.includes('not a DXF')")
 
 
 @pytest.mark.slow

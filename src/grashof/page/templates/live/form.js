@@ -164,7 +164,7 @@ class Form {
   }
 
   // The task as its file and in words, as it is valid.
-  state(text, asked) {
+  showFile(text, asked) {
     $("[data-file]", this.root).textContent = text;
     $("[data-asked]", this.root).replaceChildren(
       ...asked.map((words) => Object.assign(document.createElement("li"), { textContent: words })),

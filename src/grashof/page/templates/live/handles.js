@@ -111,10 +111,10 @@ class Handles {
   // Corners of the body, where it stands at the first pose.
   ofBody() {
     const { motion } = this.task.document;
-    const [pose] = this.task.targets;
-    if (!motion || !motion.body || !pose || pose.x === null || pose.y === null || pose.angle === null) return [];
+    const frame = frameOfBody(this.task);
+    if (!frame || !motion.body) return [];
     const put = (corners) => (motion.body = corners);
-    const body = { words: "the body", corners: motion.body, closed: true, fewest: 3, frame: bodyFrame(pose), put, remove: () => {} };
+    const body = { words: "the body", corners: motion.body, closed: true, fewest: 3, frame, put, remove: () => {} };
     return cornerHandles(body, this.stage, (place) => this.rounded(place));
   }
 
@@ -149,7 +149,7 @@ class Handles {
   }
 
   down(event) {
-    if (event.button) return;
+    if (event.button || this.pointer !== null) return;
     const { stage, task } = this;
     const place = stage.back(stage.pointer(event));
     const grip = event.target.closest("[data-handle]");
@@ -165,6 +165,7 @@ class Handles {
       task.begin();
       if (handle.becomes) this.grow(handle);
     } else if (this.mode === "draw") {
+      stage.hold(); // designs that are found meanwhile do not change the scale
       this.line = [place];
     } else if (this.mode === "add") {
       stage.hold();
@@ -212,10 +213,16 @@ class Handles {
     this.setMode("move");
   }
 
+  // Joints of a place to come; those on the body only where it has a frame.
+  offerJoints(select) {
+    for (const option of select.options) option.hidden = option.value.endsWith("_on_body") && !frameOfBody(this.task);
+    if (select.selectedOptions[0].hidden) select.value = select.options[0].value;
+    this.joints = select.value.split(" ");
+  }
+
   // A new place of the chosen shape about a point, in the frame of its joints.
   placeAt([x, y], r) {
-    const [pose] = this.task.targets;
-    const frame = this.joints[0].endsWith("_on_body") && pose && pose.angle !== null ? bodyFrame(pose) : STILL;
+    const frame = this.joints[0].endsWith("_on_body") ? frameOfBody(this.task) : STILL;
     const [u, v] = frame.back([x, y]);
     const at = (...place) => this.rounded(place);
     const corners = [at(u - r, v - r), at(u + r, v - r), at(u + r, v + r), at(u - r, v + r)];

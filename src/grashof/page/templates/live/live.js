@@ -74,7 +74,7 @@ class Live extends MovingPage {
     $("[data-redo]", this.root).disabled = !this.task.future.length;
     $("[data-title]", this.root).textContent = this.task.document.title || this.task.name;
     $("[data-mode=add]", this.root).hidden = !this.task.list;
-    for (const option of $("[name=joints]", this.root).options) option.hidden = option.value.endsWith("body") && this.task.kind !== "motion";
+    this.handles.offerJoints($("[name=joints]", this.root));
     const before = this.pictured;
     this.stage.scene = sceneOf(this.task, this.published);
     this.pictured = JSON.stringify(this.stage.scene); // its lists are those of the task, which change
@@ -147,7 +147,7 @@ class Live extends MovingPage {
   stated({ text, asked }, version) {
     if (version !== this.version) return;
     if (version !== this.refusedAt) this.warn([]);
-    this.form.state(text, asked);
+    this.form.showFile(text, asked);
   }
 
   list(line, version) {

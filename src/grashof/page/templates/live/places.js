@@ -3,13 +3,16 @@ const PIVOTS = ["o2", "o4", "d", "a", "b"]; // as in `regions.py`; those that ar
 const AT_TARGETS = { a: "A", b: "B", instant_centre: "instant centre" };
 const SHORTEST = 34; // px: the side of a polygon that offers a new corner
 
-// Frames of a place: that of the task, or that of the body as it stands at the first pose.
+// The frame of most places, that of the task.
 const STILL = { out: (place) => place, back: (place) => place };
 
 // A place on the drawing as the file has it, as fine as other places there.
 const inFrame = (frame, place, rounded) => (frame === STILL ? place : rounded(frame.back(place)));
 
-function bodyFrame({ x, y, angle }) {
+// The frame of places on the body, which stands at the first pose; null where that is incomplete.
+function frameOfBody(task) {
+  const { x, y, angle } = task.targets[0] || {};
+  if (task.kind !== "motion" || [x, y, angle].includes(null)) return null;
   const [cos, sin] = [Math.cos(angle / DEG), Math.sin(angle / DEG)];
   return {
     out: ([u, v]) => [x + u * cos - v * sin, y + u * sin + v * cos],
@@ -38,11 +41,11 @@ function placesOf(task) {
       if (each[key]) places.push({ words: `${joint} region at ${targets}`, value: each[key], entries: [[each, key]], frame: STILL });
     }
   }
-  const [pose] = task.targets;
+  const frame = frameOfBody(task);
   for (const key of ["a_on_body", "b_on_body"]) {
-    if (!requirements[key] || !pose || pose.x === null || pose.y === null || pose.angle === null) continue;
+    if (!requirements[key] || !frame) continue;
     const words = `${key[0].toUpperCase()} region on the body`;
-    places.push({ words, value: requirements[key], entries: [[requirements, key]], frame: bodyFrame(pose) });
+    places.push({ words, value: requirements[key], entries: [[requirements, key]], frame });
   }
   const { cylinder = {} } = driver;
   if (cylinder.base) {
