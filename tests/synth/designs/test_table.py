@@ -32,7 +32,7 @@ swing_4_deg, swing_6_deg, time_ratio_4, time_ratio_6, synchrony_error, move_r5, 
 move_offset, move_c_u, move_c_v, move_d_u, move_d_v, move_offset_2, cylinder_on, cylinder_base_x,
 cylinder_base_y, cylinder_u, cylinder_v, cylinder_closed, cylinder_stroke, cylinder_angle_min_deg,
 cylinder_force_max, cylinder_rate_start, cylinder_rate_end, cylinder_rate_min, cylinder_rate_max,
-effort_deviation
+part_sizes, effort_deviation
 """
 FIRST = [name.strip() for name in CONTRACT.split(",")]
 # Quantities that a requirement declares follow.
